@@ -1,0 +1,111 @@
+//! Muscles: where the wall contracts or relaxes, in which direction, and by how much.
+//!
+//! A muscle changes the stress-free state of the wall (Rodriguez et al. 1994; Okino et al. 2025,
+//! Eqs. (1)–(3)): F = Fe · Fp, Fp = θζ ζ⊗ζ + θη η⊗η + ξ⊗ξ. Over a zone [a, b] with profile s(z):
+//!
+//! - circular: θη(z) = 1 − (1 − Dmin/D) s(z), driven by the diameter ratio Dmin/D;
+//! - longitudinal: θζ(z) = 1 + (Lmax/L − 1) L/∫s dz · s(z), driven by the length ratio Lmax/L,
+//!   so that the grown tube is Lmax long.
+//!
+//! | letter | meaning | unit | Rust |
+//! |---|---|---|---|
+//! | ζ, η, ξ | along, around, through the wall | – | [`Direction`] |
+//! | θζ, θη | grown over ungrown length | – | [`Muscle::stretch`] |
+//! | s | profile, 0 to 1 | – | [`Profile::value`] |
+//! | a, b | ends of the zone | D | [`Muscle::zone`] |
+
+mod profile;
+
+pub use profile::Profile;
+
+/// The direction in which a muscle shortens or lengthens the wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Around the tube (η).
+    Circular,
+    /// Along the tube (ζ).
+    Longitudinal,
+}
+
+/// One muscle of the wall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Muscle {
+    /// Its name in the case file.
+    pub name: String,
+    /// Its direction.
+    pub direction: Direction,
+    /// Where it begins and ends along the tube, in D.
+    pub zone: [f64; 2],
+    /// How its activity is spread over the zone.
+    pub profile: Profile,
+}
+
+impl Muscle {
+    /// The grown stretch θ at z, for a target ratio (Dmin/D or Lmax/L) of a tube of a length.
+    pub fn stretch(&self, z: f64, ratio: f64, length: f64) -> f64 {
+        let [a, b] = self.zone;
+        if z < a || z > b {
+            return 1.0;
+        }
+        1.0 + self.amplitude(ratio, length) * self.profile.value((z - a) / (b - a))
+    }
+
+    /// The change of θ where the profile is one.
+    fn amplitude(&self, ratio: f64, length: f64) -> f64 {
+        let [a, b] = self.zone;
+        match self.direction {
+            Direction::Circular => ratio - 1.0,
+            Direction::Longitudinal => (ratio - 1.0) * length / ((b - a) * self.profile.integral()),
+        }
+    }
+
+    /// The smallest θ anywhere in the zone, for a target ratio.
+    pub fn smallest_stretch(&self, ratio: f64, length: f64) -> f64 {
+        1.0 + (self.amplitude(ratio, length) * self.profile.largest()).min(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spline::gauss_legendre;
+
+    fn muscle(direction: Direction, profile: Profile) -> Muscle {
+        Muscle {
+            name: "m".into(),
+            direction,
+            zone: [0.5, 1.0],
+            profile,
+        }
+    }
+
+    #[test]
+    fn the_grown_tube_has_the_length_that_was_asked_for() {
+        let table = Profile::Table(vec![(0.0, 0.0), (0.25, 1.0), (0.75, 0.5), (1.0, 0.0)]);
+        for profile in [
+            Profile::RaisedCosine,
+            Profile::HalfSine,
+            Profile::SmoothBox { edge: 0.2 },
+            table,
+        ] {
+            let m = muscle(Direction::Longitudinal, profile);
+            let mut grown = 0.0;
+            for i in 0..600 {
+                for (x, w) in gauss_legendre(4) {
+                    grown += 0.005 * w * m.stretch(0.005 * (f64::from(i) + x), 1.25, 3.0);
+                }
+            }
+            assert!((grown - 3.75).abs() < 1e-8, "{:?}: {grown}", m.profile);
+        }
+    }
+
+    #[test]
+    fn the_main_case_grows_fourfold_and_narrows_to_a_quarter() {
+        let relaxed = muscle(Direction::Longitudinal, Profile::RaisedCosine);
+        assert!((relaxed.stretch(0.75, 1.25, 3.0) - 4.0).abs() < 1e-14);
+        let contracted = muscle(Direction::Circular, Profile::RaisedCosine);
+        assert!((contracted.stretch(0.75, 0.25, 3.0) - 0.25).abs() < 1e-14);
+        assert_eq!(contracted.stretch(0.49, 0.25, 3.0), 1.0);
+        assert!((contracted.smallest_stretch(0.25, 3.0) - 0.25).abs() < 1e-14);
+    }
+}

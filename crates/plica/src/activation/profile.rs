@@ -1,0 +1,76 @@
+//! How a muscle's activity is spread over its zone.
+
+use std::f64::consts::PI;
+
+/// A profile s(x) over the zone, x from 0 to 1; s is between 0 and 1.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Profile {
+    /// ½ (1 − cos 2πx): smooth at both edges. The paper says "sinusoidal"; this is the one that
+    /// puts the energy minimum of its Fig. 4A where it is printed.
+    RaisedCosine,
+    /// sin πx: with a kink at both edges.
+    HalfSine,
+    /// One, with a raised-cosine rise and fall over the fraction `edge` (at most ½) of the zone
+    /// at either end.
+    SmoothBox {
+        /// Fraction of the zone over which it rises, and again falls.
+        edge: f64,
+    },
+    /// Straight lines between points (x, s), x rising from 0 to 1.
+    Table(Vec<(f64, f64)>),
+}
+
+impl Profile {
+    /// s(x), for x in [0, 1].
+    pub fn value(&self, x: f64) -> f64 {
+        match self {
+            Self::RaisedCosine => 0.5 * (1.0 - (2.0 * PI * x).cos()),
+            Self::HalfSine => (PI * x).sin(),
+            Self::SmoothBox { edge } => {
+                let from_end = x.min(1.0 - x).max(0.0);
+                if from_end >= *edge {
+                    1.0
+                } else {
+                    0.5 * (1.0 - (PI * from_end / edge).cos())
+                }
+            }
+            Self::Table(points) => {
+                let next = points
+                    .partition_point(|p| p.0 <= x)
+                    .clamp(1, points.len() - 1);
+                let ((x0, s0), (x1, s1)) = (points[next - 1], points[next]);
+                s0 + (s1 - s0) * (x - x0) / (x1 - x0)
+            }
+        }
+    }
+
+    /// ∫ s dx over [0, 1].
+    pub fn integral(&self) -> f64 {
+        match self {
+            Self::RaisedCosine => 0.5,
+            Self::HalfSine => 2.0 / PI,
+            Self::SmoothBox { edge } => 1.0 - edge,
+            Self::Table(points) => points
+                .windows(2)
+                .map(|w| 0.5 * (w[0].1 + w[1].1) * (w[1].0 - w[0].0))
+                .sum(),
+        }
+    }
+
+    /// The largest value of s.
+    pub fn largest(&self) -> f64 {
+        match self {
+            Self::Table(points) => points.iter().fold(0.0, |m: f64, p| m.max(p.1)),
+            _ => 1.0,
+        }
+    }
+
+    /// Positions in (0, 1) where the profile is not smooth: elements should end there.
+    pub fn kinks(&self) -> Vec<f64> {
+        match self {
+            Self::RaisedCosine | Self::HalfSine => vec![],
+            Self::SmoothBox { edge } => vec![*edge, 1.0 - edge],
+            Self::Table(points) => points[1..points.len() - 1].iter().map(|p| p.0).collect(),
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Plica simulates soft, active tubes: how a muscular wall that contracts around and relaxes
+//! along itself deforms, buckles and invaginates.
+//!
+//! The rooms, from the ground up (ARCHITECTURE.md draws the arrows):
+//!
+//! - [`tensor`]: numbers on lanes, 3×3 tensors.
+//! - [`spline`]: bases, quadrature, the circle a spline draws.
+//! - [`material`]: hyperelastic laws, one per file.
+//! - [`activation`]: muscles and their profiles.
+//! - [`tube`]: what a person means by a tube, its mesh and its load.
+//! - [`rings`]: control rings in cylindrical components, and sectors that repeat.
+//! - [`assembly`]: the element kernel; energy, residual and tangent of a tube.
+//! - [`solve`]: block-banded factorisation, Newton, relaxation, the way through a snap.
+//! - [`study`]: stages, accepted states, the run directory.
+//! - [`case`]: the case file as written, and what it means.
+//! - [`report`]: measures, walls and pictures of a tube.
+
+pub mod activation;
+pub mod material;
+pub mod solve;
+pub mod spline;
+pub mod study;
+pub mod tensor;
+pub mod tube;

@@ -1,0 +1,47 @@
+//! Hyperelastic laws: how much energy an elastic deformation stores.
+//!
+//! A law is a function w(Fe) of the elastic part of the deformation gradient, energy per unit
+//! *grown* volume, with its exact first and second derivatives. One law per file; to add one,
+//! see CONTRIBUTING.md.
+//!
+//! | letter | meaning | unit | Rust |
+//! |---|---|---|---|
+//! | Fe | elastic deformation gradient | – | `F` |
+//! | J | det Fe | – | `J` |
+//! | w | strain energy density | E | [`Law::energy`] |
+//! | P | first Piola–Kirchhoff stress ∂w/∂Fe | E | [`Law::stress`] |
+//! | A | tangent moduli ∂²w/∂Fe∂Fe | E | [`Law::moduli`] |
+//!
+//! The laws are written for any [`Real`]; the callers check that J > 0 (at J ≤ 0 a law has no
+//! meaning and gives NaN).
+#![allow(non_snake_case)] // the formulas keep the letters of their sources
+
+mod neo_hookean;
+
+pub use neo_hookean::NeoHookean;
+
+use crate::tensor::{Real, Tensor2};
+
+/// The second derivatives of a law: `moduli[3 k + j][3 l + i]` is ∂²w/∂F_{jk}∂F_{il} for columns
+/// k ≤ l of F; the blocks below the diagonal follow by symmetry and are not filled.
+pub type Moduli<S> = [[S; 9]; 9];
+
+/// A hyperelastic law.
+pub trait Law: Copy + Send + Sync {
+    /// Strain energy density w(Fe).
+    fn energy<S: Real>(&self, F: &Tensor2<S>) -> S;
+    /// First Piola–Kirchhoff stress P = ∂w/∂Fe.
+    fn stress<S: Real>(&self, F: &Tensor2<S>) -> Tensor2<S>;
+    /// Tangent moduli A = ∂²w/∂Fe∂Fe.
+    fn moduli<S: Real>(&self, F: &Tensor2<S>) -> Moduli<S>;
+}
+
+/// The law of a wall, as a case chooses it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Material {
+    /// Compressible neo-Hookean.
+    NeoHookean(NeoHookean),
+}
+
+#[cfg(test)]
+mod tests;

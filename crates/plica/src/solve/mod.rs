@@ -1,0 +1,5 @@
+//! Finding equilibria.
+
+mod settings;
+
+pub use settings::{Integrator, PseudoTime, Scheme, Settings};

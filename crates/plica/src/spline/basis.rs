@@ -1,0 +1,206 @@
+//! B-spline bases by the recurrence of Cox and de Boor.
+
+/// A B-spline basis of one degree on one knot vector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Basis {
+    degree: usize,
+    knots: Vec<f64>,
+}
+
+/// The p+1 functions that live on one element, at one point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values {
+    /// The element (knot span) that holds the point.
+    pub element: usize,
+    /// N, one per function; function `b` of element `e` has the number `e + b`.
+    pub value: Vec<f64>,
+    /// dN/dx.
+    pub slope: Vec<f64>,
+}
+
+impl Basis {
+    /// Open knots: the first and last breakpoints repeated, so that the first and last control
+    /// points lie on the ends. `breakpoints` must rise strictly; it has one more entry than there
+    /// are elements.
+    pub fn open(degree: usize, breakpoints: &[f64]) -> Self {
+        assert!(degree >= 1 && breakpoints.len() >= 2);
+        assert!(breakpoints.windows(2).all(|w| w[0] < w[1]));
+        let (first, last) = (breakpoints[0], breakpoints[breakpoints.len() - 1]);
+        let mut knots = vec![first; degree];
+        knots.extend_from_slice(breakpoints);
+        knots.extend(std::iter::repeat_n(last, degree));
+        Self { degree, knots }
+    }
+
+    /// The one element [0, 1] of a uniform periodic basis.
+    pub fn uniform_element(degree: usize) -> Self {
+        let p = degree as i32;
+        Self {
+            degree,
+            knots: (-p..=p + 1).map(f64::from).collect(),
+        }
+    }
+
+    /// The degree p.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Number of functions, and of control points.
+    pub fn functions(&self) -> usize {
+        self.knots.len() - self.degree - 1
+    }
+
+    /// Number of elements (non-empty knot spans).
+    pub fn elements(&self) -> usize {
+        self.knots.len() - 2 * self.degree - 1
+    }
+
+    /// Where an element begins and ends.
+    pub fn element(&self, e: usize) -> (f64, f64) {
+        (self.knots[self.degree + e], self.knots[self.degree + e + 1])
+    }
+
+    /// The element that holds `x`; points outside belong to the nearest.
+    pub fn find(&self, x: f64) -> usize {
+        let inner = &self.knots[self.degree + 1..self.knots.len() - self.degree - 1];
+        inner.partition_point(|&t| t <= x)
+    }
+
+    /// The Greville abscissae: control values that reproduce x exactly.
+    pub fn greville(&self) -> Vec<f64> {
+        (0..self.functions())
+            .map(|a| self.knots[a + 1..=a + self.degree].iter().sum::<f64>() / self.degree as f64)
+            .collect()
+    }
+
+    /// Values and slopes at a point.
+    pub fn evaluate(&self, x: f64) -> Values {
+        self.evaluate_in(self.find(x), x)
+    }
+
+    /// Values and slopes at a point of a given element (on a shared edge the side matters).
+    pub fn evaluate_in(&self, element: usize, x: f64) -> Values {
+        let p = self.degree;
+        let lower = self.values(element, x, p - 1);
+        // N'_{i,p} = p ( N_{i,p−1} / (t_{i+p} − t_i) − N_{i+1,p−1} / (t_{i+p+1} − t_{i+1}) )
+        let t = &self.knots[element..];
+        let scaled: Vec<f64> = (0..p)
+            .map(|b| p as f64 * lower[b] / (t[b + 1 + p] - t[b + 1]))
+            .collect();
+        let slope = (0..=p)
+            .map(|b| {
+                let left = if b > 0 { scaled[b - 1] } else { 0.0 };
+                let right = if b < p { scaled[b] } else { 0.0 };
+                left - right
+            })
+            .collect();
+        Values {
+            element,
+            value: self.values(element, x, p),
+            slope,
+        }
+    }
+
+    /// The d+1 functions of degree d that live on an element.
+    fn values(&self, element: usize, x: f64, d: usize) -> Vec<f64> {
+        let span = element + self.degree;
+        let t = &self.knots;
+        let mut n = vec![0.0; d + 1];
+        n[0] = 1.0;
+        for k in 1..=d {
+            let mut saved = 0.0;
+            for b in 0..k {
+                let (left, right) = (t[span + 1 + b - k], t[span + 1 + b]);
+                let ratio = n[b] / (right - left);
+                n[b] = saved + (right - x) * ratio;
+                saved = (x - left) * ratio;
+            }
+            n[k] = saved;
+        }
+        n
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bases() -> impl Iterator<Item = Basis> {
+        (1..=5).map(|p| Basis::open(p, &[0.0, 0.3, 0.5, 0.55, 1.4, 3.0]))
+    }
+
+    const POINTS: [f64; 7] = [0.0, 0.12, 0.3, 0.52, 1.0, 2.99, 3.0];
+
+    #[test]
+    fn functions_sum_to_one_and_slopes_to_zero() {
+        for basis in bases() {
+            for x in POINTS {
+                let v = basis.evaluate(x);
+                assert!((v.value.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+                assert!(v.slope.iter().sum::<f64>().abs() < 1e-12);
+                assert!(v.value.iter().all(|&n| n >= 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn greville_points_reproduce_the_line() {
+        for basis in bases() {
+            let g = basis.greville();
+            assert_eq!((g[0], g[g.len() - 1]), (0.0, 3.0));
+            for x in POINTS {
+                let v = basis.evaluate(x);
+                let sum = |n: &[f64]| -> f64 {
+                    n.iter()
+                        .enumerate()
+                        .map(|(b, n)| n * g[v.element + b])
+                        .sum()
+                };
+                assert!((sum(&v.value) - x).abs() < 1e-14);
+                assert!((sum(&v.slope) - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_are_the_slopes_of_values() {
+        for basis in bases().filter(|b| b.degree() > 1) {
+            let (x, e) = (0.9, basis.find(0.9));
+            let error = |h: f64| -> f64 {
+                let (a, b) = (basis.evaluate_in(e, x + h), basis.evaluate_in(e, x - h));
+                let exact = basis.evaluate_in(e, x);
+                (0..=basis.degree())
+                    .map(|b_| ((a.value[b_] - b.value[b_]) / (2.0 * h) - exact.slope[b_]).abs())
+                    .sum()
+            };
+            // Central differences are exact for parabolas, second order beyond.
+            let order = (error(0.1) / error(0.05)).log2();
+            assert!(
+                error(0.1) < 1e-12 || (order - 2.0).abs() < 0.1,
+                "order {order}"
+            );
+        }
+    }
+
+    #[test]
+    fn splines_are_smooth_across_knots() {
+        for basis in bases().filter(|b| b.degree() > 1) {
+            let (left, right) = (basis.evaluate_in(1, 0.5), basis.evaluate_in(2, 0.5));
+            // Function e+1+b is number b+1 on the left and b on the right.
+            for b in 0..basis.degree() {
+                assert!((left.value[b + 1] - right.value[b]).abs() < 1e-14);
+                assert!((left.slope[b + 1] - right.slope[b]).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn edges_belong_to_the_right_and_outside_to_the_nearest() {
+        let basis = Basis::open(3, &[0.0, 1.0, 2.0]);
+        assert_eq!(
+            [-1.0, 0.0, 0.5, 1.0, 2.0, 5.0].map(|x| basis.find(x)),
+            [0, 0, 0, 1, 1, 1]
+        );
+    }
+}

@@ -1,0 +1,94 @@
+//! Breakpoints that lie closer together where more happens.
+
+/// A stretch of the axis whose elements are `factor` times as dense as elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refinement {
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Density of elements relative to the unrefined rest.
+    pub factor: f64,
+}
+
+/// `elements + 1` breakpoints on [0, length]: uniform between the edges of the refinements, which
+/// are breakpoints themselves. Where refinements overlap the densest counts. With fewer elements
+/// than stretches between edges, the edges give way and the mesh is uniform.
+pub fn graded_breakpoints(length: f64, elements: usize, refinements: &[Refinement]) -> Vec<f64> {
+    let mut edges = vec![0.0, length];
+    for r in refinements {
+        edges.extend([r.from, r.to].map(|x| x.clamp(0.0, length)));
+    }
+    edges.sort_by(f64::total_cmp);
+    edges.dedup_by(|a, b| (*a - *b).abs() < 1e-9 * length);
+    if elements < edges.len() - 1 {
+        edges = vec![0.0, length];
+    }
+
+    let share: Vec<f64> = edges
+        .windows(2)
+        .map(|w| {
+            let middle = 0.5 * (w[0] + w[1]);
+            let density = refinements
+                .iter()
+                .filter(|r| r.from < middle && middle < r.to)
+                .fold(1.0, |d: f64, r| d.max(r.factor));
+            density * (w[1] - w[0])
+        })
+        .collect();
+    let total: f64 = share.iter().sum();
+
+    // One element each, then always the stretch that is furthest behind its share.
+    let mut counts = vec![1_usize; share.len()];
+    for _ in counts.len()..elements {
+        let behind = |i: usize| share[i] / total * elements as f64 / counts[i] as f64;
+        let most = (0..share.len()).max_by(|&i, &j| behind(i).total_cmp(&behind(j)));
+        counts[most.unwrap_or(0)] += 1;
+    }
+
+    let mut breakpoints = vec![edges[0]];
+    for (w, &n) in edges.windows(2).zip(&counts) {
+        breakpoints.extend((1..n).map(|i| w[0] + (w[1] - w[0]) * i as f64 / n as f64));
+        breakpoints.push(w[1]);
+    }
+    breakpoints
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zones_are_dense_and_their_edges_are_kept() {
+        let zone = Refinement {
+            from: 0.5,
+            to: 1.0,
+            factor: 3.0,
+        };
+        let x = graded_breakpoints(3.0, 302, &[zone]);
+        assert_eq!(x.len(), 303);
+        assert!(x.windows(2).all(|w| w[0] < w[1]));
+        assert!(x.contains(&0.5) && x.contains(&1.0) && x[302] == 3.0);
+        let inside = x.iter().filter(|&&x| x > 0.5 && x <= 1.0).count();
+        assert!((inside as f64 - 302.0 * 1.5 / 4.0).abs() <= 1.0, "{inside}");
+    }
+
+    #[test]
+    fn nothing_to_refine_is_uniform() {
+        let x = graded_breakpoints(2.0, 4, &[]);
+        assert_eq!(x, [0.0, 0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(
+            graded_breakpoints(
+                2.0,
+                1,
+                &[Refinement {
+                    from: 0.5,
+                    to: 1.0,
+                    factor: 2.0
+                }]
+            )
+            .len(),
+            2
+        );
+    }
+}

@@ -1,0 +1,56 @@
+//! One row per accepted state: the content of `history.csv`.
+
+use serde::Serialize;
+
+/// An accepted state in numbers. Lengths in D and energies in E·D³, unless the case gives units;
+/// forces relative to the forces in play.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Number of the state, from 0 (the tube at rest).
+    pub step: usize,
+    /// Name of the stage.
+    pub stage: String,
+    /// Grown length over length, Lmax/L.
+    pub length_ratio: f64,
+    /// Narrowest grown diameter over diameter, Dmin/D.
+    pub diameter_ratio: f64,
+    /// Axial displacement of the colon end.
+    pub colon_displacement: f64,
+    /// Axial displacement of the ileum end.
+    pub ileum_displacement: f64,
+    /// Strain energy W = ∫ w det Fp dV₀, over the grown volume.
+    pub energy: f64,
+    /// Strain energy ∫ w dV₀, over the ungrown volume, as some other programs report it.
+    pub energy_ungrown_volume: f64,
+    /// Residual without drag over the forces in play.
+    pub residual: f64,
+    /// Energy spent on drag on the way to this state.
+    pub drag_work: f64,
+    /// How the state was found: rest, newton, relaxation or pseudo-time.
+    pub method: String,
+    /// Whether the state is in equilibrium: yes, or no.
+    pub equilibrium: String,
+    /// Linear solves, counting those of rejected tries.
+    pub iterations: usize,
+    /// Conjugate-gradient iterations; 0 where the solver is direct.
+    pub cg_iterations: usize,
+    /// Wall time since the state before.
+    pub seconds: f64,
+    /// Smallest radius of the outer wall.
+    pub outer_radius_min: f64,
+    /// Where along the tube that is.
+    pub z_at_min: f64,
+    /// Steepest angle of the outer wall to the axis; past 90 it overhangs.
+    pub max_wall_angle_deg: f64,
+    /// How far the outer wall runs back along the axis, at most.
+    pub overhang: f64,
+    /// The side it invaginates to: colon, ileum or none.
+    pub side: String,
+    /// V, U, square, invaginated or collapsed; straight where nothing is contracted.
+    pub shape: String,
+    /// Smallest det Fe.
+    pub min_det_fe: f64,
+    /// Circumferential harmonics of the tangent with negative pivots, as `harmonic:count`, or
+    /// none. Only harmonics that the symmetry of the run admits are looked at.
+    pub unstable_harmonics: String,
+}

@@ -1,0 +1,9 @@
+//! A study: a tube led through stages of load, state by accepted state.
+
+mod history;
+mod observer;
+mod plan;
+
+pub use history::Row;
+pub use observer::Observer;
+pub use plan::{Output, Plan, Stage, Units};

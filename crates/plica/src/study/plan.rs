@@ -1,0 +1,71 @@
+//! What is to be computed: the checked content of a case file.
+
+use crate::solve::Settings;
+use crate::tube::{Load, Mesh, Symmetry, Tube};
+
+/// A whole study, checked and dimensionless.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// One line of what it is, for titles.
+    pub title: String,
+    /// The tube, at rest at load `tube.rest()`.
+    pub tube: Tube,
+    /// The mesh laid over it.
+    pub mesh: Mesh,
+    /// What repeats around it.
+    pub symmetry: Symmetry,
+    /// Where the load goes, stage after stage.
+    pub stages: Vec<Stage>,
+    /// How states are found.
+    pub solver: Settings,
+    /// What is left behind.
+    pub output: Output,
+    /// The units of the case file, for results in real units.
+    pub units: Option<Units>,
+}
+
+/// A straight way through the loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// Its name in tables.
+    pub name: String,
+    /// The load at its end; it begins at the end of the stage before, the first at rest.
+    pub load: Load,
+    /// Equal steps from begin to end, at least one; each ends in an accepted state.
+    pub steps: usize,
+}
+
+/// What a run leaves behind beside its history.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Whether pictures are drawn.
+    pub pictures: bool,
+    /// Wall profiles are written for every n-th accepted state (and always for the last of a
+    /// stage); 0 for none.
+    pub profiles_every: usize,
+    /// Points along the tube at which a wall is sampled for profiles and pictures.
+    pub wall_points: usize,
+}
+
+/// Real units, of one tube.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Units {
+    /// Unit of length, as written: m, cm, mm or um.
+    pub length: String,
+    /// Unit of stress, as written: Pa, kPa or MPa.
+    pub stress: String,
+    /// The outer diameter in the unit of length.
+    pub diameter: f64,
+    /// Young's modulus in the unit of stress.
+    pub youngs_modulus: f64,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self {
+            pictures: true,
+            profiles_every: 1,
+            wall_points: 601,
+        }
+    }
+}

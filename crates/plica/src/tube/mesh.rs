@@ -1,0 +1,50 @@
+//! The mesh that is laid over a tube.
+
+use crate::spline::Refinement;
+
+/// Control points, degree and grading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Control points along the tube.
+    pub axial: usize,
+    /// Control points around it (N_C), for the whole circumference whatever the symmetry.
+    pub around: usize,
+    /// Control points through the wall.
+    pub thickness: usize,
+    /// Degree p of the splines, in every direction.
+    pub degree: usize,
+    /// Where elements along the tube are denser.
+    pub refinements: Vec<Refinement>,
+}
+
+/// What repeats around the circumference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// Every cross-section stays a circle; it may twist.
+    Axisymmetric,
+    /// The tube repeats `m` times around.
+    Fold(usize),
+    /// Nothing repeats.
+    None,
+}
+
+impl Mesh {
+    /// Elements along, around and through the wall.
+    pub fn elements(&self) -> [usize; 3] {
+        [
+            self.axial - self.degree,
+            self.around,
+            self.thickness - self.degree,
+        ]
+    }
+
+    /// Rings k in the sector that repeats: 1 if axisymmetric, N_C/m if m-fold, N_C if nothing
+    /// repeats.
+    pub fn rings(&self, symmetry: Symmetry) -> usize {
+        match symmetry {
+            Symmetry::Axisymmetric => 1,
+            Symmetry::Fold(m) => self.around / m,
+            Symmetry::None => self.around,
+        }
+    }
+}
