@@ -16,7 +16,10 @@
 //! - [`report`]: measures, walls and pictures of a tube.
 
 pub mod activation;
+pub mod assembly;
 pub mod material;
+pub mod matrix;
+pub mod rings;
 pub mod solve;
 pub mod spline;
 pub mod study;

@@ -1,5 +1,35 @@
-//! Finding equilibria.
+//! Finding equilibria: Newton, relaxation, pseudo-time, and the way through a snap.
+//!
+//! This room never hears of a tube. It sees an [`Equilibrium`]: an energy W(u, load) with its
+//! residual R = ∂W/∂u, its tangent K = ∂²W/∂u², a drag matrix C, and unknowns that supports give.
+//!
+//! - [`newton`]: K Δu = −R with the energy as judge. Refuses an indefinite tangent.
+//! - [`relaxation`]: (K + α C) Δu = −R, backward Euler in pseudo-time with a drag α that shrinks
+//!   as the residual does; every step lowers the energy, so it ends in a stable state.
+//! - [`pseudo_time`]: the same with a drag that stays, and the paper's Newmark recurrence.
+//! - [`Path`]: from state to state along a load; predicts with the path's tangent, then takes the
+//!   first of these that arrives, and halves the step when none does.
+//!
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | u | unknowns | D |
+//! | R | residual | E D² |
+//! | K | tangent stiffness | E D |
+//! | C | drag matrix of unit coefficient | D³ |
+//! | α | drag | E/D² |
 
+#![allow(non_snake_case)] // the formulas keep the letters of their sources
+
+mod newton;
+mod path;
+mod pseudo_time;
+mod relaxation;
 mod settings;
+mod state;
 
+pub use newton::newton;
+pub use path::{Path, PathError, Step};
+pub use pseudo_time::pseudo_time;
+pub use relaxation::relaxation;
 pub use settings::{Integrator, PseudoTime, Scheme, Settings};
+pub use state::{Equilibrium, Failure, Forces, Found, Method, State, Watch};

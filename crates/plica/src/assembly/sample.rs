@@ -1,0 +1,88 @@
+//! Fields at a point of the wall.
+
+use super::SplineTube;
+use super::kinematics::{Columns, turn};
+use super::tables::Around;
+use crate::material::{Law, Material};
+use crate::tensor::Tensor2;
+use crate::tube::Load;
+
+/// A material point, by its reference position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Along the tube, in D.
+    pub z: f64,
+    /// Radius, in D.
+    pub radius: f64,
+    /// Angle around the tube, in radians.
+    pub angle: f64,
+}
+
+/// What is found at a material point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Reference position (z, x, y).
+    pub reference: [f64; 3],
+    /// Current position (z, x, y).
+    pub position: [f64; 3],
+    /// Elastic deformation gradient: rows (z, outwards, around) at the middle of the point's
+    /// element, columns (along, outwards, around) at the point.
+    pub elastic: Tensor2,
+    /// det Fe.
+    pub jacobian: f64,
+    /// Strain energy density w(Fe), per grown volume, in E.
+    pub energy_density: f64,
+}
+
+impl SplineTube {
+    /// The fields at a point under a load. Points outside the wall are read from the splines of
+    /// the nearest element.
+    pub fn sample(&self, load: &Load, u: &[f64], at: Point) -> Sample {
+        let (axial, wall) = (self.axial.evaluate(at.z), self.wall.evaluate(at.radius));
+        let alpha = self.sector.angle();
+        // Element 0 is centred on angle zero.
+        let turns = at.angle / alpha + 0.5;
+        let (element, s) = (turns.floor(), turns - turns.floor());
+        let rings = self.sector.rings;
+        let first_ring = (element as i64).rem_euclid(rings as i64) as usize;
+        let point = Around::at(&self.sector, &self.circle, s, 1.0);
+
+        let (mut zeta, mut over_s, mut over_r) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        let mut value = [0.0; 3];
+        for (a, (n, dn)) in axial.value.iter().zip(&axial.slope).enumerate() {
+            for (c, (m, dm)) in wall.value.iter().zip(&wall.slope).enumerate() {
+                for (r, slot) in point.slots.iter().enumerate() {
+                    let row = axial.element + a;
+                    let place = |i: usize| {
+                        row * self.row_size()
+                            + ((wall.element + c) * 3 + i) * rings
+                            + (first_ring + r) % rings
+                    };
+                    let u = [0, 1, 2].map(|i| u[place(i)]);
+                    value = turn(slot, 0, u.map(|x| n * m * x), value);
+                    zeta = turn(slot, 0, u.map(|x| dn * m * x), zeta);
+                    over_s = turn(slot, 1, u.map(|x| n * m * x), over_s);
+                    over_r = turn(slot, 0, u.map(|x| n * dm * x), over_r);
+                }
+            }
+        }
+
+        let (theta_z, theta_t) = self.tube.stretches(at.z, load);
+        let columns = Columns::new(&point, at.radius, 1.0 / theta_z, 1.0 / theta_t);
+        let Fe = columns.elastic(&point, at.radius, [zeta, over_s, over_r]);
+        let reference = [at.z, at.radius * point.circle.0, at.radius * point.circle.1];
+        let position = [0, 1, 2].map(|i| reference[i] + value[i]);
+        // From the element's frame to the laboratory.
+        let (sin, cos) = (element * alpha).sin_cos();
+        let turned = |x: [f64; 3]| [x[0], x[1] * cos - x[2] * sin, x[1] * sin + x[2] * cos];
+        Sample {
+            reference: turned(reference),
+            position: turned(position),
+            jacobian: Fe.determinant(),
+            energy_density: match self.tube.material {
+                Material::NeoHookean(law) => law.energy(&Fe),
+            },
+            elastic: Fe,
+        }
+    }
+}

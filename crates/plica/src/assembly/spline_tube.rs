@@ -1,0 +1,295 @@
+//! A tube laid out in splines: numbering, slabs over threads, sums in their order.
+
+use super::drag::drag;
+use super::forces::{SlabForces, SlabInput, slab_forces};
+use super::supports::Supports;
+use super::tables::{Around, Layer, Slab};
+use super::tangent::{SlabTangent, slab_tangent};
+use crate::material::Material;
+use crate::matrix::BlockBanded;
+use crate::rings::Sector;
+use crate::spline::{Basis, Circle, graded_breakpoints};
+use crate::tensor::{Lanes, Real};
+use crate::tube::{Load, Mesh, Tube};
+use rayon::prelude::*;
+
+/// A tube and the splines that carry its displacements.
+///
+/// The unknowns are numbered row by row along the tube; in a row point by point through the wall,
+/// then component (axial, radial, circumferential), then ring of the sector.
+#[derive(Clone, Debug)]
+pub struct SplineTube {
+    /// The tube.
+    pub tube: Tube,
+    /// Rings that are solved for, and how they repeat.
+    pub sector: Sector,
+    /// The spline circle.
+    pub circle: Circle,
+    /// Basis along the tube, over z.
+    pub axial: Basis,
+    /// Basis through the wall, over the reference radius R.
+    pub wall: Basis,
+    pub(super) supports: Supports,
+    slabs: Vec<Slab>,
+    layers: Vec<Layer>,
+    around: Vec<Around>,
+}
+
+/// Energy and residual at a state.
+#[derive(Clone, Debug)]
+pub struct Forces {
+    /// ∫ w det Fp dV₀ of the whole tube: the paper's W, in E·D³.
+    pub energy: f64,
+    /// ∫ w dV₀ of the whole tube, over the ungrown volume.
+    pub energy_ungrown: f64,
+    /// R = ∂W/∂u_cp of the sector, in E·D².
+    pub residual: Vec<f64>,
+    /// The forces in play: root of the sum of squares of what the elements add to R, before it
+    /// cancels.
+    pub in_play: f64,
+    /// The smallest det Fe at any quadrature point.
+    pub smallest_jacobian: f64,
+}
+
+/// An element is turned inside out: det Fe is not positive (or not a number).
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the wall is turned inside out near z = {z:.4} D, radius {radius:.4} D (det Fe = {jacobian:.3e}, \
+     element {element:?})"
+)]
+pub struct Inverted {
+    /// Element along the tube, through the wall and around the sector.
+    pub element: [usize; 3],
+    /// Reference position along the tube of the worst point's element.
+    pub z: f64,
+    /// Reference radius of the worst point.
+    pub radius: f64,
+    /// det Fe there.
+    pub jacobian: f64,
+}
+
+/// Calls a slab kernel for the law and the degree at hand.
+macro_rules! with_law_and_degree {
+    ($self:ident, $kernel:ident, $input:expr) => {
+        match ($self.tube.material, $self.degree()) {
+            (Material::NeoHookean(law), 1) => $kernel::<_, 2>(&law, $input),
+            (Material::NeoHookean(law), 2) => $kernel::<_, 3>(&law, $input),
+            (Material::NeoHookean(law), 3) => $kernel::<_, 4>(&law, $input),
+            (Material::NeoHookean(law), 4) => $kernel::<_, 5>(&law, $input),
+            (Material::NeoHookean(law), 5) => $kernel::<_, 6>(&law, $input),
+            (_, degree) => unreachable!("degree {degree} is refused by SplineTube::new"),
+        }
+    };
+}
+
+impl SplineTube {
+    /// Lays a mesh over a tube; `rings` of the mesh's rings are solved for and repeat.
+    pub fn new(tube: &Tube, mesh: &Mesh, rings: usize) -> Self {
+        let p = mesh.degree;
+        assert!((1..=5).contains(&p), "degree {p} is not between 1 and 5");
+        let [along, around, through] = mesh.elements();
+        let sector = Sector::new(p, around, rings);
+        let circle = Circle::new(p, around);
+        let axial = Basis::open(
+            p,
+            &graded_breakpoints(tube.length, along, &mesh.refinements),
+        );
+        let radii = graded_breakpoints(tube.thickness, through, &[]);
+        let radii: Vec<f64> = radii.iter().map(|h| tube.inner_radius() + h).collect();
+        let wall = Basis::open(p, &radii);
+        let control_radii: Vec<f64> = wall
+            .greville()
+            .iter()
+            .map(|r| r * circle.control_radius)
+            .collect();
+        let supports = Supports::new(tube, &sector, &axial.greville(), &control_radii);
+        Self {
+            slabs: Slab::all(&axial),
+            layers: Layer::all(&wall),
+            around: Around::all(p, &sector, &circle),
+            tube: tube.clone(),
+            sector,
+            circle,
+            axial,
+            wall,
+            supports,
+        }
+    }
+
+    /// The degree p.
+    pub fn degree(&self) -> usize {
+        self.axial.degree()
+    }
+
+    /// Unknowns of one row of control points.
+    pub fn row_size(&self) -> usize {
+        self.wall.functions() * 3 * self.sector.rings
+    }
+
+    /// Unknowns of the sector, given ones included.
+    pub fn unknowns(&self) -> usize {
+        self.axial.functions() * self.row_size()
+    }
+
+    /// For every unknown, whether a support gives it.
+    pub fn given(&self) -> &[bool] {
+        &self.supports.given
+    }
+
+    /// Unknowns pinned so that a loose tube does not drift.
+    pub fn anchors(&self) -> usize {
+        self.supports.anchors
+    }
+
+    /// Writes what the ends prescribe under a load into `u`.
+    pub fn impose(&self, load: &Load, u: &mut [f64]) {
+        self.supports.impose(load, u);
+    }
+
+    /// Energy and residual of a state `u` under a load.
+    pub fn forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
+        let slabs: Vec<SlabForces> = self
+            .slabs
+            .par_iter()
+            .map(|slab| {
+                let stretch = self.inverse_stretch(slab, load);
+                let input = self.input(slab, &stretch, u);
+                with_law_and_degree!(self, slab_forces, &input)
+            })
+            .collect();
+
+        let repeats = self.sector.repeats();
+        let mut forces = Forces {
+            energy: 0.0,
+            energy_ungrown: 0.0,
+            residual: vec![0.0; u.len()],
+            in_play: 0.0,
+            smallest_jacobian: f64::INFINITY,
+        };
+        for (slab, part) in self.slabs.iter().zip(&slabs) {
+            let (jacobian, element, [_, qr, _]) = part.worst;
+            if !(jacobian > 0.0) {
+                return Err(Inverted {
+                    element,
+                    z: self.axial.element(element[0]).0,
+                    radius: self.layers[element[1]].radius[qr],
+                    jacobian,
+                });
+            }
+            forces.smallest_jacobian = forces.smallest_jacobian.min(jacobian);
+            forces.energy += repeats * part.energy;
+            forces.energy_ungrown += repeats * part.energy_ungrown;
+            forces.in_play += part.squares;
+            let rows = &mut forces.residual[slab.first * self.row_size()..];
+            for (sum, part) in rows.iter_mut().zip(&part.residual) {
+                *sum += part;
+            }
+        }
+        forces.in_play = forces.in_play.sqrt();
+        Ok(forces)
+    }
+
+    /// The tangent stiffness ∂R/∂u_cp of the sector at a state; every unknown is free in it. The
+    /// state must not be inverted (see [`SplineTube::forces`]).
+    pub fn tangent(&self, load: &Load, u: &[f64]) -> BlockBanded {
+        let (p, m) = (self.degree(), self.row_size());
+        let mut matrix = BlockBanded::zeros(self.axial.functions(), m, p);
+        // What is held before it is summed: a few slabs at a time when rows are large.
+        let slab_bytes = 8 * (p + 1) * m * m * (8 + p);
+        let together = (SLAB_MEMORY / slab_bytes).clamp(2, self.slabs.len().max(2));
+        let mut before: Option<(usize, SlabTangent)> = None;
+        for slabs in self.slabs.chunks(together) {
+            let mut parts: Vec<(usize, SlabTangent)> = slabs
+                .par_iter()
+                .map(|slab| {
+                    let stretch = self.inverse_stretch(slab, load);
+                    let input = self.input(slab, &stretch, u);
+                    (slab.first, with_law_and_degree!(self, slab_tangent, &input))
+                })
+                .collect();
+            // A row takes what its own slab left, then what the slab before left.
+            let first = parts[0].0;
+            let last = parts[parts.len() - 1].0 + slabs[slabs.len() - 1].elements;
+            let end = if last == self.axial.elements() {
+                last + p
+            } else {
+                last
+            };
+            let places = self.places(&matrix);
+            let parts_before = before.as_slice();
+            matrix.panels_mut().enumerate().collect::<Vec<_>>()[first..end]
+                .par_iter_mut()
+                .for_each(|(row, panel)| {
+                    for (from, part) in parts.iter().chain(parts_before) {
+                        if (*from..from + part.rows).contains(row) {
+                            for (i, &place) in places.iter().enumerate() {
+                                panel[place] += part.entries[i * part.rows + *row - from];
+                            }
+                        }
+                    }
+                });
+            before = parts.pop();
+        }
+        matrix
+    }
+
+    /// The drag matrix ∫ N N dV₀ of the sector.
+    pub fn drag(&self) -> BlockBanded {
+        let shape = [self.axial.functions(), self.wall.functions()];
+        drag(
+            &self.slabs,
+            &self.layers,
+            &self.around,
+            &self.sector,
+            shape,
+            self.degree(),
+        )
+    }
+
+    /// Where the entries of a slab's tangent sit in a panel, in their order.
+    fn places(&self, matrix: &BlockBanded) -> Vec<usize> {
+        let m = self.row_size();
+        let mut places = Vec::with_capacity((self.degree() + 1) * m * m);
+        for d in 0..=self.degree() {
+            for column in 0..m {
+                places.extend((0..m).map(|row| matrix.place(d, row, column)));
+            }
+        }
+        places
+    }
+
+    fn inverse_stretch(&self, slab: &Slab, load: &Load) -> Vec<(Lanes, Lanes)> {
+        let at = |z: &Lanes| {
+            let (mut along, mut around) = (Lanes::zero(), Lanes::zero());
+            for l in 0..z.0.len() {
+                let (theta_z, theta_t) = self.tube.stretches(z.0[l], load);
+                along.0[l] = 1.0 / theta_z;
+                around.0[l] = 1.0 / theta_t;
+            }
+            (along, around)
+        };
+        slab.z.iter().map(at).collect()
+    }
+
+    fn input<'a>(
+        &'a self,
+        slab: &'a Slab,
+        inverse_stretch: &'a [(Lanes, Lanes)],
+        u: &'a [f64],
+    ) -> SlabInput<'a> {
+        let m = self.row_size();
+        let rows = slab.elements + self.degree();
+        SlabInput {
+            slab,
+            layers: &self.layers,
+            around: &self.around,
+            points: self.wall.functions(),
+            rings: self.sector.rings,
+            inverse_stretch,
+            u: &u[slab.first * m..(slab.first + rows) * m],
+        }
+    }
+}
+
+/// Bytes of slab tangents that are held before they are summed.
+const SLAB_MEMORY: usize = 256 << 20;

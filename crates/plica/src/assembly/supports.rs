@@ -1,0 +1,149 @@
+//! Which unknowns are given: held ends, and what keeps a loose tube from drifting.
+
+use crate::rings::Sector;
+use crate::tube::{Load, Support, Tube};
+
+/// The unknowns that are not free.
+#[derive(Clone, Debug)]
+pub struct Supports {
+    /// For every unknown, whether it is given.
+    pub given: Vec<bool>,
+    /// Number of unknowns that were pinned so that a loose tube does not drift. They are as few
+    /// as there are rigid motions left, so that they carry no force.
+    pub anchors: usize,
+    ends: Vec<EndUnknown>,
+}
+
+/// A given unknown of an end face.
+#[derive(Clone, Copy, Debug)]
+struct EndUnknown {
+    unknown: usize,
+    end: usize,
+    component: usize,
+    /// Radius of its control point.
+    radius: f64,
+}
+
+impl Supports {
+    /// The supports of a tube with control points at the axial positions `z` and radii `r`.
+    pub fn new(tube: &Tube, sector: &Sector, z: &[f64], r: &[f64]) -> Self {
+        let size = r.len() * 3 * sector.rings;
+        let mut given = vec![false; z.len() * size];
+        let mut ends = vec![];
+        for (end, row) in [(0, 0), (1, z.len() - 1)] {
+            let components = match tube.ends[end] {
+                Support::Fixed => 0..3,
+                Support::Sliding => 0..1,
+                Support::Free => 0..0,
+            };
+            for component in components {
+                for (c, &radius) in r.iter().enumerate() {
+                    for ring in 0..sector.rings {
+                        let unknown = row * size + (c * 3 + component) * sector.rings + ring;
+                        given[unknown] = true;
+                        ends.push(EndUnknown {
+                            unknown,
+                            end,
+                            component,
+                            radius,
+                        });
+                    }
+                }
+            }
+        }
+        let pins = pins(rigid_motions(sector, z, r), &given);
+        for &pin in &pins {
+            given[pin] = true;
+        }
+        Self {
+            given,
+            anchors: pins.len(),
+            ends,
+        }
+    }
+
+    /// Writes the given unknowns of a load into `u`.
+    pub fn impose(&self, load: &Load, u: &mut [f64]) {
+        for e in &self.ends {
+            let motion = load.ends[e.end];
+            // A point at angle zero turned by ω: r (cos ω − 1) outwards, r sin ω around.
+            u[e.unknown] = match e.component {
+                0 => motion.displacement,
+                1 => e.radius * (motion.twist.cos() - 1.0),
+                _ => e.radius * motion.twist.sin(),
+            };
+        }
+    }
+}
+
+/// The small rigid motions that the sector admits, one vector of unknowns each: along z and about
+/// z, and for the whole circumference also sideways and tilting.
+pub fn rigid_motions(sector: &Sector, z: &[f64], r: &[f64]) -> Vec<Vec<f64>> {
+    let (k, layers) = (sector.rings, r.len());
+    let motion = |field: &dyn Fn(f64, f64, f64) -> [f64; 3]| {
+        let mut u = vec![0.0; z.len() * r.len() * 3 * k];
+        for (a, &z) in z.iter().enumerate() {
+            for (c, &r) in r.iter().enumerate() {
+                for ring in 0..k {
+                    let value = field(z, r, sector.ring_angle(ring));
+                    for (i, value) in value.into_iter().enumerate() {
+                        u[((a * layers + c) * 3 + i) * k + ring] = value;
+                    }
+                }
+            }
+        }
+        u
+    };
+    let mut motions = vec![
+        motion(&|_, _, _| [1.0, 0.0, 0.0]),
+        motion(&|_, r, _| [0.0, 0.0, r]),
+    ];
+    if k == sector.around {
+        motions.push(motion(&|_, _, phi| [0.0, phi.cos(), -phi.sin()]));
+        motions.push(motion(&|_, _, phi| [0.0, phi.sin(), phi.cos()]));
+        motions.push(motion(&|z, r, phi| {
+            [-r * phi.cos(), z * phi.cos(), -z * phi.sin()]
+        }));
+        motions.push(motion(&|z, r, phi| {
+            [-r * phi.sin(), z * phi.sin(), z * phi.cos()]
+        }));
+    }
+    motions
+}
+
+/// Elimination with full pivoting: first on the given unknowns, which stop the motions they can;
+/// each motion then left is stopped at the unknown where it is largest.
+fn pins(mut motions: Vec<Vec<f64>>, given: &[bool]) -> Vec<usize> {
+    let mut pins = vec![];
+    for only_given in [true, false] {
+        while let Some((m, i, size)) = largest(&motions, |i| !only_given || given[i]) {
+            if size < 1e-9 {
+                break;
+            }
+            let pivot = motions.swap_remove(m);
+            for motion in &mut motions {
+                let factor = motion[i] / pivot[i];
+                for (x, p) in motion.iter_mut().zip(&pivot) {
+                    *x -= factor * p;
+                }
+            }
+            if !only_given {
+                pins.push(i);
+            }
+        }
+    }
+    pins
+}
+
+/// The largest entry of all motions over some unknowns: motion, unknown, size.
+fn largest(motions: &[Vec<f64>], over: impl Fn(usize) -> bool) -> Option<(usize, usize, f64)> {
+    let mut best = None;
+    for (m, motion) in motions.iter().enumerate() {
+        for (i, x) in motion.iter().enumerate().filter(|(i, _)| over(*i)) {
+            if best.is_none_or(|(_, _, size)| x.abs() > size) {
+                best = Some((m, i, x.abs()));
+            }
+        }
+    }
+    best
+}

@@ -1,0 +1,157 @@
+//! What the kernel needs to know of the splines, tabulated once.
+
+use crate::rings::{Sector, SlotValues};
+use crate::spline::{Basis, Circle, gauss_legendre};
+use crate::tensor::{LANES, Lanes, Real};
+
+/// Eight elements that are neighbours along the tube. The last slab may hold fewer: its spare
+/// lanes repeat its last element with no weight.
+#[derive(Clone, Debug)]
+pub struct Slab {
+    /// First row of control points.
+    pub first: usize,
+    /// Elements, at most eight.
+    pub elements: usize,
+    /// N_a at quadrature point q, at `q * (p + 1) + a`.
+    pub value: Vec<Lanes>,
+    /// dN_a/dz, likewise.
+    pub slope: Vec<Lanes>,
+    /// Weights of the quadrature points.
+    pub weight: Vec<Lanes>,
+    /// Where the quadrature points lie.
+    pub z: Vec<Lanes>,
+}
+
+impl Slab {
+    /// All slabs of an axial basis.
+    pub fn all(basis: &Basis) -> Vec<Self> {
+        (0..basis.elements())
+            .step_by(LANES)
+            .map(|first| Self::new(basis, first))
+            .collect()
+    }
+
+    fn new(basis: &Basis, first: usize) -> Self {
+        let (rule, functions) = (gauss_legendre(basis.degree() + 1), basis.degree() + 1);
+        let elements = (basis.elements() - first).min(LANES);
+        let zero = |n: usize| vec![Lanes::zero(); n];
+        let mut slab = Self {
+            first,
+            elements,
+            value: zero(rule.len() * functions),
+            slope: zero(rule.len() * functions),
+            weight: zero(rule.len()),
+            z: zero(rule.len()),
+        };
+        for l in 0..LANES {
+            let e = first + slab.row(l);
+            let (start, end) = basis.element(e);
+            for (q, (x, w)) in rule.iter().enumerate() {
+                let z = start + (end - start) * x;
+                let v = basis.evaluate_in(e, z);
+                slab.z[q].0[l] = z;
+                slab.weight[q].0[l] = if l < elements { w * (end - start) } else { 0.0 };
+                for a in 0..functions {
+                    slab.value[q * functions + a].0[l] = v.value[a];
+                    slab.slope[q * functions + a].0[l] = v.slope[a];
+                }
+            }
+        }
+        slab
+    }
+
+    /// The first row of a lane's element, counted from the slab's first.
+    pub fn row(&self, lane: usize) -> usize {
+        lane.min(self.elements - 1)
+    }
+}
+
+/// One element through the wall.
+#[derive(Clone, Debug)]
+pub struct Layer {
+    /// First control point.
+    pub first: usize,
+    /// N_c at quadrature point q, at `q * (p + 1) + c`.
+    pub value: Vec<f64>,
+    /// dN_c/dR, likewise.
+    pub slope: Vec<f64>,
+    /// Weights of the quadrature points.
+    pub weight: Vec<f64>,
+    /// Their reference radii R.
+    pub radius: Vec<f64>,
+}
+
+impl Layer {
+    /// All layers of a basis through the wall.
+    pub fn all(basis: &Basis) -> Vec<Self> {
+        let rule = gauss_legendre(basis.degree() + 1);
+        let layer = |e: usize| {
+            let (start, end) = basis.element(e);
+            let points: Vec<f64> = rule
+                .iter()
+                .map(|(x, _)| start + (end - start) * x)
+                .collect();
+            let values: Vec<_> = points.iter().map(|&x| basis.evaluate_in(e, x)).collect();
+            Self {
+                first: e,
+                value: values.iter().flat_map(|v| v.value.clone()).collect(),
+                slope: values.iter().flat_map(|v| v.slope.clone()).collect(),
+                weight: rule.iter().map(|(_, w)| w * (end - start)).collect(),
+                radius: points,
+            }
+        };
+        (0..basis.elements()).map(layer).collect()
+    }
+}
+
+/// One quadrature point around an element; every element around the tube has the same.
+#[derive(Clone, Debug)]
+pub struct Around {
+    /// What each slot contributes.
+    pub slots: Vec<SlotValues>,
+    /// Weight.
+    pub weight: f64,
+    /// C, real (outwards at the element's middle) and imaginary.
+    pub circle: (f64, f64),
+    /// dC/ds.
+    pub circle_slope: (f64, f64),
+    /// |C|.
+    pub radius: f64,
+    /// dC/ds along C.
+    pub outwards: f64,
+    /// dC/ds across C.
+    pub across: f64,
+}
+
+impl Around {
+    /// A point of an element around the tube, at `s` in [0, 1].
+    pub fn at(sector: &Sector, circle: &Circle, s: f64, weight: f64) -> Self {
+        // Every function of the element at the control radius: the sector of one ring adds up.
+        let slots = sector.at(s);
+        let scale = |d: usize| {
+            let sum = slots.iter().fold((0.0, 0.0), |sum, slot| {
+                (sum.0 + slot.turned[d].0, sum.1 + slot.turned[d].1)
+            });
+            (circle.control_radius * sum.0, circle.control_radius * sum.1)
+        };
+        let (c, slope) = (scale(0), scale(1));
+        let radius = c.0.hypot(c.1);
+        Self {
+            slots,
+            weight,
+            circle: c,
+            circle_slope: slope,
+            radius,
+            outwards: (slope.0 * c.0 + slope.1 * c.1) / radius,
+            across: (slope.1 * c.0 - slope.0 * c.1) / radius,
+        }
+    }
+
+    /// The quadrature points of an element around the tube.
+    pub fn all(degree: usize, sector: &Sector, circle: &Circle) -> Vec<Self> {
+        let rule = gauss_legendre(degree + 1);
+        rule.iter()
+            .map(|&(s, w)| Self::at(sector, circle, s, w))
+            .collect()
+    }
+}

@@ -1,0 +1,291 @@
+//! Tangent stiffness of a slab: K = ∂²W/∂u_cp².
+//!
+//! Sum factorisation: at every point the moduli are pulled back to gradients over (ζ, s, R) and
+//! turned onto the slots of the element; what is left around the element is added up, then what
+//! is left through the wall, then along the tube. With N = p + 1 functions each way and one slot
+//! (axisymmetric) an element costs about N³ · 450 + N⁴ · 210 + N³ (N+1) · 160 multiply-adds: 1e5
+//! for cubics, where multiplying out BᵀAB would cost 9e5.
+
+use super::forces::{SlabInput, contract_along, contract_through, gradients};
+use super::kinematics::Columns;
+use super::tables::Slab;
+use crate::material::Law;
+use crate::rings::SlotValues;
+use crate::tensor::{Lanes, Real};
+use multiversion::multiversion;
+
+type Block = [[Lanes; 3]; 3];
+
+/// K of a slab, lower half by rows of control points: the block `d` rows below the diagonal, entry
+/// (`row`, `column`) of it, for every row of the slab, is at
+/// `((d * m + column) * m + row) * rows`, where m is the size of a row. Diagonal blocks are full.
+#[derive(Clone, Debug)]
+pub struct SlabTangent {
+    /// The numbers.
+    pub entries: Vec<f64>,
+    /// Rows of control points of the slab.
+    pub rows: usize,
+}
+
+/// Where a pair of slots (r ≤ r') keeps its numbers.
+fn pairs(slots: usize) -> Vec<(usize, usize)> {
+    (0..slots)
+        .flat_map(|r| (r..slots).map(move |s| (r, s)))
+        .collect()
+}
+
+/// The tangent of one slab. `N` is the degree plus one.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma",
+    "x86_64+avx2+fma"
+))]
+pub fn slab_tangent<L: Law, const N: usize>(law: &L, input: &SlabInput<'_>) -> SlabTangent {
+    let SlabInput {
+        slab,
+        layers,
+        around,
+        ..
+    } = *input;
+    let (m, slots, rows) = (
+        input.row_size(),
+        around[0].slots.len(),
+        slab.elements + N - 1,
+    );
+    let mut out = SlabTangent {
+        entries: vec![0.0; N * m * m * rows],
+        rows,
+    };
+    let pairs = pairs(slots);
+    let zero = Lanes::zero();
+
+    let mut u = vec![[zero; 3]; N * N * slots];
+    let mut along = vec![[[zero; 3]; 2]; N * slots];
+    let mut through = vec![[[zero; 3]; 3]; slots];
+    // Per pair of slots: moduli on (ζ, s, R) × (ζ, s, R) after the sum around.
+    let mut turned = vec![[[[[zero; 3]; 3]; 3]; 3]; pairs.len()];
+    // Per pair, (c, c', i, j) and point along the tube, after the sum through the wall: the parts
+    // that go with (N', N'), (N', N), (N, N'), (N, N) along the tube.
+    let mut wall = vec![[[zero; 4]; N]; pairs.len() * N * N * 9];
+
+    for layer in layers {
+        for element in 0..input.rings {
+            input.gather::<N>(layer, element, &mut u);
+            for qz in 0..N {
+                let (inverse_along, inverse_around) = input.inverse_stretch[qz];
+                let growth = Lanes::splat(1.0) / (inverse_along * inverse_around);
+                contract_along::<N>(slab, qz, slots, &u, &mut along);
+                for entry in &mut wall {
+                    entry[qz] = [zero; 4];
+                }
+                for qr in 0..N {
+                    contract_through::<N>(layer, qr, slots, &along, &mut through);
+                    turned.fill([[[[zero; 3]; 3]; 3]; 3]);
+                    let radius = layer.radius[qr];
+                    for point in around {
+                        let columns = Columns::new(point, radius, inverse_along, inverse_around);
+                        let Fe = columns.elastic(point, radius, gradients(point, &through));
+                        let volume =
+                            layer.weight[qr] * point.weight * radius * point.across * point.radius;
+                        let weight = slab.weight[qz] * growth * Lanes::splat(volume);
+                        let blocks = columns.moduli(&law.moduli(&Fe), weight);
+                        for (turned, &(r, s)) in turned.iter_mut().zip(&pairs) {
+                            add_turned(turned, &blocks, &point.slots[r], &point.slots[s], r == s);
+                        }
+                    }
+                    for (k, (turned, &(r, s))) in turned.iter_mut().zip(&pairs).enumerate() {
+                        if r == s {
+                            mirror(turned);
+                        }
+                        let wall = &mut wall[k * N * N * 9..][..N * N * 9];
+                        let (value, slope) =
+                            (&layer.value[qr * N..][..N], &layer.slope[qr * N..][..N]);
+                        add_through::<N>(wall, qz, turned, value, slope);
+                    }
+                }
+            }
+            for (k, &(r, s)) in pairs.iter().enumerate() {
+                let (ring_r, ring_s) = ((element + r) % input.rings, (element + s) % input.rings);
+                for c in 0..N {
+                    for d in 0..N {
+                        for i in 0..3 {
+                            for j in 0..3 {
+                                let wall = &wall[((k * N + c) * N + d) * 9 + 3 * i + j];
+                                let places = (
+                                    input.place(layer.first + c, i, ring_r),
+                                    input.place(layer.first + d, j, ring_s),
+                                );
+                                add_along::<N>(&mut out, slab, m, wall, places, r == s);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Adds Gᵣᵀ A Gₛ for every pair of gradients; for r = s only those on and above the diagonal.
+#[inline(always)]
+fn add_turned(
+    sum: &mut [[Block; 3]; 3],
+    blocks: &[Block; 6],
+    r: &SlotValues,
+    s: &SlotValues,
+    same: bool,
+) {
+    const UPPER: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+    for (block, (alpha, beta)) in blocks.iter().zip(UPPER) {
+        add_block(
+            &mut sum[alpha][beta],
+            block,
+            (r, slope(alpha)),
+            (s, slope(beta)),
+        );
+        if !same && alpha != beta {
+            let transposed = std::array::from_fn(|i| std::array::from_fn(|j| block[j][i]));
+            add_block(
+                &mut sum[beta][alpha],
+                &transposed,
+                (r, slope(beta)),
+                (s, slope(alpha)),
+            );
+        }
+    }
+}
+
+/// Whether a gradient needs the slope around (s) or the value (ζ, R) of a slot.
+#[inline(always)]
+fn slope(gradient: usize) -> usize {
+    usize::from(gradient == 1)
+}
+
+/// sum += Gᵣᵀ block Gₛ with G = [[g, 0, 0], [0, re, −im], [0, im, re]].
+#[inline(always)]
+fn add_block(
+    sum: &mut Block,
+    block: &Block,
+    (r, dr): (&SlotValues, usize),
+    (s, ds): (&SlotValues, usize),
+) {
+    let factors = |slot: &SlotValues, d: usize| {
+        let (re, im) = slot.turned[d];
+        (
+            Lanes::splat(slot.axial[d]),
+            Lanes::splat(re),
+            Lanes::splat(im),
+        )
+    };
+    let (gr, cr, sr) = factors(r, dr);
+    let (gs, cs, ss) = factors(s, ds);
+    let mut half = [[Lanes::zero(); 3]; 3];
+    for j in 0..3 {
+        half[0][j] = gr * block[0][j];
+        half[1][j] = cr.mul_add(block[1][j], sr * block[2][j]);
+        half[2][j] = cr.mul_add(block[2][j], -(sr * block[1][j]));
+    }
+    for i in 0..3 {
+        sum[i][0] = half[i][0].mul_add(gs, sum[i][0]);
+        sum[i][1] = half[i][1].mul_add(cs, half[i][2].mul_add(ss, sum[i][1]));
+        sum[i][2] = half[i][2].mul_add(cs, (-half[i][1]).mul_add(ss, sum[i][2]));
+    }
+}
+
+/// Fills the pairs of gradients below the diagonal from those above.
+#[inline(always)]
+fn mirror(sum: &mut [[Block; 3]; 3]) {
+    for alpha in 0..3 {
+        for beta in 0..alpha {
+            for i in 0..3 {
+                for j in 0..3 {
+                    sum[alpha][beta][i][j] = sum[beta][alpha][j][i];
+                }
+            }
+        }
+    }
+}
+
+/// Adds what one point through the wall contributes to every (c, c', i, j).
+#[inline(always)]
+fn add_through<const N: usize>(
+    wall: &mut [[[Lanes; 4]; N]],
+    qz: usize,
+    a: &[[Block; 3]; 3],
+    value: &[f64],
+    slope: &[f64],
+) {
+    for i in 0..3 {
+        for j in 0..3 {
+            for d in 0..N {
+                let (m, dm) = (Lanes::splat(value[d]), Lanes::splat(slope[d]));
+                let zz = a[0][0][i][j] * m;
+                let z_ = m.mul_add(a[0][1][i][j], dm * a[0][2][i][j]);
+                let s_z = a[1][0][i][j] * m;
+                let r_z = a[2][0][i][j] * m;
+                let s_ = m.mul_add(a[1][1][i][j], dm * a[1][2][i][j]);
+                let r_ = m.mul_add(a[2][1][i][j], dm * a[2][2][i][j]);
+                for c in 0..N {
+                    let (m, dm) = (Lanes::splat(value[c]), Lanes::splat(slope[c]));
+                    let t = &mut wall[(c * N + d) * 9 + 3 * i + j][qz];
+                    t[0] = m.mul_add(zz, t[0]);
+                    t[1] = m.mul_add(z_, t[1]);
+                    t[2] = m.mul_add(s_z, dm.mul_add(r_z, t[2]));
+                    t[3] = m.mul_add(s_, dm.mul_add(r_, t[3]));
+                }
+            }
+        }
+    }
+}
+
+/// Adds up along the tube, for one (c, i) and (c', j), and leaves the numbers in the slab.
+#[inline(always)]
+fn add_along<const N: usize>(
+    out: &mut SlabTangent,
+    slab: &Slab,
+    m: usize,
+    wall: &[[Lanes; 4]; N],
+    (row, column): (usize, usize),
+    same: bool,
+) {
+    let rows = out.rows;
+    for a in 0..N {
+        let mut of_slope = [Lanes::zero(); N];
+        let mut of_value = [Lanes::zero(); N];
+        for qz in 0..N {
+            let (n, dn) = (slab.value[qz * N + a], slab.slope[qz * N + a]);
+            let [t11, t10, t01, t00] = wall[qz];
+            of_slope[qz] = dn.mul_add(t11, n * t01);
+            of_value[qz] = dn.mul_add(t10, n * t00);
+        }
+        // For r = s the part above the diagonal follows by symmetry.
+        for b in 0..if same { a + 1 } else { N } {
+            let mut k = Lanes::zero();
+            for qz in 0..N {
+                let (n, dn) = (slab.value[qz * N + b], slab.slope[qz * N + b]);
+                k = of_slope[qz].mul_add(dn, of_value[qz].mul_add(n, k));
+            }
+            if a >= b {
+                let at = (((a - b) * m + column) * m + row) * rows + b;
+                add_lanes(&mut out.entries[at..], k, slab.elements);
+            }
+            if a <= b && !same {
+                let at = (((b - a) * m + row) * m + column) * rows + a;
+                add_lanes(&mut out.entries[at..], k, slab.elements);
+            }
+        }
+    }
+}
+
+/// Adds the lanes that hold elements to consecutive numbers.
+#[inline(always)]
+fn add_lanes(to: &mut [f64], lanes: Lanes, elements: usize) {
+    if let Some(to) = to.first_chunk_mut::<8>().filter(|_| elements == 8) {
+        for l in 0..8 {
+            to[l] += lanes.0[l];
+        }
+    } else {
+        for (to, x) in to.iter_mut().zip(&lanes.0[..elements]) {
+            *to += x;
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! The dense kernels under the block-banded factorisation, from faer; no other file names it.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor;
+use faer::linalg::{matmul, triangular_solve};
+use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::{Accum, MatMut, MatRef, Par};
+
+/// Kernels with their working memory.
+pub struct Kernels {
+    /// X = L D below the diagonal block of the panel at hand, column-major.
+    scaled: Vec<f64>,
+    memory: MemBuffer,
+}
+
+impl Kernels {
+    /// For panels of `size` columns with at most `below` rows under the diagonal block.
+    pub fn new(size: usize, below: usize) -> Self {
+        let need = factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, Default::default());
+        Self {
+            scaled: vec![0.0; size * below],
+            memory: MemBuffer::new(need),
+        }
+    }
+
+    /// Factors the diagonal block of a panel (`size` columns, leading dimension `height`), turns
+    /// the `below` rows under it into L, and keeps X = L D for [`Kernels::update`]. Returns the
+    /// number of negative pivots, or the place of a pivot that is zero or not a number.
+    pub fn factor_panel(
+        &mut self,
+        panel: &mut [f64],
+        height: usize,
+        size: usize,
+        below: usize,
+    ) -> Result<usize, usize> {
+        let panel =
+            MatMut::from_column_major_slice_with_stride_mut(panel, size + below, size, height);
+        let (mut diagonal, mut under) = panel.split_at_row_mut(size);
+        let stack = MemStack::new(&mut self.memory);
+        factor::cholesky_in_place(
+            diagonal.rb_mut(),
+            Default::default(),
+            Par::Seq,
+            stack,
+            Default::default(),
+        )
+        .map_err(|factor::LdltError::ZeroPivot { index }| index)?;
+        let mut negative = 0;
+        for i in 0..size {
+            let pivot = diagonal[(i, i)];
+            if !pivot.is_finite() {
+                return Err(i);
+            }
+            negative += usize::from(pivot < 0.0);
+        }
+        triangular_solve::solve_unit_lower_triangular_in_place(
+            diagonal.rb(),
+            under.rb_mut().transpose_mut(),
+            Par::Seq,
+        );
+        let mut scaled =
+            MatMut::from_column_major_slice_mut(&mut self.scaled[..below * size], below, size);
+        scaled.copy_from(under.rb());
+        for i in 0..size {
+            let inverse = 1.0 / diagonal[(i, i)];
+            for x in under.rb_mut().col_mut(i).iter_mut() {
+                *x *= inverse;
+            }
+        }
+        Ok(negative)
+    }
+
+    /// Takes X L_cᵀ off the panel `target`: rows `from..from + rows` of the part under the
+    /// diagonal of `panel`, against the `size` rows that begin at `from`.
+    pub fn update(
+        &self,
+        target: &mut [f64],
+        height: usize,
+        size: usize,
+        from: usize,
+        rows: usize,
+        panel: &[f64],
+    ) {
+        let below = from + rows;
+        let scaled = MatRef::from_column_major_slice(&self.scaled[..below * size], below, size);
+        let lower = MatRef::from_column_major_slice_with_stride(panel, size + below, size, height);
+        matmul::matmul(
+            MatMut::from_column_major_slice_with_stride_mut(target, rows, size, height),
+            Accum::Add,
+            scaled.subrows(from, rows),
+            lower.subrows(size + from, size).transpose(),
+            -1.0,
+            Par::Seq,
+        );
+    }
+}

@@ -1,0 +1,155 @@
+//! What is solved, and what a solution is.
+
+use crate::matrix::{BlockBanded, Factor, Singular};
+
+/// An energy to be made stationary. Pure in (u, load): nothing remembers the last call.
+pub trait Equilibrium {
+    /// What drives it.
+    type Load: Clone;
+    /// Why its energy does not exist at some state.
+    type Broken: std::error::Error + Clone;
+
+    /// For every unknown, whether a support gives it.
+    fn given(&self) -> &[bool];
+    /// Writes the given unknowns of a load into `u`.
+    fn impose(&self, load: &Self::Load, u: &mut [f64]);
+    /// The load a fraction `t` of the way from one to another.
+    fn between(&self, from: &Self::Load, to: &Self::Load, t: f64) -> Self::Load;
+    /// Energy and residual.
+    fn forces(&self, load: &Self::Load, u: &[f64]) -> Result<Forces, Self::Broken>;
+    /// Tangent stiffness, every unknown free.
+    fn tangent(&self, load: &Self::Load, u: &[f64]) -> BlockBanded;
+    /// Drag matrix, every unknown free.
+    fn drag(&self) -> &BlockBanded;
+}
+
+/// Energy and residual at a state.
+#[derive(Clone, Debug)]
+pub struct Forces {
+    /// The energy W.
+    pub energy: f64,
+    /// R = ∂W/∂u, for every unknown.
+    pub residual: Vec<f64>,
+    /// The size of the forces whose balance R is.
+    pub in_play: f64,
+}
+
+impl Forces {
+    /// Forces in play below which a residual is compared with this instead, in E·D²: what is left
+    /// of a tube at rest.
+    pub const FLOOR: f64 = 1e-9;
+
+    /// |R| over the free unknowns, relative to the forces in play.
+    pub fn imbalance(&self, given: &[bool]) -> f64 {
+        let free = self
+            .residual
+            .iter()
+            .zip(given)
+            .filter(|(_, given)| !**given);
+        free.map(|(r, _)| r * r).sum::<f64>().sqrt() / self.in_play.max(Self::FLOOR)
+    }
+}
+
+/// An accepted state.
+#[derive(Clone, Debug)]
+pub struct State<L> {
+    /// The load it is under.
+    pub load: L,
+    /// Its unknowns.
+    pub u: Vec<f64>,
+    /// Its energy.
+    pub energy: f64,
+    /// Its residual without drag, relative to the forces in play.
+    pub imbalance: f64,
+    /// Eigenvalues of its tangent that are negative: 0 if it is stable.
+    pub negative_pivots: usize,
+    /// The factored tangent; none where it is singular.
+    pub(super) factor: Option<Factor>,
+}
+
+/// A solution on its way to becoming a state.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Unknowns.
+    pub u: Vec<f64>,
+    /// Energy and residual there.
+    pub forces: Forces,
+    /// Energy spent on drag.
+    pub drag_work: f64,
+    /// Linear solves.
+    pub iterations: usize,
+}
+
+/// How a state was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// It is where the path begins.
+    Rest,
+    /// Newton from the path's tangent.
+    Newton,
+    /// Relaxation with a drag that shrinks.
+    Relaxation,
+    /// Pseudo-time with a drag that stays.
+    PseudoTime,
+}
+
+impl std::fmt::Display for Method {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Rest => "rest",
+            Self::Newton => "newton",
+            Self::Relaxation => "relaxation",
+            Self::PseudoTime => "pseudo-time",
+        })
+    }
+}
+
+/// Why no state was found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Failure<B: std::error::Error> {
+    /// The tangent has negative eigenvalues where none are admitted.
+    #[error("the tangent has {negative_pivots} negative eigenvalue(s)")]
+    Indefinite {
+        /// How many.
+        negative_pivots: usize,
+    },
+    /// The energy does not exist where the solver went.
+    #[error(transparent)]
+    Broken(B),
+    /// No step lowered the energy.
+    #[error("no step lowered the energy (residual {imbalance:.1e} after {iterations} solves)")]
+    NoDescent {
+        /// Linear solves so far.
+        iterations: usize,
+        /// Residual reached.
+        imbalance: f64,
+    },
+    /// The iterations ran out.
+    #[error("not in equilibrium after {iterations} solves (residual {imbalance:.1e})")]
+    NotConverged {
+        /// Linear solves so far.
+        iterations: usize,
+        /// Residual reached.
+        imbalance: f64,
+    },
+    /// The tangent is singular.
+    #[error(transparent)]
+    Singular(#[from] Singular),
+    /// Someone asked to stop.
+    #[error("stopped on request")]
+    Stopped,
+}
+
+/// Someone who watches a solver at work.
+pub trait Watch {
+    /// A linear solve was done: in what method, and what is left of the residual. The solver
+    /// stops if this returns false.
+    fn solved(&mut self, method: Method, imbalance: f64) -> bool;
+}
+
+/// Nobody watches.
+impl Watch for () {
+    fn solved(&mut self, _: Method, _: f64) -> bool {
+        true
+    }
+}
