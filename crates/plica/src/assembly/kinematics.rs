@@ -28,9 +28,9 @@ impl<S: Real> Columns<S> {
         let b = point.across;
         Self {
             along: inverse_along,
-            around: inverse_around * S::splat(1.0 / (radius * b)),
-            across: inverse_around * S::splat(-point.outwards / (b * point.radius)),
-            outwards: S::splat(1.0 / point.radius),
+            around: inverse_around.times(1.0 / (radius * b)),
+            across: inverse_around.times(-point.outwards / (b * point.radius)),
+            outwards: inverse_along.like(1.0 / point.radius),
         }
     }
 
@@ -38,31 +38,28 @@ impl<S: Real> Columns<S> {
     /// here, so that a tube at rest has Fe = Fp⁻¹ to rounding.
     #[inline(always)]
     pub fn elastic(&self, point: &Around, radius: f64, [zeta, s, r]: [Vector<S>; 3]) -> Tensor2<S> {
-        let x_zeta = [zeta[0] + S::splat(1.0), zeta[1], zeta[2]];
+        let plain = |x: f64| self.along.like(x);
+        let x_zeta = [zeta[0] + plain(1.0), zeta[1], zeta[2]];
+        let (slope, circle) = (point.circle_slope, point.circle);
         let x_s = [
             s[0],
-            s[1] + S::splat(radius * point.circle_slope.0),
-            s[2] + S::splat(radius * point.circle_slope.1),
+            s[1] + plain(radius * slope.0),
+            s[2] + plain(radius * slope.1),
         ];
-        let x_r = [
-            r[0],
-            r[1] + S::splat(point.circle.0),
-            r[2] + S::splat(point.circle.1),
-        ];
-        let row = |i: usize| {
-            [
-                x_zeta[i] * self.along,
-                x_r[i] * self.outwards,
-                x_s[i].mul_add(self.around, x_r[i] * self.across),
-            ]
-        };
-        Tensor2([row(0), row(1), row(2)])
+        let x_r = [r[0], r[1] + plain(circle.0), r[2] + plain(circle.1)];
+        let mut Fe = [[self.along; 3]; 3];
+        for i in 0..3 {
+            Fe[i][0] = x_zeta[i] * self.along;
+            Fe[i][1] = x_r[i] * self.outwards;
+            Fe[i][2] = x_s[i].mul_add(self.around, x_r[i] * self.across);
+        }
+        Tensor2(Fe)
     }
 
     /// The transpose of [`Columns::elastic`]: stresses on gradients over ζ, s and R.
     #[inline(always)]
     pub fn pulled_back(&self, P: &Tensor2<S>) -> [Vector<S>; 3] {
-        let mut q = [[S::zero(); 3]; 3];
+        let mut q = P.0;
         for i in 0..3 {
             let [along, outwards, around] = P.0[i];
             q[0][i] = along * self.along;
@@ -78,7 +75,7 @@ impl<S: Real> Columns<S> {
     pub fn moduli(&self, A: &crate::material::Moduli<S>, weight: S) -> [[[S; 3]; 3]; 6] {
         let (z, e, x, o) = (self.along, self.around, self.across, self.outwards);
         let (wz, we, wx, wo) = (weight * z, weight * e, weight * x, weight * o);
-        let mut blocks = [[[S::zero(); 3]; 3]; 6];
+        let mut blocks = [[[weight; 3]; 3]; 6];
         for j in 0..3 {
             for i in 0..3 {
                 // A holds the columns (along, outwards, around) in the order j ≤ i only.
@@ -101,11 +98,11 @@ impl<S: Real> Columns<S> {
 /// frame; `d` is 0 for the value, 1 for the slope around.
 #[inline(always)]
 pub fn turn<S: Real>(slot: &SlotValues, d: usize, u: Vector<S>, sum: Vector<S>) -> Vector<S> {
-    let g = S::splat(slot.axial[d]);
-    let (re, im) = (S::splat(slot.turned[d].0), S::splat(slot.turned[d].1));
+    let (g, (re, im)) = (u[0].like(slot.axial[d]), slot.turned[d]);
+    let (re, im, minus_im) = (u[0].like(re), u[0].like(im), u[0].like(-im));
     [
         g.mul_add(u[0], sum[0]),
-        re.mul_add(u[1], (-im).mul_add(u[2], sum[1])),
+        re.mul_add(u[1], minus_im.mul_add(u[2], sum[1])),
         im.mul_add(u[1], re.mul_add(u[2], sum[2])),
     ]
 }
@@ -113,11 +110,11 @@ pub fn turn<S: Real>(slot: &SlotValues, d: usize, u: Vector<S>, sum: Vector<S>) 
 /// The transpose of [`turn`]: a force in the element's frame on the components of a ring.
 #[inline(always)]
 pub fn turn_back<S: Real>(slot: &SlotValues, d: usize, f: Vector<S>, sum: Vector<S>) -> Vector<S> {
-    let g = S::splat(slot.axial[d]);
-    let (re, im) = (S::splat(slot.turned[d].0), S::splat(slot.turned[d].1));
+    let (g, (re, im)) = (f[0].like(slot.axial[d]), slot.turned[d]);
+    let (re, im, minus_im) = (f[0].like(re), f[0].like(im), f[0].like(-im));
     [
         g.mul_add(f[0], sum[0]),
         re.mul_add(f[1], im.mul_add(f[2], sum[1])),
-        (-im).mul_add(f[1], re.mul_add(f[2], sum[2])),
+        minus_im.mul_add(f[1], re.mul_add(f[2], sum[2])),
     ]
 }

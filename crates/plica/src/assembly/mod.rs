@@ -27,6 +27,7 @@ mod kinematics;
 #[cfg(test)]
 mod plain;
 mod sample;
+mod slab;
 mod spline_tube;
 mod supports;
 mod tables;

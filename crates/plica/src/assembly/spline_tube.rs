@@ -1,7 +1,8 @@
 //! A tube laid out in splines: numbering, slabs over threads, sums in their order.
 
 use super::drag::drag;
-use super::forces::{SlabForces, SlabInput, slab_forces};
+use super::forces::{SlabForces, Worst, slab_forces};
+use super::slab::SlabInput;
 use super::supports::Supports;
 use super::tables::{Around, Layer, Slab};
 use super::tangent::{SlabTangent, slab_tangent};
@@ -9,7 +10,7 @@ use crate::material::Material;
 use crate::matrix::BlockBanded;
 use crate::rings::Sector;
 use crate::spline::{Basis, Circle, graded_breakpoints};
-use crate::tensor::{Lanes, Real};
+use crate::tensor::Lanes;
 use crate::tube::{Load, Mesh, Tube};
 use rayon::prelude::*;
 
@@ -167,12 +168,17 @@ impl SplineTube {
             smallest_jacobian: f64::INFINITY,
         };
         for (slab, part) in self.slabs.iter().zip(&slabs) {
-            let (jacobian, element, [_, qr, _]) = part.worst;
-            if !(jacobian > 0.0) {
+            let Worst {
+                jacobian,
+                element: [lane, layer, around],
+                qr,
+            } = part.worst;
+            if jacobian.is_nan() || jacobian <= 0.0 {
+                let along = slab.first + slab.row(lane);
                 return Err(Inverted {
-                    element,
-                    z: self.axial.element(element[0]).0,
-                    radius: self.layers[element[1]].radius[qr],
+                    element: [along, layer, around],
+                    z: self.axial.element(along).0,
+                    radius: self.layers[layer].radius[qr],
                     jacobian,
                 });
             }
@@ -260,7 +266,7 @@ impl SplineTube {
 
     fn inverse_stretch(&self, slab: &Slab, load: &Load) -> Vec<(Lanes, Lanes)> {
         let at = |z: &Lanes| {
-            let (mut along, mut around) = (Lanes::zero(), Lanes::zero());
+            let (mut along, mut around) = (Lanes::default(), Lanes::default());
             for l in 0..z.0.len() {
                 let (theta_z, theta_t) = self.tube.stretches(z.0[l], load);
                 along.0[l] = 1.0 / theta_z;

@@ -2,7 +2,7 @@
 
 use crate::rings::{Sector, SlotValues};
 use crate::spline::{Basis, Circle, gauss_legendre};
-use crate::tensor::{LANES, Lanes, Real};
+use crate::tensor::{LANES, Lanes};
 
 /// Eight elements that are neighbours along the tube. The last slab may hold fewer: its spare
 /// lanes repeat its last element with no weight.
@@ -34,7 +34,7 @@ impl Slab {
     fn new(basis: &Basis, first: usize) -> Self {
         let (rule, functions) = (gauss_legendre(basis.degree() + 1), basis.degree() + 1);
         let elements = (basis.elements() - first).min(LANES);
-        let zero = |n: usize| vec![Lanes::zero(); n];
+        let zero = |n: usize| vec![Lanes::default(); n];
         let mut slab = Self {
             first,
             elements,
@@ -145,6 +145,13 @@ impl Around {
             outwards: (slope.0 * c.0 + slope.1 * c.1) / radius,
             across: (slope.1 * c.0 - slope.0 * c.1) / radius,
         }
+    }
+
+    /// Reference volume per unit of z, R and s at a reference radius, times the weight:
+    /// dV₀ = R b |C| dζ dR ds.
+    #[inline(always)]
+    pub fn volume(&self, radius: f64) -> f64 {
+        self.weight * radius * self.across * self.radius
     }
 
     /// The quadrature points of an element around the tube.

@@ -6,15 +6,15 @@
 //! (axisymmetric) an element costs about N³ · 450 + N⁴ · 210 + N³ (N+1) · 160 multiply-adds: 1e5
 //! for cubics, where multiplying out BᵀAB would cost 9e5.
 
-use super::forces::{SlabInput, contract_along, contract_through, gradients};
 use super::kinematics::Columns;
+use super::slab::{SlabInput, contract_along, contract_through, gradients};
 use super::tables::Slab;
 use crate::material::Law;
 use crate::rings::SlotValues;
-use crate::tensor::{Lanes, Real};
-use multiversion::multiversion;
+use crate::tensor::{LANES, Lanes, Real, Tensor2};
+use fearless_simd::{Level, Simd, SimdBase, SimdFrom, dispatch, f64x8};
 
-type Block = [[Lanes; 3]; 3];
+type Block<V> = [[V; 3]; 3];
 
 /// K of a slab, lower half by rows of control points: the block `d` rows below the diagonal, entry
 /// (`row`, `column`) of it, for every row of the slab, is at
@@ -35,11 +35,12 @@ fn pairs(slots: usize) -> Vec<(usize, usize)> {
 }
 
 /// The tangent of one slab. `N` is the degree plus one.
-#[multiversion(targets(
-    "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma",
-    "x86_64+avx2+fma"
-))]
 pub fn slab_tangent<L: Law, const N: usize>(law: &L, input: &SlabInput<'_>) -> SlabTangent {
+    dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input))
+}
+
+#[inline(always)]
+fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'_>) -> SlabTangent {
     let SlabInput {
         slab,
         layers,
@@ -56,7 +57,7 @@ pub fn slab_tangent<L: Law, const N: usize>(law: &L, input: &SlabInput<'_>) -> S
         rows,
     };
     let pairs = pairs(slots);
-    let zero = Lanes::zero();
+    let zero = f64x8::splat(simd, 0.0);
 
     let mut u = vec![[zero; 3]; N * N * slots];
     let mut along = vec![[[zero; 3]; 2]; N * slots];
@@ -69,25 +70,25 @@ pub fn slab_tangent<L: Law, const N: usize>(law: &L, input: &SlabInput<'_>) -> S
 
     for layer in layers {
         for element in 0..input.rings {
-            input.gather::<N>(layer, element, &mut u);
+            input.gather::<S, N>(simd, layer, element, &mut u);
             for qz in 0..N {
                 let (inverse_along, inverse_around) = input.inverse_stretch[qz];
-                let growth = Lanes::splat(1.0) / (inverse_along * inverse_around);
-                contract_along::<N>(slab, qz, slots, &u, &mut along);
+                let inverse_along = inverse_along.load(simd);
+                let inverse_around = inverse_around.load(simd);
+                let weight = slab.weight[qz].load(simd) / (inverse_along * inverse_around);
+                contract_along::<S, N>(simd, slab, qz, &u, &mut along);
                 for entry in &mut wall {
                     entry[qz] = [zero; 4];
                 }
                 for qr in 0..N {
-                    contract_through::<N>(layer, qr, slots, &along, &mut through);
+                    contract_through::<S, N>(simd, layer, qr, &along, &mut through);
                     turned.fill([[[[zero; 3]; 3]; 3]; 3]);
                     let radius = layer.radius[qr];
                     for point in around {
                         let columns = Columns::new(point, radius, inverse_along, inverse_around);
-                        let Fe = columns.elastic(point, radius, gradients(point, &through));
-                        let volume =
-                            layer.weight[qr] * point.weight * radius * point.across * point.radius;
-                        let weight = slab.weight[qz] * growth * Lanes::splat(volume);
-                        let blocks = columns.moduli(&law.moduli(&Fe), weight);
+                        let Fe = columns.elastic(point, radius, gradients(simd, point, &through));
+                        let grown = weight.times(layer.weight[qr] * point.volume(radius)); // det Fp dV₀
+                        let blocks = columns.moduli(&law.moduli(&Fe), grown);
                         for (turned, &(r, s)) in turned.iter_mut().zip(&pairs) {
                             add_turned(turned, &blocks, &point.slots[r], &point.slots[s], r == s);
                         }
@@ -99,7 +100,7 @@ pub fn slab_tangent<L: Law, const N: usize>(law: &L, input: &SlabInput<'_>) -> S
                         let wall = &mut wall[k * N * N * 9..][..N * N * 9];
                         let (value, slope) =
                             (&layer.value[qr * N..][..N], &layer.slope[qr * N..][..N]);
-                        add_through::<N>(wall, qz, turned, value, slope);
+                        add_through::<_, N>(wall, qz, turned, value, slope);
                     }
                 }
             }
@@ -114,7 +115,7 @@ pub fn slab_tangent<L: Law, const N: usize>(law: &L, input: &SlabInput<'_>) -> S
                                     input.place(layer.first + c, i, ring_r),
                                     input.place(layer.first + d, j, ring_s),
                                 );
-                                add_along::<N>(&mut out, slab, m, wall, places, r == s);
+                                add_along::<S, N>(simd, &mut out, slab, m, wall, places, r == s);
                             }
                         }
                     }
@@ -127,9 +128,9 @@ pub fn slab_tangent<L: Law, const N: usize>(law: &L, input: &SlabInput<'_>) -> S
 
 /// Adds Gᵣᵀ A Gₛ for every pair of gradients; for r = s only those on and above the diagonal.
 #[inline(always)]
-fn add_turned(
-    sum: &mut [[Block; 3]; 3],
-    blocks: &[Block; 6],
+fn add_turned<V: Real>(
+    sum: &mut [[Block<V>; 3]; 3],
+    blocks: &[Block<V>; 6],
     r: &SlotValues,
     s: &SlotValues,
     same: bool,
@@ -143,7 +144,7 @@ fn add_turned(
             (s, slope(beta)),
         );
         if !same && alpha != beta {
-            let transposed = std::array::from_fn(|i| std::array::from_fn(|j| block[j][i]));
+            let transposed = Tensor2(*block).transpose().0;
             add_block(
                 &mut sum[beta][alpha],
                 &transposed,
@@ -162,38 +163,33 @@ fn slope(gradient: usize) -> usize {
 
 /// sum += Gᵣᵀ block Gₛ with G = [[g, 0, 0], [0, re, −im], [0, im, re]].
 #[inline(always)]
-fn add_block(
-    sum: &mut Block,
-    block: &Block,
+fn add_block<V: Real>(
+    sum: &mut Block<V>,
+    block: &Block<V>,
     (r, dr): (&SlotValues, usize),
     (s, ds): (&SlotValues, usize),
 ) {
-    let factors = |slot: &SlotValues, d: usize| {
-        let (re, im) = slot.turned[d];
-        (
-            Lanes::splat(slot.axial[d]),
-            Lanes::splat(re),
-            Lanes::splat(im),
-        )
-    };
-    let (gr, cr, sr) = factors(r, dr);
-    let (gs, cs, ss) = factors(s, ds);
-    let mut half = [[Lanes::zero(); 3]; 3];
+    let (gr, (cr, sr)) = (r.axial[dr], r.turned[dr]);
+    let (gs, (cs, ss)) = (s.axial[ds], s.turned[ds]);
+    let plain = |x: f64| block[0][0].like(x);
+    let (cr, sr, minus_sr) = (plain(cr), plain(sr), plain(-sr));
+    let (gs, cs, ss, minus_ss) = (plain(gs), plain(cs), plain(ss), plain(-ss));
+    let mut half = *block;
     for j in 0..3 {
-        half[0][j] = gr * block[0][j];
+        half[0][j] = block[0][j].times(gr);
         half[1][j] = cr.mul_add(block[1][j], sr * block[2][j]);
-        half[2][j] = cr.mul_add(block[2][j], -(sr * block[1][j]));
+        half[2][j] = cr.mul_add(block[2][j], minus_sr * block[1][j]);
     }
     for i in 0..3 {
         sum[i][0] = half[i][0].mul_add(gs, sum[i][0]);
         sum[i][1] = half[i][1].mul_add(cs, half[i][2].mul_add(ss, sum[i][1]));
-        sum[i][2] = half[i][2].mul_add(cs, (-half[i][1]).mul_add(ss, sum[i][2]));
+        sum[i][2] = half[i][2].mul_add(cs, half[i][1].mul_add(minus_ss, sum[i][2]));
     }
 }
 
 /// Fills the pairs of gradients below the diagonal from those above.
 #[inline(always)]
-fn mirror(sum: &mut [[Block; 3]; 3]) {
+fn mirror<V: Copy>(sum: &mut [[Block<V>; 3]; 3]) {
     for alpha in 0..3 {
         for beta in 0..alpha {
             for i in 0..3 {
@@ -207,17 +203,18 @@ fn mirror(sum: &mut [[Block; 3]; 3]) {
 
 /// Adds what one point through the wall contributes to every (c, c', i, j).
 #[inline(always)]
-fn add_through<const N: usize>(
-    wall: &mut [[[Lanes; 4]; N]],
+fn add_through<V: Real, const N: usize>(
+    wall: &mut [[[V; 4]; N]],
     qz: usize,
-    a: &[[Block; 3]; 3],
+    a: &[[Block<V>; 3]; 3],
     value: &[f64],
     slope: &[f64],
 ) {
+    let plain = |x: f64| a[0][0][0][0].like(x);
     for i in 0..3 {
         for j in 0..3 {
             for d in 0..N {
-                let (m, dm) = (Lanes::splat(value[d]), Lanes::splat(slope[d]));
+                let (m, dm) = (plain(value[d]), plain(slope[d]));
                 let zz = a[0][0][i][j] * m;
                 let z_ = m.mul_add(a[0][1][i][j], dm * a[0][2][i][j]);
                 let s_z = a[1][0][i][j] * m;
@@ -225,7 +222,7 @@ fn add_through<const N: usize>(
                 let s_ = m.mul_add(a[1][1][i][j], dm * a[1][2][i][j]);
                 let r_ = m.mul_add(a[2][1][i][j], dm * a[2][2][i][j]);
                 for c in 0..N {
-                    let (m, dm) = (Lanes::splat(value[c]), Lanes::splat(slope[c]));
+                    let (m, dm) = (plain(value[c]), plain(slope[c]));
                     let t = &mut wall[(c * N + d) * 9 + 3 * i + j][qz];
                     t[0] = m.mul_add(zz, t[0]);
                     t[1] = m.mul_add(z_, t[1]);
@@ -239,30 +236,33 @@ fn add_through<const N: usize>(
 
 /// Adds up along the tube, for one (c, i) and (c', j), and leaves the numbers in the slab.
 #[inline(always)]
-fn add_along<const N: usize>(
+fn add_along<S: Simd, const N: usize>(
+    simd: S,
     out: &mut SlabTangent,
     slab: &Slab,
     m: usize,
-    wall: &[[Lanes; 4]; N],
+    wall: &[[f64x8<S>; 4]; N],
     (row, column): (usize, usize),
     same: bool,
 ) {
-    let rows = out.rows;
+    let (rows, zero) = (out.rows, f64x8::splat(simd, 0.0));
     for a in 0..N {
-        let mut of_slope = [Lanes::zero(); N];
-        let mut of_value = [Lanes::zero(); N];
+        let mut of_slope = [zero; N];
+        let mut of_value = [zero; N];
         for qz in 0..N {
-            let (n, dn) = (slab.value[qz * N + a], slab.slope[qz * N + a]);
+            let n = slab.value[qz * N + a].load(simd);
+            let dn = slab.slope[qz * N + a].load(simd);
             let [t11, t10, t01, t00] = wall[qz];
-            of_slope[qz] = dn.mul_add(t11, n * t01);
-            of_value[qz] = dn.mul_add(t10, n * t00);
+            of_slope[qz] = Real::mul_add(dn, t11, n * t01);
+            of_value[qz] = Real::mul_add(dn, t10, n * t00);
         }
         // For r = s the part above the diagonal follows by symmetry.
         for b in 0..if same { a + 1 } else { N } {
-            let mut k = Lanes::zero();
+            let mut k = zero;
             for qz in 0..N {
-                let (n, dn) = (slab.value[qz * N + b], slab.slope[qz * N + b]);
-                k = of_slope[qz].mul_add(dn, of_value[qz].mul_add(n, k));
+                let n = slab.value[qz * N + b].load(simd);
+                let dn = slab.slope[qz * N + b].load(simd);
+                k = Real::mul_add(of_slope[qz], dn, Real::mul_add(of_value[qz], n, k));
             }
             if a >= b {
                 let at = (((a - b) * m + column) * m + row) * rows + b;
@@ -278,14 +278,16 @@ fn add_along<const N: usize>(
 
 /// Adds the lanes that hold elements to consecutive numbers.
 #[inline(always)]
-fn add_lanes(to: &mut [f64], lanes: Lanes, elements: usize) {
-    if let Some(to) = to.first_chunk_mut::<8>().filter(|_| elements == 8) {
-        for l in 0..8 {
-            to[l] += lanes.0[l];
+fn add_lanes<S: Simd>(to: &mut [f64], lanes: f64x8<S>, elements: usize) {
+    match to.first_chunk_mut::<LANES>() {
+        Some(to) if elements == LANES => {
+            let sum = f64x8::simd_from(lanes.simd, *to) + lanes;
+            *to = sum.into();
         }
-    } else {
-        for (to, x) in to.iter_mut().zip(&lanes.0[..elements]) {
-            *to += x;
+        _ => {
+            for (to, x) in to.iter_mut().zip(&Lanes::store(lanes).0[..elements]) {
+                *to += x;
+            }
         }
     }
 }

@@ -32,48 +32,46 @@ impl NeoHookean {
 impl Law for NeoHookean {
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {
-        let (mu, lambda) = (S::splat(self.mu), S::splat(self.lambda));
-        let half = S::splat(0.5);
+        let (mu, lambda) = (self.mu, self.lambda);
         let I1 = F.dot(*F);
         let ln_J = F.determinant().ln();
-        half * mu * (I1 - S::splat(3.0)) + ln_J * (half * lambda * ln_J - mu)
+        let shape = (I1 - I1.like(3.0)).times(0.5 * mu);
+        ln_J.mul_add(ln_J.times(0.5 * lambda) - I1.like(mu), shape)
     }
 
     // P = μ (F − F⁻ᵀ) + λ ln J F⁻ᵀ
     #[inline(always)]
     fn stress<S: Real>(&self, F: &Tensor2<S>) -> Tensor2<S> {
-        let (mu, lambda) = (S::splat(self.mu), S::splat(self.lambda));
+        let (mu, lambda) = (self.mu, self.lambda);
         let cofactor = F.cofactor();
         let J = F.determinant_with(cofactor);
-        let p = lambda.mul_add(J.ln(), -mu) / J;
-        let mut P = Tensor2::zero();
+        let p = (J.ln().times(lambda) - J.like(mu)) / J;
+        let mut P = F.0;
         for i in 0..3 {
             for k in 0..3 {
-                P.0[i][k] = mu.mul_add(F.0[i][k], p * cofactor.0[i][k]);
+                P[i][k] = p.mul_add(cofactor.0[i][k], F.0[i][k].times(mu));
             }
         }
-        P
+        Tensor2(P)
     }
 
     // A_{jk il} = μ δ_ij δ_kl + (μ − λ ln J) F⁻ᵀ_{jl} F⁻ᵀ_{ik} + λ F⁻ᵀ_{jk} F⁻ᵀ_{il}
     #[inline(always)]
     fn moduli<S: Real>(&self, F: &Tensor2<S>) -> Moduli<S> {
-        let (mu, lambda) = (S::splat(self.mu), S::splat(self.lambda));
+        let (mu, lambda) = (self.mu, self.lambda);
         let cofactor = F.cofactor();
         let J = F.determinant_with(cofactor);
-        let G = cofactor.scaled(S::splat(1.0) / J).0; // F⁻ᵀ
-        let m = lambda.mul_add(-J.ln(), mu);
-        let mut A = [[S::zero(); 9]; 9];
+        let G = cofactor.scaled(J.like(1.0) / J); // F⁻ᵀ
+        let m = J.like(mu) - J.ln().times(lambda);
+        let (shifted, scaled) = (G.scaled(m).0, G.scaled(J.like(lambda)).0);
+        let mut A = [[J.like(0.0); 9]; 9];
         for k in 0..3 {
             for l in k..3 {
                 for j in 0..3 {
                     for i in 0..3 {
-                        let mut a = m * G[j][l] * G[i][k];
-                        a = lambda.mul_add(G[j][k] * G[i][l], a);
-                        if i == j && k == l {
-                            a += mu;
-                        }
-                        A[3 * k + j][3 * l + i] = a;
+                        let a = shifted[j][l] * G.0[i][k];
+                        let a = scaled[j][k].mul_add(G.0[i][l], a);
+                        A[3 * k + j][3 * l + i] = if i == j && k == l { a + J.like(mu) } else { a };
                     }
                 }
             }

@@ -6,6 +6,9 @@ use super::{
     newton, pseudo_time, relaxation,
 };
 
+/// How often a step is halved for Newton before relaxation takes over.
+const NEWTON_HALVINGS: usize = 2;
+
 /// A way through states. It owns the last accepted one.
 #[derive(Debug)]
 pub struct Path<'a, P: Equilibrium> {
@@ -63,62 +66,114 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         &self.state
     }
 
-    /// Goes to a load in one step. On failure the path stays where it is.
+    /// Goes to a load. On failure the path stays at the last state that it found on the way.
     pub fn advance(
         &mut self,
         load: &P::Load,
         watch: &mut dyn Watch,
     ) -> Result<Step, PathError<P::Broken>> {
-        let (found, method, wasted) = match self.settings.scheme.clone() {
-            Scheme::Static => self.advance_static(load, watch)?,
-            Scheme::PseudoTime(scheme) => self.advance_dragged(load, &scheme, watch)?,
+        match self.settings.scheme.clone() {
+            Scheme::Static => self.advance_static(load, watch),
+            Scheme::PseudoTime(scheme) => self.advance_dragged(load, &scheme, watch),
+        }
+    }
+
+    /// Newton from the path's tangent. Where that fails the step is halved, since a branch that
+    /// bends can still be followed in shorter steps; where it still fails the branch has ended,
+    /// and relaxation follows the tube down to another.
+    fn advance_static(
+        &mut self,
+        target: &P::Load,
+        watch: &mut dyn Watch,
+    ) -> Result<Step, PathError<P::Broken>> {
+        let from = self.state.load.clone();
+        let mut step = Step {
+            method: Method::Newton,
+            iterations: 0,
+            drag_work: 0.0,
         };
-        let step = Step {
-            method,
-            iterations: found.iterations + wasted + 1,
-            drag_work: found.drag_work,
-        };
-        self.state = accepted(self.problem, load.clone(), found.u, &found.forces);
+        let (mut t, mut length, mut halvings) = (0.0, 1.0, 0);
+        while t < 1.0 {
+            let load = self.problem.between(&from, target, t + length);
+            let newton = match self.try_newton(&load, &mut step, watch) {
+                Ok(()) => {
+                    t += length;
+                    if halvings > 0 && t < 1.0 && (t / (2.0 * length)).fract() == 0.0 {
+                        (length, halvings) = (2.0 * length, halvings - 1);
+                    }
+                    continue;
+                }
+                Err(failed) => failed,
+            };
+            let relaxation = if matches!(newton, Failure::Stopped) {
+                newton.clone()
+            } else if halvings < NEWTON_HALVINGS.min(self.settings.halvings) {
+                (length, halvings) = (0.5 * length, halvings + 1);
+                continue;
+            } else {
+                match self.try_relaxation(&load, &mut step, watch) {
+                    Ok(()) => {
+                        t += length;
+                        continue;
+                    }
+                    Err(failed) => failed,
+                }
+            };
+            let stopped = matches!(relaxation, Failure::Stopped);
+            if stopped || halvings >= self.settings.halvings {
+                return Err(PathError {
+                    newton,
+                    relaxation,
+                    iterations: step.iterations,
+                });
+            }
+            (length, halvings) = (0.5 * length, halvings + 1);
+        }
         Ok(step)
     }
 
-    /// Newton from the path's tangent, else relaxation from the last state.
-    fn advance_static(
+    fn try_newton(
         &mut self,
         load: &P::Load,
+        step: &mut Step,
         watch: &mut dyn Watch,
-    ) -> Result<(Found, Method, usize), PathError<P::Broken>> {
-        let start = self.predict(load);
-        let tried = newton(self.problem, load, start.clone(), &self.settings, watch);
-        let failed = match tried {
-            Ok(found) => return Ok((found, Method::Newton, 0)),
-            Err(failed) => failed,
-        };
-        let wasted = spent(&failed);
-        if matches!(failed, Failure::Stopped) {
-            return Err(PathError {
-                newton: failed.clone(),
-                relaxation: failed,
-                iterations: wasted,
+    ) -> Result<(), Failure<P::Broken>> {
+        if self.state.negative_pivots > 0 {
+            // The tangent leads away from an unstable state, not along it.
+            return Err(Failure::Indefinite {
+                negative_pivots: self.state.negative_pivots,
             });
         }
+        let start = self.predict(load);
+        let found = newton(self.problem, load, start, &self.settings, watch)
+            .inspect_err(|failed| step.iterations += spent(failed))?;
+        self.accept(load, found, step);
+        Ok(())
+    }
+
+    fn try_relaxation(
+        &mut self,
+        load: &P::Load,
+        step: &mut Step,
+        watch: &mut dyn Watch,
+    ) -> Result<(), Failure<P::Broken>> {
         // The last state, if its ends need not move; else the prediction, which moves them gently.
-        let mut from = self.state.u.clone();
-        self.problem.impose(load, &mut from);
-        if from != self.state.u {
-            from = start;
+        let mut start = self.state.u.clone();
+        self.problem.impose(load, &mut start);
+        if start != self.state.u {
+            start = self.predict(load);
         }
-        match relaxation(self.problem, load, from, &self.settings, watch) {
-            Ok(found) => Ok((found, Method::Relaxation, wasted)),
-            Err(relaxation) => {
-                let iterations = wasted + spent(&relaxation);
-                Err(PathError {
-                    newton: failed,
-                    relaxation,
-                    iterations,
-                })
-            }
-        }
+        let found = relaxation(self.problem, load, start, &self.settings, watch)
+            .inspect_err(|failed| step.iterations += spent(failed))?;
+        self.accept(load, found, step);
+        step.method = Method::Relaxation;
+        Ok(())
+    }
+
+    fn accept(&mut self, load: &P::Load, found: Found, step: &mut Step) {
+        step.iterations += found.iterations + 1;
+        step.drag_work += found.drag_work;
+        self.state = accepted(self.problem, load.clone(), found.u, &found.forces);
     }
 
     /// Pseudo-time with a fixed drag, then to equilibrium without if the scheme says so.
@@ -127,7 +182,12 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         load: &P::Load,
         scheme: &PseudoTime,
         watch: &mut dyn Watch,
-    ) -> Result<(Found, Method, usize), PathError<P::Broken>> {
+    ) -> Result<Step, PathError<P::Broken>> {
+        let mut step = Step {
+            method: Method::PseudoTime,
+            iterations: 0,
+            drag_work: 0.0,
+        };
         let mut velocity = self.velocity.clone();
         let (from, u) = (self.state.load.clone(), self.state.u.clone());
         let fail = |failed: Failure<P::Broken>, iterations| PathError {
@@ -151,15 +211,21 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             fail(failed, iterations)
         })?;
         self.velocity = velocity;
-        if !scheme.settle {
-            return Ok((dragged, Method::PseudoTime, 0));
-        }
-        let mut settled = relaxation(self.problem, load, dragged.u, settings, watch)
-            .map_err(|failed| fail(failed, dragged.iterations))?;
-        settled.drag_work += dragged.drag_work;
-        settled.iterations += dragged.iterations;
-        self.velocity.fill(0.0);
-        Ok((settled, Method::PseudoTime, 0))
+        step.iterations += dragged.iterations;
+        step.drag_work += dragged.drag_work;
+        let found = if scheme.settle {
+            self.velocity.fill(0.0);
+            relaxation(self.problem, load, dragged.u, settings, watch)
+                .map_err(|failed| fail(failed, step.iterations))?
+        } else {
+            Found {
+                iterations: 0,
+                drag_work: 0.0,
+                ..dragged
+            }
+        };
+        self.accept(load, found, &mut step);
+        Ok(step)
     }
 
     /// Where the path's tangent leads: K Δu = −R(uₙ, load) − K d, d the motion of the supports.

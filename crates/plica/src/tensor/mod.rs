@@ -1,10 +1,13 @@
-//! Small plain algebra: numbers on lanes and 3×3 tensors over them.
+//! Small plain algebra: numbers alone or eight side by side, and 3×3 tensors over them.
 //!
 //! Every formula of the element kernel is written once, for any [`Real`]: `f64` in tests and
-//! reports, [`Lanes`] (eight numbers side by side) in the kernels.
+//! reports, eight-lane vectors in the kernels. The vectors are those of `fearless_simd`, chosen
+//! for the processor at run time, so that a plain release build is fast everywhere. (Arrays of
+//! eight left to the compiler's own vectorisation were four times slower: it vectorised the
+//! loops around them instead, with gathers.)
 
-mod lanes;
+mod real;
 mod tensor2;
 
-pub use lanes::{LANES, Lanes, Real};
+pub use real::{LANES, Lanes, Real};
 pub use tensor2::Tensor2;

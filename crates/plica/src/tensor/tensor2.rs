@@ -6,23 +6,12 @@ use super::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tensor2<S = f64>(pub [[S; 3]; 3]);
 
-impl<S: Real> Tensor2<S> {
-    /// The zero tensor.
-    #[inline(always)]
-    pub fn zero() -> Self {
-        Self([[S::zero(); 3]; 3])
-    }
-
+impl Tensor2 {
     /// The identity.
-    #[inline(always)]
-    pub fn identity() -> Self {
-        let mut a = Self::zero();
-        for i in 0..3 {
-            a.0[i][i] = S::splat(1.0);
-        }
-        a
-    }
+    pub const IDENTITY: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+}
 
+impl<S: Real> Tensor2<S> {
     /// The transpose.
     #[inline(always)]
     pub fn transpose(self) -> Self {
@@ -37,17 +26,15 @@ impl<S: Real> Tensor2<S> {
     /// The tensor of cofactors, `det(a) a⁻ᵀ`: the derivative of the determinant.
     #[inline(always)]
     pub fn cofactor(self) -> Self {
-        let a = self.0;
-        let minor = |i: usize, j: usize| {
-            let (r, s) = ((i + 1) % 3, (i + 2) % 3);
-            let (p, q) = ((j + 1) % 3, (j + 2) % 3);
-            a[r][p].mul_add(a[s][q], -(a[r][q] * a[s][p]))
-        };
-        Self([
-            [minor(0, 0), minor(0, 1), minor(0, 2)],
-            [minor(1, 0), minor(1, 1), minor(1, 2)],
-            [minor(2, 0), minor(2, 1), minor(2, 2)],
-        ])
+        let (a, mut c) = (self.0, self.0);
+        for i in 0..3 {
+            for j in 0..3 {
+                let (r, s) = ((i + 1) % 3, (i + 2) % 3);
+                let (p, q) = ((j + 1) % 3, (j + 2) % 3);
+                c[i][j] = a[r][p].mul_add(a[s][q], -(a[r][q] * a[s][p]));
+            }
+        }
+        Self(c)
     }
 
     /// The determinant, from a cofactor tensor already at hand.
@@ -66,7 +53,7 @@ impl<S: Real> Tensor2<S> {
     /// The full contraction `a : b`.
     #[inline(always)]
     pub fn dot(self, b: Self) -> S {
-        let mut sum = S::zero();
+        let mut sum = self.0[0][0].like(0.0);
         for i in 0..3 {
             for j in 0..3 {
                 sum = self.0[i][j].mul_add(b.0[i][j], sum);
@@ -78,27 +65,27 @@ impl<S: Real> Tensor2<S> {
     /// The product `a · b`.
     #[inline(always)]
     pub fn times(self, b: Self) -> Self {
-        let mut c = Self::zero();
+        let mut c = [[self.0[0][0].like(0.0); 3]; 3];
         for i in 0..3 {
             for j in 0..3 {
                 for k in 0..3 {
-                    c.0[i][j] = self.0[i][k].mul_add(b.0[k][j], c.0[i][j]);
+                    c[i][j] = self.0[i][k].mul_add(b.0[k][j], c[i][j]);
                 }
             }
         }
-        c
+        Self(c)
     }
 
     /// The tensor scaled by a number.
     #[inline(always)]
     pub fn scaled(self, s: S) -> Self {
-        let mut a = self;
-        for row in &mut a.0 {
-            for x in row {
-                *x = *x * s;
+        let mut a = self.0;
+        for i in 0..3 {
+            for j in 0..3 {
+                a[i][j] = a[i][j] * s;
             }
         }
-        a
+        Self(a)
     }
 }
 
@@ -113,8 +100,7 @@ mod tests {
         let product = a.times(inverse);
         for i in 0..3 {
             for j in 0..3 {
-                let identity = if i == j { 1.0 } else { 0.0 };
-                assert!((product.0[i][j] - identity).abs() < 1e-15);
+                assert!((product.0[i][j] - Tensor2::IDENTITY.0[i][j]).abs() < 1e-15);
             }
         }
         assert!((a.dot(a.cofactor()) - 3.0 * a.determinant()).abs() < 1e-14);

@@ -1,0 +1,77 @@
+//! The case file: from what a person wrote to a checked [`Plan`], or to everything that is wrong
+//! with it.
+//!
+//! A case passes four doors, each in its own file:
+//!
+//! 1. `toml` reads the text;
+//! 2. `shape` holds every key, type and range against the table [`KEYS`];
+//! 3. `spec` is the case as written, in plain structs;
+//! 4. `check` looks at what several keys must fulfil together and makes everything
+//!    dimensionless (lengths in D, stresses in E).
+//!
+//! ```
+//! let text = "
+//!     [muscles.circular]
+//!     direction = 'circular'
+//!     zone = [0.5, 1.0]
+//!     [[stages]]
+//!     drive.circular.diameter_ratio = 0.25
+//! ";
+//! let plan = plica::case::read(text, "contraction").unwrap();
+//! assert_eq!(plan.stages[0].load.muscles, [0.25]);
+//!
+//! let error = plica::case::read(&text.replace("0.25", "0"), "contraction").unwrap_err();
+//! assert_eq!(
+//!     error.problems[0].to_string(),
+//!     "stages[1].drive.circular.diameter_ratio = 0: must be above 0",
+//! );
+//! ```
+
+mod advice;
+mod check;
+mod keys;
+mod locate;
+mod problem;
+mod reference;
+mod shape;
+mod spec;
+mod spelling;
+mod starter;
+mod table;
+
+pub use advice::advice;
+pub use keys::{Given, Key, Kind, Limit, Range};
+pub use problem::{CaseError, Problem};
+pub use reference::reference;
+pub use starter::STARTER;
+pub use table::KEYS;
+
+use crate::study::Plan;
+use problem::Problems;
+use serde::Deserialize;
+use toml::de::{DeTable, Deserializer};
+
+/// Reads and checks the text of a case file. `name` is its title if it gives none: the name of
+/// the file without its ending.
+///
+/// # Errors
+/// All problems that were found, in the order of the text. A text that is not TOML, or not shaped
+/// like a case, is not looked at any further.
+pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
+    let root = DeTable::parse(text).map_err(|e| CaseError::from_toml(&e))?;
+    let mut problems = Problems::default();
+    shape::check(root.get_ref(), &mut problems);
+    let plan = match spec::Spec::deserialize(Deserializer::from(root.clone())) {
+        Ok(spec) => check::plan(&spec, name, &mut problems),
+        Err(error) if problems.is_empty() => return Err(CaseError::from_toml(&error)),
+        Err(_) => return Err(problems.located(text, &root)),
+    };
+    if problems.is_empty() {
+        Ok(plan)
+    } else {
+        Err(problems.located(text, &root))
+    }
+}
+
+#[cfg(test)]
+mod tests;

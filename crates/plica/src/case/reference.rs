@@ -1,0 +1,99 @@
+//! The reference page of the case file, written from the table of keys.
+
+use super::keys::{Given, Key, Kind};
+use super::table::KEYS;
+
+const OPENING: &str = "\
+<!-- Written from the table of keys in the program; PLICA_BLESS=1 cargo test rewrites it. -->
+
+# The case file
+
+A case is a [TOML](https://toml.io) file. `plica new` writes one to start from, `plica check` says
+what is wrong with one, `plica run` runs it. Only `stages` must be there; a key that is left out has
+the default given here. A misspelt key is an error.
+
+Without `[units]` a case is in ratios: lengths in the unit of `tube.diameter`, results in diameters D
+and Young's moduli E. With it, lengths and stresses are in these units, in the file and in the results.
+
+`<name>` is a name of your own (`colon` and `ileum`, the two ends of the tube, are taken). In messages,
+members of a list are counted from one: `stages[2].steps`.
+";
+
+const SECTIONS: &[(&str, &str)] = &[
+    ("title", "## The whole case"),
+    (
+        "units.length",
+        "## `[units]`\n\nIf the table is there, both keys are needed.",
+    ),
+    ("tube.diameter", "## `[tube]`"),
+    (
+        "material.neo-hookean.youngs_modulus",
+        "## `[material.neo-hookean]`",
+    ),
+    ("muscles.<name>.direction", "## `[muscles.<name>]`"),
+    (
+        "ends.colon",
+        "## `[ends]`\n\nA held end can be moved: drive `colon` or `ileum` in a stage.",
+    ),
+    ("mesh.control_points.axial", "## `[mesh]`"),
+    (
+        "stages",
+        "## `[[stages]]`\n\nTargets that a stage does not name stay as they are.",
+    ),
+    ("solver.scheme", "## `[solver]`"),
+    (
+        "solver.pseudo_time.drag",
+        "### `[solver.pseudo_time]`\n\nFor the schemes `\"newmark\"` and `\"dragged\"` only.",
+    ),
+    ("output.pictures", "## `[output]`"),
+];
+
+/// The text of `docs/case-file.md`.
+pub fn reference() -> String {
+    let mut page = OPENING.to_owned();
+    for key in KEYS {
+        if let Some((_, heading)) = SECTIONS.iter().find(|(first, _)| *first == key.path) {
+            page += &format!("\n{heading}\n\n");
+            page += "| key | value | default | |\n|---|---|---|---|\n";
+        }
+        page += &row(key);
+    }
+    page
+}
+
+fn row(key: &Key) -> String {
+    let kind = match key.kind {
+        Kind::Text => "text".to_owned(),
+        Kind::Switch => "`true` or `false`".to_owned(),
+        Kind::Count => "whole number".to_owned(),
+        Kind::Number => "number".to_owned(),
+        Kind::Word(words) => {
+            let quoted: Vec<String> = words.iter().map(|word| format!("`\"{word}\"`")).collect();
+            quoted.join(", ")
+        }
+        Kind::Zone => "`[from, to]`".to_owned(),
+        Kind::Points => "`[[x, s], …]`".to_owned(),
+        Kind::Tables => "list of tables".to_owned(),
+    };
+    let mut value = vec![kind];
+    if !key.unit.is_empty() {
+        value.push(match key.unit {
+            "length" | "stress" => format!("a {}", key.unit),
+            unit => format!("in {unit}"),
+        });
+    }
+    if !key.range.words().is_empty() {
+        value.push(key.range.words());
+    }
+    let default = match key.given {
+        Given::Always(_) => "needed".to_owned(),
+        Given::Or(default) => format!("`{default}`"),
+        Given::OrElse(words, _) => words.to_owned(),
+    };
+    format!(
+        "| `{}` | {} | {default} | {} |\n",
+        key.path,
+        value.join("; "),
+        key.meaning
+    )
+}

@@ -1,0 +1,380 @@
+//! Lines and texts on a page measured in points; the one file that names kuva.
+//!
+//! kuva draws at twice the size asked for and the mean of each square is kept, since its thick strokes are smoothed
+//! across but not down. Its own axes are not used: they know neither equal aspect nor slanted letters.
+
+use kuva::RasterBackend;
+use kuva::render::color::Color;
+use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan};
+
+use super::label::{Piece, pieces};
+use super::{DrawError, Image};
+
+/// How much finer than asked kuva draws.
+const FINER: usize = 2;
+/// Farther from the corner, in points, nothing is drawn.
+const FAR: f64 = 1e5;
+/// Page height of a capital letter, in text sizes.
+pub(super) const CAPITAL: f64 = 0.73;
+/// Ink of axes and texts.
+pub(super) const INK: [u8; 3] = [34, 34, 34];
+
+/// A place on the page: points to the right of and below the top left corner.
+pub(super) type Place = (f64, f64);
+
+/// Where a text hangs on its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A pen; `dash` is the length of stroke and gap, (0, 0) for a whole line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pen {
+    pub colour: [u8; 3],
+    pub width: f64,
+    pub dash: (f64, f64),
+}
+
+impl Pen {
+    pub fn new(colour: [u8; 3], width: f64) -> Self {
+        Self {
+            colour,
+            width,
+            dash: (0.0, 0.0),
+        }
+    }
+}
+
+/// A page being drawn.
+pub(super) struct Canvas {
+    /// Width in points.
+    pub width: f64,
+    /// kuva's pixels per point.
+    zoom: f64,
+    scene: Scene,
+    stamps: Vec<(Image, i64, i64)>,
+    paper: Image,
+}
+
+impl Canvas {
+    /// A white page of `width` by `height` points that becomes `width_px` pixels wide.
+    pub fn new(width: f64, height: f64, width_px: usize) -> Result<Self, DrawError> {
+        let paper = Image::white(width_px as f64, height * width_px as f64 / width)?;
+        let scene = Scene::new((paper.width * FINER) as f64, (paper.height * FINER) as f64);
+        let zoom = (FINER * width_px) as f64 / width;
+        Ok(Self {
+            width,
+            zoom,
+            scene,
+            stamps: Vec::new(),
+            paper,
+        })
+    }
+
+    /// Final pixels per point.
+    pub fn pixels_per_point(&self) -> f64 {
+        self.zoom / FINER as f64
+    }
+
+    pub fn line(&mut self, from: Place, to: Place, pen: Pen) {
+        self.polyline(&[from, to], pen);
+    }
+
+    /// Joins the places in their order; one that is not finite, or absurdly far, breaks the line.
+    pub fn polyline(&mut self, places: &[Place], pen: Pen) {
+        for run in places.split(|(x, y)| !(x.abs() < FAR && y.abs() < FAR)) {
+            if pen.dash.0 <= 0.0 || pen.dash.1 <= 0.0 {
+                self.stroke(run, pen);
+                continue;
+            }
+            for dash in dashes(run, pen.dash) {
+                self.stroke(&dash, pen);
+            }
+        }
+    }
+
+    fn stroke(&mut self, run: &[Place], pen: Pen) {
+        let points = run
+            .iter()
+            .map(|&(x, y)| (x * self.zoom, y * self.zoom))
+            .collect();
+        let stroke_width = pen.width * self.zoom;
+        self.scene.add(Primitive::PolyLine {
+            points,
+            stroke: ink(pen.colour),
+            stroke_width,
+            stroke_dasharray: None,
+        });
+    }
+
+    /// A filled disc; a white rim lifts it off the lines beneath.
+    pub fn disc(&mut self, (x, y): Place, radius: f64, colour: [u8; 3], rim: f64) {
+        for (r, c) in [(radius + rim, [255; 3]), (radius, colour)] {
+            let (cx, cy, r) = (x * self.zoom, y * self.zoom, r * self.zoom);
+            let (fill, none) = (ink(c), None);
+            self.scene.add(Primitive::Circle {
+                cx,
+                cy,
+                r,
+                fill,
+                fill_opacity: none,
+                stroke: None,
+                stroke_width: none,
+            });
+        }
+    }
+
+    /// A filled rectangle without an outline.
+    pub fn rectangle(&mut self, (x, y): Place, width: f64, height: f64, colour: [u8; 3]) {
+        let (x, y, width, height) = (
+            x * self.zoom,
+            y * self.zoom,
+            width * self.zoom,
+            height * self.zoom,
+        );
+        let fill = ink(colour);
+        self.scene.add(Primitive::Rect {
+            x,
+            y,
+            width,
+            height,
+            fill,
+            stroke: None,
+            stroke_width: None,
+            opacity: None,
+        });
+    }
+
+    /// A filled polygon without an outline.
+    pub fn polygon(&mut self, corners: &[Place], colour: [u8; 3]) {
+        let mut d = String::new();
+        for (i, (x, y)) in corners.iter().enumerate() {
+            let word = if i == 0 { 'M' } else { 'L' };
+            d += &format!("{word} {:.3} {:.3} ", x * self.zoom, y * self.zoom);
+        }
+        d.push('Z');
+        let (fill, stroke, stroke_width) = (Some(ink(colour)), Color::None, 0.0);
+        self.scene.add(Primitive::Path(Box::new(PathData {
+            d,
+            fill,
+            stroke,
+            stroke_width,
+            opacity: None,
+            stroke_dasharray: None,
+        })));
+    }
+
+    /// What is drawn until [`Canvas::unclip`] shows only inside this rectangle.
+    pub fn clip(&mut self, (x, y): Place, width: f64, height: f64) {
+        let (x, y, width, height) = (
+            x * self.zoom,
+            y * self.zoom,
+            width * self.zoom,
+            height * self.zoom,
+        );
+        self.scene.add(Primitive::ClipStart {
+            x,
+            y,
+            width,
+            height,
+            id: String::new(),
+        });
+    }
+
+    pub fn unclip(&mut self) {
+        self.scene.add(Primitive::ClipEnd);
+    }
+
+    /// Writes a label with its baseline at `place`; `size` in points.
+    pub fn text(&mut self, (x, y): Place, label: &str, size: f64, anchor: Anchor, colour: [u8; 3]) {
+        let pieces = pieces(label);
+        let widths: Vec<f64> = pieces
+            .iter()
+            .map(|p| piece_width(p, size * self.zoom))
+            .collect();
+        let total: f64 = widths.iter().sum();
+        let mut pen = x * self.zoom;
+        match anchor {
+            Anchor::Start => {}
+            Anchor::Middle => pen -= total / 2.0,
+            Anchor::End => pen -= total,
+        }
+        for (piece, width) in pieces.iter().zip(widths) {
+            let drop = piece.level.drop() * size;
+            self.scene.add(written(
+                piece,
+                (pen, (y + drop) * self.zoom),
+                size * self.zoom,
+                colour,
+            ));
+            pen += width;
+        }
+    }
+
+    /// Writes a label that reads upward, its middle at `place` and its baseline `CAPITAL / 2` to the right of it.
+    pub fn text_upward(&mut self, (x, y): Place, label: &str, size: f64) -> Result<(), DrawError> {
+        let (width, height) = (self.text_width(label, size) + size, size * 2.0);
+        let mut slip = Canvas::new(
+            width,
+            height,
+            (width * self.pixels_per_point()).ceil() as usize,
+        )?;
+        slip.text(
+            (width / 2.0, size * (1.0 + CAPITAL / 2.0)),
+            label,
+            size,
+            Anchor::Middle,
+            INK,
+        );
+        let turned = slip.finish()?.turned_left();
+        self.stamp(turned, (x - height / 2.0, y - width / 2.0));
+        Ok(())
+    }
+
+    /// Lays a picture of final pixels over everything drawn, its top left corner at `place`; its white is transparent.
+    pub fn stamp(&mut self, picture: Image, (x, y): Place) {
+        let pixel = |v: f64| (v * self.pixels_per_point()).round() as i64;
+        self.stamps.push((picture, pixel(x), pixel(y)));
+    }
+
+    /// Width of a label in points.
+    pub fn text_width(&self, label: &str, size: f64) -> f64 {
+        pieces(label)
+            .iter()
+            .map(|p| piece_width(p, size * self.zoom))
+            .sum::<f64>()
+            / self.zoom
+    }
+
+    /// The page as pixels.
+    pub fn finish(self) -> Result<Image, DrawError> {
+        let fine = rendered(&self.scene)?;
+        let mut page = self.paper;
+        page.stamp(&fine.reduced(FINER), 0, 0);
+        for (picture, x, y) in &self.stamps {
+            page.stamp(picture, *x, *y);
+        }
+        Ok(page)
+    }
+}
+
+fn ink([r, g, b]: [u8; 3]) -> Color {
+    Color::Rgb(r, g, b)
+}
+
+fn rendered(scene: &Scene) -> Result<Image, DrawError> {
+    let bytes = RasterBackend::new()
+        .with_scale(1.0)
+        .render_scene(scene)
+        .map_err(DrawError::Backend)?;
+    Image::from_png(&bytes)
+}
+
+fn written(piece: &Piece, (x, y): Place, size: f64, colour: [u8; 3]) -> Primitive {
+    let text = piece.text.clone();
+    let span = TextSpan {
+        text,
+        bold: false,
+        italic: piece.italic,
+        underline: false,
+        code: false,
+        math: false,
+    };
+    let size = (size * piece.level.size()).round() as u32;
+    Primitive::RichText {
+        x,
+        y,
+        spans: vec![span],
+        size,
+        anchor: TextAnchor::Start,
+        color: Some(ink(colour)),
+    }
+}
+
+/// Advance of a run in kuva's pixels: what it adds between two bars, because kuva keeps its measures to itself.
+fn piece_width(piece: &Piece, size: f64) -> f64 {
+    let between = |text: &str| {
+        let bars = Piece {
+            text: format!("|{text}|"),
+            ..piece.clone()
+        };
+        let width = size * (piece.text.chars().count() as f64 + 4.0);
+        let mut scene = Scene::new(width.ceil(), (size * 2.0).ceil());
+        scene.add(written(&bars, (size / 2.0, size * 1.5), size, [0; 3]));
+        let image = rendered(&scene).ok()?;
+        let dark = image
+            .pixels
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p[0] < 128)
+            .map(|(i, _)| i % image.width);
+        let (first, last) = dark.fold((usize::MAX, 0), |(a, b), column| {
+            (a.min(column), b.max(column))
+        });
+        last.checked_sub(first)
+    };
+    match (between(&piece.text), between("")) {
+        (Some(with), Some(without)) => with.saturating_sub(without) as f64,
+        _ => 0.6 * size * piece.text.chars().count() as f64,
+    }
+}
+
+/// Cuts a run of places into strokes of `on`, `off` points apart, measured along the run.
+fn dashes(run: &[Place], (on, off): (f64, f64)) -> Vec<Vec<Place>> {
+    let mut dashes = Vec::new();
+    let mut dash: Vec<Place> = run.first().copied().into_iter().collect();
+    let (mut drawing, mut left) = (true, on);
+    for ends in run.windows(2) {
+        let (mut from, to) = (ends[0], ends[1]);
+        loop {
+            let length = (to.0 - from.0).hypot(to.1 - from.1);
+            if length <= left {
+                left -= length;
+                break;
+            }
+            let t = left / length;
+            from = (from.0 + t * (to.0 - from.0), from.1 + t * (to.1 - from.1));
+            if drawing {
+                dash.push(from);
+                dashes.push(std::mem::take(&mut dash));
+            } else {
+                dash.push(from);
+            }
+            drawing = !drawing;
+            left = if drawing { on } else { off };
+        }
+        if drawing {
+            dash.push(to);
+        }
+    }
+    dashes.push(dash);
+    dashes.retain(|d| d.len() > 1);
+    dashes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dashes_run_through_corners() {
+        let run = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0)];
+        let got = dashes(&run, (2.0, 2.0));
+        assert_eq!(
+            got,
+            [vec![(0.0, 0.0), (2.0, 0.0)], vec![(3.0, 1.0), (3.0, 3.0)]]
+        );
+    }
+
+    #[test]
+    fn text_width_counts_spaces_and_levels() {
+        let canvas = Canvas::new(100.0, 50.0, 400).unwrap();
+        let width = |label| canvas.text_width(label, 10.0);
+        assert!((width("a b") - width("a") - width("b") - width(" ")).abs() < 0.5);
+        assert!(width(" ") > 2.0);
+        assert!(width("x_{max}") < width("xmax"));
+    }
+}

@@ -1,0 +1,226 @@
+//! Opened tubes, coloured by a field, over one colour bar.
+//!
+//! The tubes lie with z to the right and the colon end left, seen from the front and a little above; x points up and y
+//! towards the viewer. All panels share scale, place along z and colours.
+
+use super::DrawError;
+use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen};
+use super::colour::Map;
+use super::light::dot;
+use super::raster::{Surface, View, render};
+
+pub(super) const TITLE: f64 = 9.0;
+pub(super) const TEXT: f64 = 8.0;
+/// Room for "colon" and "ileum" beside the tubes.
+pub(super) const SIDE: f64 = 36.0;
+const SAMPLES: usize = 3;
+
+/// One tube of the picture.
+#[derive(Clone, Debug, Default)]
+pub struct Panel {
+    /// What stands above it.
+    pub label: String,
+    /// The tube, in units of D; see [`super::Opening::surfaces`].
+    pub surfaces: Vec<Surface>,
+}
+
+/// Values at the two ends of the colour bar.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Range {
+    /// From the least value (or zero, if that is near) to a round number that leaves out the largest half per cent:
+    /// fields peak at folds, and one peak must not darken all the rest.
+    #[default]
+    Automatic,
+    /// From the least to the largest value.
+    Full,
+    /// These two.
+    Given(f64, f64),
+}
+
+/// Opened tubes, one above the other. Labels take the markup of [`super::Chart`].
+#[derive(Clone, Debug)]
+pub struct Cutaway {
+    /// Line above everything; empty for none.
+    pub title: String,
+    /// The tubes, from the top.
+    pub panels: Vec<Panel>,
+    /// Name of the field; a common power of ten is added to it in brackets.
+    pub value_label: String,
+    /// Ends of the colour bar.
+    pub range: Range,
+    /// Colours of the field.
+    pub map: Map,
+    /// Direction of the viewer in the tube's coordinates; any but along z.
+    pub toward: [f64; 3],
+    /// Printed width in points.
+    pub width_pt: f64,
+}
+
+impl Default for Cutaway {
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            panels: Vec::new(),
+            value_label: String::new(),
+            range: Range::Automatic,
+            map: Map::default(),
+            toward: [0.42, 1.0, -0.35],
+            width_pt: 510.0,
+        }
+    }
+}
+
+impl Cutaway {
+    /// The picture as the bytes of a PNG file of `width_px` pixels across.
+    ///
+    /// # Errors
+    /// [`DrawError::Empty`] without a finite point or value, [`DrawError::Grid`] for a surface whose lists do not fill
+    /// it, [`DrawError::Range`] for a given range that is none, [`DrawError::Size`] for an absurd size.
+    pub fn png(&self, width_px: usize) -> Result<Vec<u8>, DrawError> {
+        for surface in self.panels.iter().flat_map(|p| &p.surfaces) {
+            surface.check()?;
+        }
+        let scale = self.scale()?;
+        let [right, up, toward] = View::axes(self.toward);
+        let (left, width) = self.extent(self.panels.iter(), right)?;
+        let per_unit = (self.width_pt - 2.0 * SIDE) / width; // points per D
+
+        let mut tops = Vec::new();
+        let mut bottom = if self.title.is_empty() { 4.0 } else { 24.0 };
+        for panel in &self.panels {
+            let (low, height) = self.extent([panel].into_iter(), up)?;
+            tops.push((bottom, low + height, height * per_unit));
+            let label = if panel.label.is_empty() { 0.0 } else { 13.0 };
+            bottom += label + height * per_unit + 10.0;
+        }
+        let mut canvas = Canvas::new(self.width_pt, bottom + 44.0, width_px)?;
+        if !self.title.is_empty() {
+            canvas.text((SIDE, 13.0), &self.title, TITLE, Anchor::Start, INK);
+        }
+        let margin = 2.0; // points around a tube, for the line at its edge
+        let pixels = canvas.pixels_per_point();
+        for (panel, (top, high, height)) in self.panels.iter().zip(tops) {
+            let mut top = top;
+            if !panel.label.is_empty() {
+                canvas.text((SIDE, top + 8.0), &panel.label, TEXT, Anchor::Start, INK);
+                top += 13.0;
+            }
+            let view = View {
+                right,
+                up,
+                toward,
+                corner: (left - margin / per_unit, high + margin / per_unit),
+                scale: per_unit * pixels,
+                size: (
+                    ((width * per_unit + 2.0 * margin) * pixels).ceil() as usize,
+                    ((height + 2.0 * margin) * pixels).ceil() as usize,
+                ),
+            };
+            let tube = render(
+                &panel.surfaces,
+                &view,
+                (scale.low, scale.high),
+                self.map,
+                SAMPLES,
+            )?;
+            canvas.stamp(tube, (SIDE - margin, top - margin));
+            let middle = top + height / 2.0 + TEXT * CAPITAL / 2.0;
+            canvas.text((SIDE - 7.0, middle), "colon", TEXT, Anchor::End, INK);
+            canvas.text(
+                (self.width_pt - SIDE + 7.0, middle),
+                "ileum",
+                TEXT,
+                Anchor::Start,
+                INK,
+            );
+        }
+        let diameter = per_unit * right[2];
+        let (end, base) = (self.width_pt - SIDE, bottom + 13.0);
+        canvas.line((end - diameter, base), (end, base), Pen::new(INK, 1.2));
+        canvas.text(
+            (end - diameter / 2.0, base + 10.5),
+            "*D*",
+            TEXT,
+            Anchor::Middle,
+            INK,
+        );
+        self.draw_colour_bar(&mut canvas, bottom + 6.0, end - diameter - 12.0, scale);
+        canvas.finish()?.to_png(self.width_pt * 25.4 / 72.0)
+    }
+
+    /// Start and length of what the panels cover along a direction.
+    fn extent<'a>(
+        &self,
+        panels: impl Iterator<Item = &'a Panel>,
+        direction: [f64; 3],
+    ) -> Result<(f64, f64), DrawError> {
+        let points = panels.flat_map(|p| &p.surfaces).flat_map(|s| &s.points);
+        let (low, high) = ends(points.map(|&p| dot(p, direction)));
+        if high > low {
+            Ok((low, high - low))
+        } else {
+            Err(DrawError::Empty { what: "cut-away" })
+        }
+    }
+}
+
+/// Least and largest of the finite values.
+pub(super) fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let finite = values.filter(|v| v.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+        (a.min(v), b.max(v))
+    })
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::draw::{Image, Opening};
+
+    pub(in crate::draw) fn straight(values: impl Fn(f64) -> f64) -> Cutaway {
+        let opening = Opening {
+            points: [60, 30, 3],
+            ..Opening::HALF
+        };
+        let surfaces = opening.surfaces(|zeta, eta, xi| {
+            let r = 0.44 + 0.06 * xi;
+            ([r * eta.cos(), r * eta.sin(), 3.0 * zeta], values(zeta))
+        });
+        Cutaway {
+            panels: vec![Panel {
+                label: "straight".into(),
+                surfaces,
+            }],
+            ..Cutaway::default()
+        }
+    }
+
+    #[test]
+    fn a_tube_is_drawn_at_the_size_asked_for() {
+        let image = Image::from_png(&straight(|z| z).png(600).unwrap()).unwrap();
+        assert_eq!(image.width, 600);
+        let inked = image.pixels.iter().filter(|&&p| p != [255; 3]).count();
+        assert!(
+            inked * 4 > image.pixels.len(),
+            "{inked} of {}",
+            image.pixels.len()
+        );
+    }
+
+    #[test]
+    fn bad_fields_are_errors() {
+        assert!(matches!(
+            straight(|_| f64::NAN).png(600),
+            Err(DrawError::Empty { .. })
+        ));
+        assert!(matches!(
+            Cutaway::default().png(600),
+            Err(DrawError::Empty { .. })
+        ));
+        let upside_down = Cutaway {
+            range: Range::Given(1.0, 0.0),
+            ..straight(|z| z)
+        };
+        assert!(matches!(upside_down.png(600), Err(DrawError::Range { .. })));
+    }
+}

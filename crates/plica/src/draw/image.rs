@@ -1,0 +1,181 @@
+//! Pixels, and PNG in and out.
+
+use super::DrawError;
+
+/// The longest side a picture may have, in pixels.
+pub const MAX_SIDE: usize = 8_000;
+
+/// A picture of 8-bit sRGB pixels, row by row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Width in pixels.
+    pub width: usize,
+    /// Height in pixels.
+    pub height: usize,
+    /// `width * height` colours.
+    pub pixels: Vec<[u8; 3]>,
+}
+
+impl Image {
+    /// A white picture.
+    ///
+    /// # Errors
+    /// [`DrawError::Size`] unless both sides lie between 16 and [`MAX_SIDE`] pixels.
+    pub fn white(width: f64, height: f64) -> Result<Self, DrawError> {
+        let allowed = 16.0..=MAX_SIDE as f64;
+        if !allowed.contains(&width) || !allowed.contains(&height) {
+            return Err(DrawError::Size { width, height });
+        }
+        let (width, height) = (width.round() as usize, height.round() as usize);
+        Ok(Self {
+            width,
+            height,
+            pixels: vec![[255; 3]; width * height],
+        })
+    }
+
+    /// Multiplies `stamp` into the picture with its top left corner at (x, y): white leaves the ground as it is.
+    pub fn stamp(&mut self, stamp: &Image, x: i64, y: i64) {
+        for (row, line) in stamp.pixels.chunks_exact(stamp.width.max(1)).enumerate() {
+            let below = y + row as i64;
+            if below < 0 || below >= self.height as i64 {
+                continue;
+            }
+            for (column, ink) in line.iter().enumerate() {
+                let across = x + column as i64;
+                if across < 0 || across >= self.width as i64 {
+                    continue;
+                }
+                let ground = &mut self.pixels[below as usize * self.width + across as usize];
+                for (g, &i) in ground.iter_mut().zip(ink) {
+                    *g = ((u16::from(*g) * u16::from(i) + 127) / 255) as u8;
+                }
+            }
+        }
+    }
+
+    /// The picture turned a quarter to the left, so that a line of text reads upward.
+    #[must_use]
+    pub fn turned_left(&self) -> Self {
+        let mut pixels = Vec::with_capacity(self.pixels.len());
+        for column in (0..self.width).rev() {
+            for row in 0..self.height {
+                pixels.push(self.pixels[row * self.width + column]);
+            }
+        }
+        Self {
+            width: self.height,
+            height: self.width,
+            pixels,
+        }
+    }
+
+    /// The picture at 1/`factor` of its size, each pixel the mean of a square; a remainder at the edges is dropped.
+    #[must_use]
+    pub fn reduced(&self, factor: usize) -> Self {
+        let factor = factor.max(1);
+        let (width, height) = (self.width / factor, self.height / factor);
+        let count = (factor * factor) as u32;
+        let mut pixels = Vec::with_capacity(width * height);
+        for row in 0..height {
+            for column in 0..width {
+                let mut sum = [0u32; 3];
+                for y in 0..factor {
+                    let start = (row * factor + y) * self.width + column * factor;
+                    for pixel in &self.pixels[start..start + factor] {
+                        for (s, &c) in sum.iter_mut().zip(pixel) {
+                            *s += u32::from(c);
+                        }
+                    }
+                }
+                pixels.push(sum.map(|s| ((s + count / 2) / count) as u8));
+            }
+        }
+        Self {
+            width,
+            height,
+            pixels,
+        }
+    }
+
+    /// The picture as the bytes of a PNG file; `width_mm` sets the size it prints at.
+    ///
+    /// # Errors
+    /// [`DrawError::Backend`] if the encoder refuses.
+    pub fn to_png(&self, width_mm: f64) -> Result<Vec<u8>, DrawError> {
+        let backend = |e: png::EncodingError| DrawError::Backend(e.to_string());
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        if width_mm > 0.0 {
+            let per_metre = (self.width as f64 / width_mm * 1000.0).round() as u32;
+            let unit = png::Unit::Meter;
+            encoder.set_pixel_dims(Some(png::PixelDimensions {
+                xppu: per_metre,
+                yppu: per_metre,
+                unit,
+            }));
+        }
+        let mut writer = encoder.write_header().map_err(backend)?;
+        writer
+            .write_image_data(self.pixels.as_flattened())
+            .map_err(backend)?;
+        writer.finish().map_err(backend)?;
+        Ok(bytes)
+    }
+
+    /// Reads an 8-bit RGB or RGBA file; transparency is ignored.
+    ///
+    /// # Errors
+    /// [`DrawError::Backend`] for anything else.
+    pub fn from_png(bytes: &[u8]) -> Result<Self, DrawError> {
+        let backend = |e: png::DecodingError| DrawError::Backend(e.to_string());
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+            .read_info()
+            .map_err(backend)?;
+        let size = reader
+            .output_buffer_size()
+            .ok_or_else(|| DrawError::Backend("PNG too large".into()))?;
+        let mut buffer = vec![0; size];
+        let frame = reader.next_frame(&mut buffer).map_err(backend)?;
+        let channels = match (frame.color_type, frame.bit_depth) {
+            (png::ColorType::Rgb, png::BitDepth::Eight) => 3,
+            (png::ColorType::Rgba, png::BitDepth::Eight) => 4,
+            other => return Err(DrawError::Backend(format!("PNG of kind {other:?}"))),
+        };
+        let pixels = buffer[..frame.buffer_size()]
+            .chunks_exact(channels)
+            .map(|p| [p[0], p[1], p[2]])
+            .collect();
+        Ok(Self {
+            width: frame.width as usize,
+            height: frame.height as usize,
+            pixels,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn png_round_trip_and_quarter_turn() {
+        let mut image = Image::white(20.0, 30.0).unwrap();
+        image.pixels[19] = [10, 20, 30]; // top right
+        let back = Image::from_png(&image.to_png(100.0).unwrap()).unwrap();
+        assert_eq!(back, image);
+        assert_eq!(image.turned_left().pixels[0], [10, 20, 30]);
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused() {
+        for (width, height) in [(0.0, 100.0), (f64::NAN, 100.0), (1e9, 100.0)] {
+            assert!(matches!(
+                Image::white(width, height),
+                Err(DrawError::Size { .. })
+            ));
+        }
+    }
+}

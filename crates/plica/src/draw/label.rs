@@ -1,0 +1,93 @@
+//! Labels with a little markup: `*z*/*D*` slants, `*L*_{max}` lowers, `10^{−3}` raises.
+
+/// A run of letters of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Piece {
+    pub text: String,
+    pub italic: bool,
+    pub level: Level,
+}
+
+/// Where a run stands on its line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Level {
+    Line,
+    Lower,
+    Upper,
+}
+
+impl Level {
+    /// Size against that of the line.
+    pub fn size(self) -> f64 {
+        if self == Level::Line { 1.0 } else { 0.72 }
+    }
+
+    /// Fall below the baseline, in the line's size.
+    pub fn drop(self) -> f64 {
+        match self {
+            Level::Line => 0.0,
+            Level::Lower => 0.2,
+            Level::Upper => -0.36,
+        }
+    }
+}
+
+/// The runs of a label. Unmatched marks are harmless: the last run just ends with the text.
+pub(super) fn pieces(text: &str) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut run = Piece {
+        text: String::new(),
+        italic: false,
+        level: Level::Line,
+    };
+    let mut letters = text.chars().peekable();
+    while let Some(letter) = letters.next() {
+        let (italic, level) = match letter {
+            '*' => (!run.italic, run.level),
+            '_' if letters.next_if_eq(&'{').is_some() => (run.italic, Level::Lower),
+            '^' if letters.next_if_eq(&'{').is_some() => (run.italic, Level::Upper),
+            '}' if run.level != Level::Line => (run.italic, Level::Line),
+            // kuva would read dollars as mathematics of its own
+            '$' => continue,
+            _ => {
+                run.text.push(letter);
+                continue;
+            }
+        };
+        let next = Piece {
+            text: String::new(),
+            italic,
+            level,
+        };
+        pieces.push(std::mem::replace(&mut run, next));
+    }
+    pieces.push(run);
+    pieces.retain(|p| !p.text.is_empty());
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_split_a_label() {
+        let got = pieces("*L*_{max}/*L* = 10^{−3}");
+        let texts: Vec<_> = got
+            .iter()
+            .map(|p| (p.text.as_str(), p.italic, p.level))
+            .collect();
+        assert_eq!(
+            texts,
+            [
+                ("L", true, Level::Line),
+                ("max", false, Level::Lower),
+                ("/", false, Level::Line),
+                ("L", true, Level::Line),
+                (" = 10", false, Level::Line),
+                ("−3", false, Level::Upper),
+            ]
+        );
+        assert_eq!(pieces("plain_text }")[0].text, "plain_text }");
+    }
+}

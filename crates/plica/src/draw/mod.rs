@@ -1,0 +1,96 @@
+//! Pictures of tubes for print: charts, wall profiles and shaded cut-aways, as PNG bytes.
+//!
+//! | file | what it draws |
+//! |---|---|
+//! | [`chart`] | curves against axes: energy paths, wall profiles |
+//! | [`cutaway`] | opened tubes, coloured by a field, over one colour bar |
+//! | `frame`, `notes` | a chart's frame; its legend, rules and markers |
+//! | `colour_bar` | the bar beneath the cut-aways |
+//! | [`section`] | the surfaces of a tube cut open along its axis, from any wall mapping |
+//! | [`raster`] | shaded surfaces: a z-buffer with smooth normals |
+//! | `light` | how bright a point of a surface is |
+//! | [`colour`] | two even maps for fields, Okabe and Ito's palette for lines |
+//! | `ticks` | round numbers for axes |
+//! | `label` | `*z*/*D*`, `*L*_{max}`, `10^{−3}` |
+//! | `canvas` | lines and texts on a page measured in points; the one file that names kuva |
+//! | [`image`] | pixels, and PNG in and out |
+//!
+//! Every picture is plain data with a `png(width_px)` method; nothing here reads a file, prints, or knows a model.
+//! Lengths on a page are points (1/72 inch), so that texts of 8 and 9 points come out as such in a journal's column.
+//!
+//! ```
+//! # use plica::draw::{Chart, Curve};
+//! let chart = Chart {
+//!     x_label: "*L*_{max}/*L*".into(),
+//!     y_label: "*W*/(*E* *D*^{3})".into(),
+//!     curves: vec![Curve { points: vec![(1.0, 3.0e-3), (1.13, 6.7e-4)], dots: true, ..Curve::default() }],
+//!     ..Chart::default()
+//! };
+//! assert!(chart.png(900).is_ok());
+//! ```
+
+mod canvas;
+pub mod chart;
+pub mod colour;
+mod colour_bar;
+pub mod cutaway;
+mod frame;
+pub mod image;
+mod label;
+mod light;
+mod notes;
+pub mod raster;
+pub mod section;
+mod ticks;
+
+pub use chart::{Chart, Curve, Marker, Rule, Stroke};
+pub use colour::Map;
+pub use cutaway::{Cutaway, Panel, Range};
+pub use image::Image;
+pub use raster::Surface;
+pub use section::Opening;
+
+/// Why a picture could not be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum DrawError {
+    /// There is no finite number to draw.
+    #[error("nothing to draw: {what} holds no finite value")]
+    Empty {
+        /// The part of the picture that is empty.
+        what: &'static str,
+    },
+    /// A surface's lists do not fill its grid.
+    #[error("surface of {columns} x {rows} needs {} points and values: got {points} and {values}", columns * rows)]
+    Grid {
+        /// Points along a row.
+        columns: usize,
+        /// Number of rows.
+        rows: usize,
+        /// Points given.
+        points: usize,
+        /// Values given.
+        values: usize,
+    },
+    /// A range that is empty, reversed or not finite.
+    #[error("range {low} to {high}: both ends must be finite, the first below the second")]
+    Range {
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+    },
+    /// A picture too small or too large to draw.
+    #[error(
+        "picture of {width} x {height} pixels: both sides must lie between 16 and {}",
+        image::MAX_SIDE
+    )]
+    Size {
+        /// Width in pixels.
+        width: f64,
+        /// Height in pixels.
+        height: f64,
+    },
+    /// The drawing library refused.
+    #[error("drawing failed: {0}")]
+    Backend(String),
+}

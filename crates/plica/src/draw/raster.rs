@@ -1,0 +1,386 @@
+//! Shaded surfaces: a z-buffer with smooth normals and a light.
+//!
+//! Parallel projection, so that lengths compare across the picture. A light from above the viewer's left shoulder falls
+//! on both sides of a surface; light, not sRGB bytes, is averaged over the samples of a pixel.
+
+use super::colour::{Map, to_byte};
+use super::light::{Shader, cross, dot, minus, unit};
+use super::{DrawError, Image};
+
+/// A structured grid of quadrilaterals that carries a field.
+#[derive(Clone, Debug, Default)]
+pub struct Surface {
+    /// Points along a row.
+    pub columns: usize,
+    /// Number of rows.
+    pub rows: usize,
+    /// `rows * columns` points, row after row, in units of D; a quadrilateral with a point that is
+    /// not finite is left out.
+    pub points: Vec<[f64; 3]>,
+    /// The field at the points; NaN is drawn grey.
+    pub values: Vec<f64>,
+}
+
+impl Surface {
+    /// Whether the lists fill the grid.
+    ///
+    /// # Errors
+    /// [`DrawError::Grid`] if they do not.
+    pub fn check(&self) -> Result<(), DrawError> {
+        let Surface { columns, rows, .. } = *self;
+        let (points, values) = (self.points.len(), self.values.len());
+        let wanted = columns.checked_mul(rows);
+        if wanted == Some(points) && wanted == Some(values) {
+            return Ok(());
+        }
+        // A product past usize fits no list: report it as the grid it is, without overflowing the message.
+        let (columns, rows) = if wanted.is_some() {
+            (columns, rows)
+        } else {
+            (0, 0)
+        };
+        Err(DrawError::Grid {
+            columns,
+            rows,
+            points,
+            values,
+        })
+    }
+
+    /// Unit normals at the points from differences along the grid; zero where the grid is degenerate.
+    fn normals(&self) -> Vec<[f64; 3]> {
+        let (m, n) = (self.columns, self.rows);
+        let at = |row: usize, column: usize| self.points[row * m + column];
+        let mut normals = Vec::with_capacity(self.points.len());
+        for row in 0..n {
+            for column in 0..m {
+                let along = minus(
+                    at(row, (column + 1).min(m - 1)),
+                    at(row, column.saturating_sub(1)),
+                );
+                let across = minus(
+                    at((row + 1).min(n - 1), column),
+                    at(row.saturating_sub(1), column),
+                );
+                normals.push(unit(cross(along, across)));
+            }
+        }
+        normals
+    }
+}
+
+/// A parallel view: unit axes of the page in space, and where the page lies on it.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Direction in space that runs to the right on the page.
+    pub right: [f64; 3],
+    /// Direction that runs up the page.
+    pub up: [f64; 3],
+    /// Direction towards the viewer.
+    pub toward: [f64; 3],
+    /// Page coordinates, in units of D, of the picture's top left corner.
+    pub corner: (f64, f64),
+    /// Pixels per unit of D.
+    pub scale: f64,
+    /// Width and height of the picture in pixels.
+    pub size: (usize, usize),
+}
+
+impl View {
+    /// The axes (right, up, toward) for a viewer in direction `toward`; the tube's axis z stays level on the page.
+    #[must_use]
+    pub fn axes(toward: [f64; 3]) -> [[f64; 3]; 3] {
+        let toward = unit(toward);
+        let right = unit(minus([0.0, 0.0, 1.0], toward.map(|c| c * toward[2])));
+        [right, cross(toward, right), toward]
+    }
+}
+
+/// What the samples of the picture hold: light, and what lies there.
+struct Samples {
+    width: usize,
+    height: usize,
+    depth: Vec<f32>,
+    /// Number of the surface plus one, 0 for none.
+    surface: Vec<u16>,
+    light: Vec<[f32; 3]>,
+}
+
+/// A corner of a triangle: page place in samples, depth towards the viewer, normal in page axes, field.
+#[derive(Clone, Copy)]
+struct Corner {
+    place: [f64; 3],
+    normal: [f64; 3],
+    value: f64,
+}
+
+/// Draws surfaces on white; `range` spans the colour `map`.
+///
+/// A pixel is the mean of `samples` by `samples` samples, of fewer in huge pictures.
+///
+/// # Errors
+/// [`DrawError::Grid`] for a surface whose lists do not fill its grid, [`DrawError::Size`] for an absurd picture.
+pub fn render(
+    surfaces: &[Surface],
+    view: &View,
+    range: (f64, f64),
+    map: Map,
+    samples: usize,
+) -> Result<Image, DrawError> {
+    let image = Image::white(view.size.0 as f64, view.size.1 as f64)?;
+    // Twenty bytes a sample: a huge picture gets fewer of them, and needs fewer.
+    let pixels = image.pixels.len();
+    let samples = (1..=samples.min(4))
+        .rev()
+        .find(|s| pixels * s * s < 40_000_000)
+        .unwrap_or(1);
+    let (width, height) = (image.width * samples, image.height * samples);
+    let count = width * height;
+    let mut buffer = Samples {
+        width,
+        height,
+        depth: vec![f32::NEG_INFINITY; count],
+        surface: vec![0; count],
+        light: vec![[1.0; 3]; count],
+    };
+    let shader = Shader::new(range, map);
+    let scale = view.scale * samples as f64;
+    for (number, surface) in surfaces.iter().enumerate() {
+        surface.check()?;
+        if surface.columns < 2 || surface.rows < 2 {
+            continue;
+        }
+        let id = (number % usize::from(u16::MAX)) as u16 + 1;
+        let normals = surface.normals();
+        let corners: Vec<Corner> = (0..surface.points.len())
+            .map(|i| {
+                let (p, n) = (surface.points[i], normals[i]);
+                let across = (dot(p, view.right) - view.corner.0) * scale;
+                let down = (view.corner.1 - dot(p, view.up)) * scale;
+                let place = [across, down, dot(p, view.toward) * scale];
+                let normal = [dot(n, view.right), dot(n, view.up), dot(n, view.toward)];
+                Corner {
+                    place,
+                    normal,
+                    value: surface.values[i],
+                }
+            })
+            .collect();
+        for row in 0..surface.rows - 1 {
+            for column in 0..surface.columns - 1 {
+                let i = row * surface.columns + column;
+                let (a, b, c, d) = (i, i + 1, i + surface.columns, i + surface.columns + 1);
+                buffer.triangle([&corners[a], &corners[b], &corners[d]], id, &shader);
+                buffer.triangle([&corners[a], &corners[d], &corners[c]], id, &shader);
+            }
+        }
+    }
+    Ok(buffer.resolve(image, samples))
+}
+
+impl Samples {
+    fn triangle(&mut self, corners: [&Corner; 3], id: u16, shader: &Shader) {
+        let [a, b, c] = corners.map(|c| c.place);
+        let double_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+        if double_area == 0.0 || !double_area.is_finite() || !(a[2] + b[2] + c[2]).is_finite() {
+            return;
+        }
+        let (left, right) = (a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
+        let (top, bottom) = (a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
+        // Samples sit in the middle of their squares; `as` saturates outside the picture.
+        let columns = (left - 0.5).ceil().max(0.0) as usize
+            ..((right + 0.5).floor().max(0.0) as usize).min(self.width);
+        let rows = (top - 0.5).ceil().max(0.0) as usize
+            ..((bottom + 0.5).floor().max(0.0) as usize).min(self.height);
+        // Barycentric weights of b and c are affine in the place.
+        let per_area = 1.0 / double_area;
+        let (bx, by) = ((c[1] - a[1]) * per_area, (a[0] - c[0]) * per_area);
+        let (cx, cy) = ((a[1] - b[1]) * per_area, (b[0] - a[0]) * per_area);
+        for row in rows {
+            let y = row as f64 + 0.5 - a[1];
+            for column in columns.clone() {
+                let x = column as f64 + 0.5 - a[0];
+                let wb = bx * x + by * y;
+                let wc = cx * x + cy * y;
+                let wa = 1.0 - wb - wc;
+                if wa < -1e-9 || wb < -1e-9 || wc < -1e-9 {
+                    continue;
+                }
+                let depth = (wa * a[2] + wb * b[2] + wc * c[2]) as f32;
+                let sample = row * self.width + column;
+                if depth <= self.depth[sample] {
+                    continue;
+                }
+                let [p, q, r] = corners;
+                let normal =
+                    std::array::from_fn(|i| wa * p.normal[i] + wb * q.normal[i] + wc * r.normal[i]);
+                let value = wa * p.value + wb * q.value + wc * r.value;
+                self.depth[sample] = depth;
+                self.surface[sample] = id;
+                self.light[sample] = shader.light(normal, value);
+            }
+        }
+    }
+
+    /// Means over the samples of each pixel, with a fine dark line where a surface ends or another begins.
+    fn resolve(&self, mut image: Image, samples: usize) -> Image {
+        let bytes: Vec<u8> = (0..4096).map(|i| to_byte(f64::from(i) / 4095.0)).collect();
+        let share = 1.0 / (samples * samples) as f32;
+        let across = image.width;
+        for (pixel, out) in image.pixels.iter_mut().enumerate() {
+            let (row, column) = (pixel / across * samples, pixel % across * samples);
+            let mut sum = [0.0f32; 3];
+            for y in row..row + samples {
+                for x in column..column + samples {
+                    let sample = y * self.width + x;
+                    let dim = if self.is_edge(x, y, samples) {
+                        0.12
+                    } else {
+                        1.0
+                    };
+                    for (s, l) in sum.iter_mut().zip(self.light[sample]) {
+                        *s += l * dim;
+                    }
+                }
+            }
+            *out = sum.map(|s| bytes[((s * share).clamp(0.0, 1.0) * 4095.0) as usize]);
+        }
+        image
+    }
+
+    /// Whether another surface, nothing, or a step in depth begins `reach` samples to the right or below.
+    fn is_edge(&self, x: usize, y: usize, reach: usize) -> bool {
+        let here = y * self.width + x;
+        let differs = |there: usize, back: Option<usize>| {
+            if self.surface[here] != self.surface[there] {
+                return true;
+            }
+            // A fold before its own far side: a jump, not a slope that was as steep before.
+            let rise = |i: usize| (self.depth[here] - self.depth[i]).abs();
+            let jump = rise(there);
+            let before = back.map_or(0.0, |i| {
+                if self.surface[i] == self.surface[here] {
+                    rise(i)
+                } else {
+                    0.0
+                }
+            });
+            self.surface[here] != 0 && jump > 12.0 * reach as f32 && jump > 6.0 * before
+        };
+        let (left, above) = (
+            x.checked_sub(reach).map(|_| here - reach),
+            y.checked_sub(reach),
+        );
+        let above = above.map(|_| here - reach * self.width);
+        (x + reach < self.width && differs(here + reach, left))
+            || (y + reach < self.height && differs(here + reach * self.width, above))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WHITE: [u8; 3] = [255; 3];
+
+    fn view() -> View {
+        let (right, up, toward) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+        View {
+            right,
+            up,
+            toward,
+            corner: (0.0, 20.0),
+            scale: 1.0,
+            size: (20, 20),
+        }
+    }
+
+    /// A square over x and y from `low` to `high` at height z, of one value.
+    fn square(low: f64, high: f64, z: f64, value: f64) -> Surface {
+        let points = vec![
+            [low, low, z],
+            [high, low, z],
+            [low, high, z],
+            [high, high, z],
+        ];
+        Surface {
+            columns: 2,
+            rows: 2,
+            points,
+            values: vec![value; 4],
+        }
+    }
+
+    #[test]
+    fn a_square_covers_its_pixels() {
+        let image = render(
+            &[square(4.0, 10.0, 0.0, 0.5)],
+            &view(),
+            (0.0, 1.0),
+            Map::Viridis,
+            1,
+        )
+        .unwrap();
+        let inked: Vec<usize> = (0..400).filter(|&i| image.pixels[i] != WHITE).collect();
+        // y from 4 to 10 is up: rows 10 to 15, plus the line of the edge to the left and above.
+        for row in 10..16 {
+            for column in 4..10 {
+                assert!(
+                    inked.contains(&(row * 20 + column)),
+                    "row {row}, column {column}"
+                );
+            }
+        }
+        assert!(
+            inked
+                .iter()
+                .all(|i| (9..16).contains(&(i / 20)) && (3..10).contains(&(i % 20)))
+        );
+    }
+
+    #[test]
+    fn the_nearer_surface_hides_the_other_in_either_order() {
+        let (near, far) = (square(2.0, 18.0, 1.0, 1.0), square(2.0, 18.0, -1.0, 0.0));
+        let one = render(
+            &[near.clone(), far.clone()],
+            &view(),
+            (0.0, 1.0),
+            Map::Viridis,
+            2,
+        )
+        .unwrap();
+        let other = render(&[far, near], &view(), (0.0, 1.0), Map::Viridis, 2).unwrap();
+        assert_eq!(one, other);
+        let [r, _, b] = one.pixels[10 * 20 + 10];
+        assert!(
+            r > 2 * b,
+            "the yellow end of the map lies in front: {r}, {b}"
+        );
+    }
+
+    #[test]
+    fn bad_grids_and_points() {
+        let mut short = square(2.0, 18.0, 0.0, 0.5);
+        short.values.pop();
+        assert!(matches!(
+            render(&[short], &view(), (0.0, 1.0), Map::Viridis, 1),
+            Err(DrawError::Grid { .. })
+        ));
+        let mut hole = square(2.0, 18.0, 0.0, f64::NAN);
+        hole.points[0][0] = f64::NAN;
+        assert!(
+            render(&[hole], &view(), (0.0, 1.0), Map::Viridis, 1)
+                .unwrap()
+                .pixels
+                .iter()
+                .all(|&p| p == WHITE)
+        );
+    }
+
+    #[test]
+    fn the_tube_lies_level() {
+        let [right, up, toward] = View::axes([0.4, 0.8, -0.3]);
+        assert!(dot([0.0, 0.0, 1.0], up).abs() < 1e-12 && right[2] > 0.0);
+        assert!(dot(cross(right, up), toward) > 0.999_999);
+    }
+}
