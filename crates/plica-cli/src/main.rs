@@ -1,1 +1,38 @@
-fn main() {}
+//! The program `plica`: reads its arguments, calls the library, prints. Only this crate prints or
+//! exits.
+
+mod args;
+mod case_file;
+mod check;
+mod console;
+mod failure;
+mod interrupt;
+mod message;
+mod new;
+mod progress;
+mod run;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(answer) => {
+            // Help and version come this way too. Nobody listening is no error.
+            let _ = answer.print();
+            return ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(2));
+        }
+    };
+    let done = match arguments.command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Check { case } => check::check(&case),
+        Command::New { file } => new::new(&file),
+        Command::Completions { shell } => new::completions(shell),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

@@ -64,9 +64,9 @@ fn main() {
     )
     .unwrap();
     let t0 = std::time::Instant::now();
-    let mut report = |path: &mut Path<TubeProblem>, load: Load| {
+    let report = |path: &mut Path<TubeProblem>, load: Load, t: f64| {
         let ti = std::time::Instant::now();
-        let s = path.advance(&load, &mut ());
+        let s = path.advance(t, &mut ());
         match s {
             Ok(s) => {
                 let st = path.state();
@@ -128,16 +128,22 @@ fn main() {
             Err(e) => println!("{:?} FAILED {e}", load.muscles),
         }
     };
+    let mut l1 = load0.clone();
+    l1.muscles[0] = 0.25;
+    path.set_out(l1.clone());
+    let mut l1 = load0.clone();
+    l1.muscles[0] = 0.25;
+    path.set_out(l1.clone());
     for i in 1..=csteps {
-        let mut l = load0.clone();
-        l.muscles[0] = 1.0 - 0.75 * i as f64 / csteps as f64;
-        report(&mut path, l);
+        let t = i as f64 / csteps as f64;
+        report(&mut path, load0.towards(&l1, t), t);
     }
+    let mut l2 = l1.clone();
+    l2.muscles[1] = 1.25;
+    path.set_out(l2.clone());
     for i in 1..=rsteps {
-        let mut l = load0.clone();
-        l.muscles[0] = 0.25;
-        l.muscles[1] = 1.0 + 0.25 * i as f64 / rsteps as f64;
-        report(&mut path, l);
+        let t = i as f64 / rsteps as f64;
+        report(&mut path, l1.towards(&l2, t), t);
     }
     println!("{:?}", t0.elapsed());
 }

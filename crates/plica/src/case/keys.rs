@@ -77,10 +77,10 @@ impl Range {
     /// Whether a number is in the range; if not, the rule it breaks.
     pub fn broken_by(&self, x: f64) -> Option<String> {
         let rule = match (self.low, self.high) {
-            (Limit::At(low), _) if x < low => format!("must be at least {low}"),
-            (Limit::Beyond(low), _) if x <= low => format!("must be above {low}"),
-            (_, Limit::At(high)) if x > high => format!("must be at most {high}"),
-            (_, Limit::Beyond(high)) if x >= high => format!("must be below {high}"),
+            (Limit::At(low), _) if x < low => format!("must be at least {}", plain(low)),
+            (Limit::Beyond(low), _) if x <= low => format!("must be above {}", plain(low)),
+            (_, Limit::At(high)) if x > high => format!("must be at most {}", plain(high)),
+            (_, Limit::Beyond(high)) if x >= high => format!("must be below {}", plain(high)),
             _ => return None,
         };
         Some(match self.reason {
@@ -93,13 +93,13 @@ impl Range {
     pub fn words(&self) -> String {
         let low = match self.low {
             Limit::None => None,
-            Limit::At(x) => Some(format!("at least {x}")),
-            Limit::Beyond(x) => Some(format!("above {x}")),
+            Limit::At(x) => Some(format!("at least {}", plain(x))),
+            Limit::Beyond(x) => Some(format!("above {}", plain(x))),
         };
         let high = match self.high {
             Limit::None => None,
-            Limit::At(x) => Some(format!("at most {x}")),
-            Limit::Beyond(x) => Some(format!("below {x}")),
+            Limit::At(x) => Some(format!("at most {}", plain(x))),
+            Limit::Beyond(x) => Some(format!("below {}", plain(x))),
         };
         let ends: Vec<String> = [low, high].into_iter().flatten().collect();
         match self.reason {
@@ -120,6 +120,15 @@ impl Key {
     /// The name of the key without the tables around it.
     pub fn name(&self) -> &'static str {
         self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+}
+
+/// A number as a person would write it.
+fn plain(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0".to_owned(),
+        size if (1e-3..1e6).contains(&size) => format!("{x}"),
+        _ => format!("{x:e}"),
     }
 }
 

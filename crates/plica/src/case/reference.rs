@@ -88,6 +88,7 @@ fn row(key: &Key) -> String {
     let default = match key.given {
         Given::Always(_) => "needed".to_owned(),
         Given::Or(default) => format!("`{default}`"),
+        Given::OrElse("", _) => "–".to_owned(),
         Given::OrElse(words, _) => words.to_owned(),
     };
     format!(

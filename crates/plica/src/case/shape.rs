@@ -25,16 +25,12 @@ fn table(pattern: &str, path: &str, table: &DeTable, problems: &mut Problems) {
         } else if names.contains(&"<name>") {
             self::value(&join(pattern, "<name>"), &path, value, problems);
         } else {
-            problems.key(
-                &path,
-                "is not a key of a case",
-                meant(name, pattern, &names),
-            );
+            problems.key(&path, "not a key of a case", meant(name, pattern, &names));
         }
     }
     if chooses(pattern) {
         if table.len() != 1 {
-            let rule = format!("must name one of {}", names.join(", "));
+            let rule = format!("must be exactly one of {}", names.join(", "));
             problems.key(path, rule, None);
         }
         return;
@@ -48,7 +44,7 @@ fn table(pattern: &str, path: &str, table: &DeTable, problems: &mut Problems) {
                 Kind::Tables => format!("write [[{name}]]"),
                 _ => format!("write {name} = {example}, say"),
             };
-            problems.key(&join(path, name), "is missing", Some(cure));
+            problems.key(&join(path, name), "missing", Some(cure));
         }
     }
 }

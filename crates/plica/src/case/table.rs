@@ -93,11 +93,11 @@ pub const KEYS: &[Key] = &[
         "Relaxation steps before a step is halved."),
     key("solver.relaxation_drag", Number, "E/D²", Or("1.0"), above(0.0).to(1e6),
         "Drag at which relaxation starts, per unit volume."),
-    key("solver.halvings", Count, "", Or("6"), from(0.0).to(20.0),
+    key("solver.halvings", Count, "", Or("8"), from(0.0).to(20.0),
         "How often a step may be halved before the run stops."),
 
     key("solver.pseudo_time.drag", Number, "", OrElse("100 for newmark, 5 for dragged", "100.0"), above(0.0).to(1e9),
-        "ηD/(EΔτ), the drag per pseudo-time step. A weak drag lets the tube jump to either side; a strong one holds it to the side it moves to."),
+        "ηD/(EΔτ), the drag per pseudo-time step. The side to which a tube folds can depend on it, and on `ramp`."),
     key("solver.pseudo_time.ramp", Count, "", Or("10"), from(1.0).to(100000.0),
         "Pseudo-time steps over which each step of a stage is ramped."),
     key("solver.pseudo_time.tolerance", Number, "D", Or("1e-5"), above(0.0).to(0.01),

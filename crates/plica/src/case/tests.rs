@@ -41,9 +41,8 @@ fn path_in_base(key: &Key) -> String {
     key.path.replace("[]", "[1]").replace("<name>", name)
 }
 
-/// Writes a value into a case, and drops the word that a table replaces.
-fn put(case: &mut Table, path: &str, literal: &str) {
-    let value = format!("x = {literal}").parse::<Table>().unwrap()["x"].clone();
+/// Puts a mark into a case, where a value will be written.
+fn put_mark(case: &mut Table, path: &str) {
     let (tables, last) = path.rsplit_once('.').unwrap_or(("", path));
     let mut at = case;
     for step in tables.split('.').filter(|step| !step.is_empty()) {
@@ -59,13 +58,16 @@ fn put(case: &mut Table, path: &str, literal: &str) {
         };
         at = next.as_table_mut().unwrap();
     }
-    at.insert(last.to_owned(), value);
+    at.insert(last.to_owned(), Value::String(MARK.into()));
 }
+
+const MARK: &str = "@";
 
 fn read_with(key: &Key, literal: &str) -> Result<Plan, CaseError> {
     let mut case = base(key);
-    put(&mut case, &path_in_base(key), literal);
-    read(&toml::to_string(&case).unwrap(), "case")
+    put_mark(&mut case, &path_in_base(key));
+    let marked = toml::to_string(&case).unwrap();
+    read(&marked.replace(&format!("\"{MARK}\""), literal), "case")
 }
 
 #[test]
@@ -252,6 +254,50 @@ fn ranges_end_where_the_table_says() {
     }
 }
 
+#[test]
+fn nothing_that_can_be_written_makes_the_reader_panic() {
+    let odd = [
+        "nan",
+        "-1",
+        "0",
+        "1e300",
+        "5e-324",
+        "99999999999999999999",
+        "-9223372036854775808",
+        "\"x\"",
+        "\"\"",
+        "true",
+        "[]",
+        "{}",
+        "[[]]",
+        "[1]",
+        "[0.0, 0.0]",
+        "[nan, inf]",
+        "[{}]",
+        "[1, {}]",
+        "1979-05-27",
+        "{ x = 1 }",
+        "{ fold = 0 }",
+        "{ table = [] }",
+    ];
+    for key in KEYS {
+        for literal in odd {
+            let _ = read_with(key, literal);
+        }
+    }
+    for end in (0..STARTER.len()).filter(|&end| STARTER.is_char_boundary(end)) {
+        let _ = read(&STARTER[..end], "case");
+        let _ = read(&STARTER[end..], "case");
+    }
+    for name in ["'a.b'", "''", "'stages[1]'", "'[0]'", "\"\\u001b\"", "'ä'"] {
+        let _ = read(&BASE.replace("circular]", &format!("{name}]")), "case");
+        let _ = read(
+            &BASE.replace("drive.colon", &format!("drive.{name}")),
+            "case",
+        );
+    }
+}
+
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
@@ -286,6 +332,44 @@ fn all_cases_are_read_and_mean_the_same_tube() {
 
     let starter = read(STARTER, "starter").unwrap();
     assert_eq!((&main.tube, &main.mesh), (&starter.tube, &starter.mesh));
+}
+
+#[test]
+fn a_case_means_what_it_says() {
+    let text = "symmetry = { fold = 4 }\n\
+        [tube]\ndiameter = 2.0\nlength = 5.0\n\
+        [ends]\nileum = 'sliding'\n\
+        [muscles.m]\ndirection = 'longitudinal'\nzone = [1.0, 3.0]\n\
+        profile = { smooth-box = { edge = 0.25 } }\n\
+        [[stages]]\ndrive.m.length_ratio = 1.25\ndrive.colon.twist_degrees = 180\n\
+        [[stages]]\nname = 'push'\nsteps = 3\ndrive.ileum.displacement = -0.5\n\
+        [solver]\nscheme = 'dragged'\n";
+    let plan = read(text, "named").unwrap();
+    assert_eq!((plan.title.as_str(), plan.tube.length), ("named", 2.5));
+    assert_eq!(
+        (plan.tube.thickness, plan.tube.muscles[0].zone),
+        (0.06, [0.5, 1.5])
+    );
+    assert_eq!(plan.mesh.rings(plan.symmetry), 15);
+    // Elements end at the kinks of the profile.
+    let edges: Vec<f64> = plan.mesh.refinements.iter().map(|r| r.to).collect();
+    assert_eq!(edges, [0.75, 1.25, 1.5]);
+
+    let names: Vec<&str> = plan.stages.iter().map(|s| s.name.as_str()).collect();
+    assert_eq!((names, plan.stages[1].steps), (vec!["stage-1", "push"], 3));
+    // What a stage does not name stays.
+    let load = &plan.stages[1].load;
+    assert_eq!(
+        (load.muscles[0], load.ends[0].twist),
+        (1.25, std::f64::consts::PI)
+    );
+    assert_eq!(load.ends[1].displacement, -0.25);
+
+    let crate::solve::Scheme::PseudoTime(scheme) = plan.solver.scheme else {
+        panic!("{:?}", plan.solver.scheme)
+    };
+    assert_eq!(scheme.integrator, crate::solve::Integrator::BackwardEuler);
+    assert_eq!((scheme.drag, scheme.ramp, scheme.settle), (5.0, 10, true));
 }
 
 #[test]

@@ -7,16 +7,36 @@ use super::{
 };
 
 /// How often a step is halved for Newton before relaxation takes over.
-const NEWTON_HALVINGS: usize = 2;
+const NEWTON_HALVINGS: usize = 5;
 
-/// A way through states. It owns the last accepted one.
+/// Step of the difference that gives ∂R/∂t, as a fraction of a leg.
+const DIFFERENCE: f64 = 1e-5;
+
+/// A way through states, leg by leg; a leg is a straight way through loads, t from 0 to 1. It owns
+/// the last accepted state.
 #[derive(Debug)]
 pub struct Path<'a, P: Equilibrium> {
     problem: &'a P,
     settings: Settings,
     state: State<P::Load>,
+    /// The leg, and how far along it the state is.
+    from: P::Load,
+    to: P::Load,
+    t: f64,
+    /// The state before on this leg, unless a snap lies between.
+    behind: Option<Behind>,
+    /// How often the last step had to be halved; the next begins there.
+    pace: usize,
     /// u̇ of the pseudo-time.
     velocity: Vec<f64>,
+}
+
+/// A state of the path and its tangent du/dt.
+#[derive(Clone, Debug)]
+struct Behind {
+    t: f64,
+    u: Vec<f64>,
+    tangent: Vec<f64>,
 }
 
 /// How an accepted state was reached.
@@ -52,11 +72,17 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     ) -> Result<Self, P::Broken> {
         let forces = problem.forces(&load, &u)?;
         let velocity = vec![0.0; u.len()];
-        let state = accepted(problem, load, u, &forces);
+        let state = accepted(problem, load.clone(), u, &forces);
+        let (from, to) = (load.clone(), load);
         Ok(Self {
             problem,
             settings,
             state,
+            from,
+            to,
+            t: 0.0,
+            behind: None,
+            pace: 0,
             velocity,
         })
     }
@@ -66,75 +92,86 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         &self.state
     }
 
-    /// Goes to a load. On failure the path stays at the last state that it found on the way.
-    pub fn advance(
-        &mut self,
-        load: &P::Load,
-        watch: &mut dyn Watch,
-    ) -> Result<Step, PathError<P::Broken>> {
+    /// Sets out on a leg from where the path is to a load.
+    pub fn set_out(&mut self, to: P::Load) {
+        (self.from, self.to, self.t) = (self.state.load.clone(), to, 0.0);
+        (self.behind, self.pace) = (None, 0);
+    }
+
+    /// How far along its leg the path is, 0 to 1.
+    pub fn reached(&self) -> f64 {
+        self.t
+    }
+
+    /// Goes on to `t` of the leg. On failure the path stays at the last state that it found on
+    /// the way.
+    pub fn advance(&mut self, t: f64, watch: &mut dyn Watch) -> Result<Step, PathError<P::Broken>> {
         match self.settings.scheme.clone() {
-            Scheme::Static => self.advance_static(load, watch),
-            Scheme::PseudoTime(scheme) => self.advance_dragged(load, &scheme, watch),
+            Scheme::Static => self.advance_static(t, watch),
+            Scheme::PseudoTime(scheme) => self.advance_dragged(t, &scheme, watch),
         }
     }
 
     /// Newton from the path's tangent. Where that fails the step is halved, since a branch that
-    /// bends can still be followed in shorter steps; where it still fails the branch has ended,
-    /// and relaxation follows the tube down to another.
+    /// bends can still be followed in shorter steps; where it still fails relaxation takes over,
+    /// and follows the tube down to whatever stable state comes next.
     fn advance_static(
         &mut self,
-        target: &P::Load,
+        target: f64,
         watch: &mut dyn Watch,
     ) -> Result<Step, PathError<P::Broken>> {
-        let from = self.state.load.clone();
         let mut step = Step {
             method: Method::Newton,
             iterations: 0,
             drag_work: 0.0,
         };
-        let (mut t, mut length, mut halvings) = (0.0, 1.0, 0);
-        while t < 1.0 {
-            let load = self.problem.between(&from, target, t + length);
-            let newton = match self.try_newton(&load, &mut step, watch) {
-                Ok(()) => {
-                    t += length;
-                    if halvings > 0 && t < 1.0 && (t / (2.0 * length)).fract() == 0.0 {
-                        (length, halvings) = (2.0 * length, halvings - 1);
-                    }
-                    continue;
-                }
-                Err(failed) => failed,
-            };
-            let relaxation = if matches!(newton, Failure::Stopped) {
-                newton.clone()
-            } else if halvings < NEWTON_HALVINGS.min(self.settings.halvings) {
-                (length, halvings) = (0.5 * length, halvings + 1);
-                continue;
+        let (begin, whole) = (self.t, target - self.t);
+        // The step is cut into 2^halvings pieces, `done` of them behind.
+        let (mut halvings, mut done) = (self.pace, 0_u64);
+        while done < 1 << halvings {
+            let reach = begin + whole * (done + 1) as f64 / (1_u64 << halvings) as f64;
+            let reach = if done + 1 == 1 << halvings {
+                target
             } else {
-                match self.try_relaxation(&load, &mut step, watch) {
-                    Ok(()) => {
-                        t += length;
-                        continue;
-                    }
-                    Err(failed) => failed,
-                }
+                reach
             };
-            let stopped = matches!(relaxation, Failure::Stopped);
-            if stopped || halvings >= self.settings.halvings {
-                return Err(PathError {
-                    newton,
-                    relaxation,
-                    iterations: step.iterations,
-                });
+            let mut tried = self.try_newton(reach, &mut step, watch);
+            let mut newton = None;
+            if let Err(failed) = &tried
+                && halvings >= NEWTON_HALVINGS.min(self.settings.halvings)
+                && !matches!(failed, Failure::Stopped)
+            {
+                newton = Some(failed.clone());
+                tried = self.try_relaxation(reach, &mut step, watch);
             }
-            (length, halvings) = (0.5 * length, halvings + 1);
+            match tried {
+                Ok(()) => {
+                    done += 1;
+                    if halvings > 0 && done % 2 == 0 {
+                        (halvings, done) = (halvings - 1, done / 2);
+                    }
+                    self.pace = halvings;
+                }
+                Err(failed) => {
+                    if matches!(failed, Failure::Stopped) || halvings >= self.settings.halvings {
+                        let newton = newton.unwrap_or_else(|| failed.clone());
+                        let iterations = step.iterations;
+                        return Err(PathError {
+                            newton,
+                            relaxation: failed,
+                            iterations,
+                        });
+                    }
+                    (halvings, done) = (halvings + 1, 2 * done);
+                }
+            }
         }
         Ok(step)
     }
 
     fn try_newton(
         &mut self,
-        load: &P::Load,
+        t: f64,
         step: &mut Step,
         watch: &mut dyn Watch,
     ) -> Result<(), Failure<P::Broken>> {
@@ -144,42 +181,59 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                 negative_pivots: self.state.negative_pivots,
             });
         }
-        let start = self.predict(load);
-        let found = newton(self.problem, load, start, &self.settings, watch)
+        let load = self.load_at(t);
+        let tangent = self.tangent();
+        let start = self.predict(t, &load, tangent.as_deref());
+        let found = newton(self.problem, &load, start, &self.settings, watch)
             .inspect_err(|failed| step.iterations += spent(failed))?;
-        self.accept(load, found, step);
+        let behind = tangent.map(|tangent| Behind {
+            t: self.t,
+            u: self.state.u.clone(),
+            tangent,
+        });
+        self.accept(t, load, found, step);
+        self.behind = behind;
         Ok(())
     }
 
     fn try_relaxation(
         &mut self,
-        load: &P::Load,
+        t: f64,
         step: &mut Step,
         watch: &mut dyn Watch,
     ) -> Result<(), Failure<P::Broken>> {
-        // The last state, if its ends need not move; else the prediction, which moves them gently.
+        let load = self.load_at(t);
+        // The last state, if its ends need not move; else along the tangent, which moves them
+        // gently.
         let mut start = self.state.u.clone();
-        self.problem.impose(load, &mut start);
+        self.problem.impose(&load, &mut start);
         if start != self.state.u {
-            start = self.predict(load);
+            self.behind = None;
+            start = self.predict(t, &load, self.tangent().as_deref());
         }
-        let found = relaxation(self.problem, load, start, &self.settings, watch)
+        let found = relaxation(self.problem, &load, start, &self.settings, watch)
             .inspect_err(|failed| step.iterations += spent(failed))?;
-        self.accept(load, found, step);
+        self.accept(t, load, found, step);
+        self.behind = None;
         step.method = Method::Relaxation;
         Ok(())
     }
 
-    fn accept(&mut self, load: &P::Load, found: Found, step: &mut Step) {
+    fn load_at(&self, t: f64) -> P::Load {
+        self.problem.between(&self.from, &self.to, t)
+    }
+
+    fn accept(&mut self, t: f64, load: P::Load, found: Found, step: &mut Step) {
         step.iterations += found.iterations + 1;
         step.drag_work += found.drag_work;
-        self.state = accepted(self.problem, load.clone(), found.u, &found.forces);
+        self.state = accepted(self.problem, load, found.u, &found.forces);
+        self.t = t;
     }
 
     /// Pseudo-time with a fixed drag, then to equilibrium without if the scheme says so.
     fn advance_dragged(
         &mut self,
-        load: &P::Load,
+        t: f64,
         scheme: &PseudoTime,
         watch: &mut dyn Watch,
     ) -> Result<Step, PathError<P::Broken>> {
@@ -188,34 +242,28 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             iterations: 0,
             drag_work: 0.0,
         };
-        let mut velocity = self.velocity.clone();
-        let (from, u) = (self.state.load.clone(), self.state.u.clone());
+        let (load, settings) = (self.load_at(t), &self.settings);
         let fail = |failed: Failure<P::Broken>, iterations| PathError {
             newton: failed.clone(),
             relaxation: failed,
             iterations,
         };
-        let settings = &self.settings;
+        let mut velocity = self.velocity.clone();
         let dragged = pseudo_time(
             self.problem,
-            &from,
-            load,
-            u,
+            [&self.state.load, &load],
+            self.state.u.clone(),
             &mut velocity,
             scheme,
             settings,
             watch,
         )
-        .map_err(|failed| {
-            let iterations = spent(&failed);
-            fail(failed, iterations)
-        })?;
-        self.velocity = velocity;
+        .map_err(|failed| fail(failed, 0))?;
         step.iterations += dragged.iterations;
         step.drag_work += dragged.drag_work;
         let found = if scheme.settle {
-            self.velocity.fill(0.0);
-            relaxation(self.problem, load, dragged.u, settings, watch)
+            velocity.fill(0.0);
+            relaxation(self.problem, &load, dragged.u, settings, watch)
                 .map_err(|failed| fail(failed, step.iterations))?
         } else {
             Found {
@@ -224,36 +272,85 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                 ..dragged
             }
         };
-        self.accept(load, found, &mut step);
+        self.velocity = velocity;
+        self.accept(t, load, found, &mut step);
         Ok(step)
     }
 
-    /// Where the path's tangent leads: K Δu = −R(uₙ, load) − K d, d the motion of the supports.
-    fn predict(&self, load: &P::Load) -> Vec<f64> {
-        let (problem, given) = (self.problem, self.problem.given());
-        let mut u = self.state.u.clone();
-        problem.impose(load, &mut u);
-        let motion: Vec<f64> = u.iter().zip(&self.state.u).map(|(a, b)| a - b).collect();
-        let (Some(factor), Ok(forces)) = (&self.state.factor, problem.forces(load, &self.state.u))
-        else {
-            return u;
-        };
-        if factor.negative_pivots() > 0 {
-            return u;
-        }
-        let mut step: Vec<f64> = forces.residual.iter().map(|r| -r).collect();
-        if motion.iter().any(|&d| d != 0.0) {
+    /// The path's tangent du/dt at the state: K du/dt = −∂R/∂t, the supports moving as they do.
+    /// None where the tangent stiffness is singular or the residual does not exist.
+    fn tangent(&self) -> Option<Vec<f64>> {
+        let (problem, given, u) = (self.problem, self.problem.given(), &self.state.u);
+        let factor = self.state.factor.as_ref()?;
+        // Central difference in t; the residual is smooth in the load.
+        let at = |t: f64| {
+            let load = self.load_at(t);
+            let mut held = u.clone();
+            problem.impose(&load, &mut held);
             problem
-                .tangent(&self.state.load, &self.state.u)
-                .multiply_add(-1.0, &motion, &mut step);
+                .forces(&load, u)
+                .ok()
+                .map(|forces| (forces.residual, held))
+        };
+        let (after, held_after) = at(self.t + DIFFERENCE)?;
+        let (before, held_before) = at(self.t - DIFFERENCE)?;
+        let slope = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            a.iter()
+                .zip(b)
+                .map(|(a, b)| (a - b) / (2.0 * DIFFERENCE))
+                .collect()
+        };
+        let motion = slope(&held_after, &held_before);
+        let mut tangent = slope(&before, &after);
+        if motion.iter().any(|&d| d != 0.0) {
+            let K = problem.tangent(&self.state.load, u);
+            K.multiply_add(-1.0, &motion, &mut tangent);
         }
-        for i in 0..step.len() {
+        for i in 0..tangent.len() {
             if given[i] {
-                step[i] = motion[i];
+                tangent[i] = motion[i];
             }
         }
-        factor.solve(&mut step);
-        self.state.u.iter().zip(&step).map(|(u, s)| u + s).collect()
+        factor.solve(&mut tangent);
+        Some(tangent)
+    }
+
+    /// Where the path leads: along its tangent, or along the cubic through the state before and
+    /// this one with the tangents of both, whichever comes closer to equilibrium.
+    fn predict(&self, t: f64, load: &P::Load, tangent: Option<&[f64]>) -> Vec<f64> {
+        let (problem, u, ahead) = (self.problem, &self.state.u, t - self.t);
+        let Some(tangent) = tangent else {
+            let mut u = u.clone();
+            problem.impose(load, &mut u);
+            return u;
+        };
+        let mut line: Vec<f64> = u.iter().zip(tangent).map(|(u, v)| u + ahead * v).collect();
+        problem.impose(load, &mut line);
+        let Some(behind) = &self.behind else {
+            return line;
+        };
+        // Hermite's cubic on [0, 1] = [behind, state], read at s beyond 1.
+        let back = self.t - behind.t;
+        let s = 1.0 + ahead / back;
+        let [a, b, c, d] = [
+            (2.0 * s - 3.0) * s * s + 1.0,
+            ((s - 2.0) * s + 1.0) * s * back,
+            (3.0 - 2.0 * s) * s * s,
+            (s - 1.0) * s * s * back,
+        ];
+        let mut cubic: Vec<f64> = (0..u.len())
+            .map(|i| a * behind.u[i] + b * behind.tangent[i] + c * u[i] + d * tangent[i])
+            .collect();
+        problem.impose(load, &mut cubic);
+        let imbalance = |u: &[f64]| {
+            let forces = problem.forces(load, u);
+            forces.map_or(f64::INFINITY, |forces| forces.imbalance(problem.given()))
+        };
+        if imbalance(&cubic) < imbalance(&line) {
+            cubic
+        } else {
+            line
+        }
     }
 }
 

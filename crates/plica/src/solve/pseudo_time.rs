@@ -3,7 +3,7 @@
 use super::newton::free_part;
 use super::{Equilibrium, Failure, Forces, Found, Integrator, Method, PseudoTime, Settings, Watch};
 
-/// Leads the problem from `load` to `target` against a fixed drag and on until it hardly moves:
+/// Leads the problem from one load to another against a fixed drag and on until it hardly moves:
 /// C u̇ + R(u) = 0 (Okino et al. 2025, Eqs. (15)–(18)).
 ///
 /// Eliminating the acceleration from the Newmark recurrences with γ = ½, β = ¼ gives
@@ -13,8 +13,7 @@ use super::{Equilibrium, Failure, Forces, Found, Integrator, Method, PseudoTime,
 /// `velocity` is u̇ at the start and, on return, at the end.
 pub fn pseudo_time<P: Equilibrium>(
     problem: &P,
-    from: &P::Load,
-    target: &P::Load,
+    [from, target]: [&P::Load; 2],
     mut u: Vec<f64>,
     velocity: &mut Vec<f64>,
     scheme: &PseudoTime,

@@ -63,7 +63,7 @@ impl Default for Settings {
             newton_iterations: 12,
             relaxation_steps: 200,
             relaxation_drag: 1.0,
-            halvings: 6,
+            halvings: 8,
         }
     }
 }

@@ -3,8 +3,8 @@
 //! Every formula of the element kernel is written once, for any [`Real`]: `f64` in tests and
 //! reports, eight-lane vectors in the kernels. The vectors are those of `fearless_simd`, chosen
 //! for the processor at run time, so that a plain release build is fast everywhere. (Arrays of
-//! eight left to the compiler's own vectorisation were four times slower: it vectorised the
-//! loops around them instead, with gathers.)
+//! eight left to the compiler's own vectorisation took twice as long: it vectorised the loops
+//! around them instead, with gathers.)
 
 mod real;
 mod tensor2;

@@ -49,7 +49,7 @@ pub(super) fn muscles(spec: &Spec, length: f64, problems: &mut Problems) -> Vec<
 fn check_name(path: &str, name: &str, problems: &mut Problems) {
     let letter = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     if name == "colon" || name == "ileum" {
-        let rule = "is the name of an end of the tube, and cannot be a muscle's";
+        let rule = "the name of an end of the tube cannot be a muscle's";
         problems.key(path, rule, Some("give the muscle another name".into()));
     } else if name.is_empty() || name.chars().count() > 40 || !name.chars().all(letter) {
         let rule = "a muscle's name must be letters, digits, - and _, at most 40 of them";
@@ -64,11 +64,12 @@ fn profile(path: &str, profile: &spec::Profile, problems: &mut Problems) -> Prof
         spec::Profile::SmoothBox(b) => Profile::SmoothBox { edge: b.edge },
         spec::Profile::Table(points) => {
             let key = format!("{path}.profile.table");
-            if problems.none_about(&[&key])
-                && let Some(rule) = broken_rule(points)
-            {
-                let cure = "try [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]";
-                problems.value(&key, rule, Some(cure.into()));
+            if let Some(rule) = broken_rule(points) {
+                if problems.none_about(&[&key]) {
+                    let cure = "try [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]";
+                    problems.value(&key, rule, Some(cure.into()));
+                }
+                return Profile::RaisedCosine; // anything that can be evaluated
             }
             Profile::Table(points.iter().map(|&[x, s]| (x, s)).collect())
         }
@@ -83,11 +84,11 @@ fn broken_rule(points: &[[f64; 2]]) -> Option<&'static str> {
         Some("must have at least two points")
     } else if points.len() > 1000 {
         Some("must have at most 1000 points")
-    } else if first[0] != 0.0 || last[0] != 1.0 || points.windows(2).any(|w| w[1][0] <= w[0][0]) {
+    } else if first[0] != 0.0 || last[0] != 1.0 || !points.is_sorted_by(|a, b| a[0] < b[0]) {
         Some("positions must rise from 0 to 1 (they are fractions of the zone)")
     } else if points.iter().any(|p| !(0.0..=1.0).contains(&p[1])) {
         Some("activities must be from 0 to 1")
-    } else if points.iter().all(|p| p[1] < 1e-3) {
+    } else if !points.iter().any(|p| p[1] >= 1e-3) {
         Some("must be active somewhere")
     } else {
         None

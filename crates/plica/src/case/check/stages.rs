@@ -6,8 +6,10 @@ use super::super::spelling::nearest;
 use super::tube::tidy;
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
-use crate::tube::{EndMotion, Load, Support, Tube};
+use crate::tube::{Load, Support, Tube};
 
+/// The names of the ends, in the order of the load.
+const ENDS: [&str; 2] = ["colon", "ileum"];
 /// Smallest stress-free stretch that a wall is asked to take.
 const SMALLEST_STRETCH: f64 = 0.02;
 /// Shortest and longest distance of the ends, over the length at rest.
@@ -22,7 +24,11 @@ pub(super) fn stages(spec: &Spec, tube: &Tube, problems: &mut Problems) -> Vec<S
         let name = stage.name.clone();
         let name = name.unwrap_or_else(|| format!("stage-{}", i + 1));
         if stages.iter().any(|other| other.name == name) {
-            problems.value(&format!("{path}.name"), "is another stage's name", None);
+            problems.value(
+                &format!("{path}.name"),
+                "another stage has this name already",
+                None,
+            );
         }
         for (target, drive) in &stage.drive {
             let key = format!("{path}.drive.{target}");
@@ -55,7 +61,7 @@ fn check_whole(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
         let apart = 1.0 + (ileum.displacement - colon.displacement) / tube.length;
         if !ENDS_APART.contains(&apart) {
             let rule = format!(
-                "brings the ends to {} of their distance at rest",
+                "leaves the ends at {} times their distance at rest",
                 tidy(apart)
             );
             let (low, high) = (ENDS_APART.start(), ENDS_APART.end());
@@ -66,106 +72,115 @@ fn check_whole(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
     }
 }
 
+/// What a stage drives.
+#[derive(Clone, Copy)]
+enum Driven {
+    /// A muscle, by its place in the tube.
+    Muscle(usize, Direction),
+    /// The colon end or the ileum end.
+    End(usize),
+}
+
+impl Driven {
+    fn find(name: &str, tube: &Tube) -> Option<Self> {
+        if let Some(end) = ENDS.iter().position(|&end| end == name) {
+            return Some(Self::End(end));
+        }
+        let m = tube.muscles.iter().position(|m| m.name == name)?;
+        Some(Self::Muscle(m, tube.muscles[m].direction))
+    }
+
+    fn targets(self) -> &'static [&'static str] {
+        match self {
+            Self::Muscle(_, Direction::Circular) => &["diameter_ratio"],
+            Self::Muscle(_, Direction::Longitudinal) => &["length_ratio"],
+            Self::End(_) => &["displacement", "twist_degrees"],
+        }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Muscle(_, Direction::Circular) => "a circular muscle",
+            Self::Muscle(_, Direction::Longitudinal) => "a longitudinal muscle",
+            Self::End(_) => "an end of the tube",
+        }
+    }
+}
+
 /// Puts what a stage says about one muscle or end into the load.
 fn apply(
-    key: &str,
-    target: &str,
+    path: &str,
+    name: &str,
     drive: &Drive,
     spec: &Spec,
     tube: &Tube,
     load: &mut Load,
     problems: &mut Problems,
 ) {
-    let muscle = tube.muscles.iter().position(|m| m.name == target);
-    let end = ["colon", "ileum"].iter().position(|&e| e == target);
+    let Some(driven) = Driven::find(name, tube) else {
+        let names = || tube.muscles.iter().map(|m| m.name.as_str()).chain(ENDS);
+        let cure = match nearest(name, names()) {
+            Some(near) => format!("did you mean {near}?"),
+            None => {
+                let names = names().collect::<Vec<_>>().join(", ");
+                format!("add [muscles.{name}], or drive {names}")
+            }
+        };
+        return problems.key(path, "there is no muscle of this name", Some(cure));
+    };
+    let targets = driven.targets();
     let written = [
         ("diameter_ratio", drive.diameter_ratio),
         ("length_ratio", drive.length_ratio),
         ("displacement", drive.displacement),
         ("twist_degrees", drive.twist_degrees),
     ];
-    let targets = match (muscle, end) {
-        (_, Some(_)) => ["displacement", "twist_degrees"].as_slice(),
-        (Some(m), None) => match tube.muscles[m].direction {
-            Direction::Circular => &["diameter_ratio"],
-            Direction::Longitudinal => &["length_ratio"],
-        },
-        (None, None) => {
-            let names = tube.muscles.iter().map(|m| m.name.as_str());
-            let cure = match nearest(target, names.clone().chain(["colon", "ileum"])) {
-                Some(near) => format!("did you mean {near}?"),
-                None => format!("add [muscles.{target}], or drive {}", list(names)),
-            };
-            return problems.key(key, "there is no muscle of this name", Some(cure));
-        }
-    };
-    let mut said = false;
-    for (name, value) in written {
-        let Some(value) = value else { continue };
-        said = true;
-        let key = format!("{key}.{name}");
-        if !targets.contains(&name) {
-            let what = match (muscle, end) {
-                (Some(m), None) => match tube.muscles[m].direction {
-                    Direction::Circular => "a circular muscle",
-                    Direction::Longitudinal => "a longitudinal muscle",
-                },
-                _ => "an end of the tube",
-            };
-            let cure = format!("did you mean {}?", targets.join(" or "));
-            problems.key(&key, format!("does not drive {what}"), Some(cure));
-        } else if !problems.none_about(&[&key]) {
-            continue;
-        } else if let Some(m) = muscle.filter(|_| end.is_none()) {
-            load.muscles[m] = value;
-            check_stretch(&key, &tube.muscles[m], value, tube, problems);
-        } else if let Some(e) = end {
-            move_end(
-                &key,
-                name,
-                value,
-                tube.ends[e],
-                &mut load.ends[e],
-                spec,
-                problems,
-            );
-        }
-    }
-    if !said {
+    if written.iter().all(|(_, value)| value.is_none()) {
         let cure = format!("give {}", targets.join(" or "));
-        problems.key(key, "drives nothing", Some(cure));
+        problems.key(path, "drives nothing", Some(cure));
+    }
+    for (target, value) in written {
+        let Some(value) = value else { continue };
+        let key = format!("{path}.{target}");
+        if !targets.contains(&target) {
+            let rule = format!("not a target of {}", driven.words());
+            let cure = format!("did you mean {}?", targets.join(" or "));
+            problems.key(&key, rule, Some(cure));
+            continue;
+        }
+        match driven {
+            Driven::Muscle(m, _) => {
+                load.muscles[m] = value;
+                check_stretch(&key, &tube.muscles[m], value, tube, problems);
+            }
+            Driven::End(e) => {
+                let end = &mut load.ends[e];
+                match target {
+                    "displacement" => end.displacement = value / spec.tube.diameter,
+                    _ => end.twist = value.to_radians(),
+                }
+                check_held(&key, target, tube.ends[e], problems);
+            }
+        }
     }
 }
 
-fn move_end(
-    key: &str,
-    name: &str,
-    value: f64,
-    support: Support,
-    end: &mut EndMotion,
-    spec: &Spec,
-    problems: &mut Problems,
-) {
-    let (held, rule) = if name == "displacement" {
-        end.displacement = value / spec.tube.diameter;
-        let rule = "only a fixed or sliding end can be moved, and this one is free";
-        (support != Support::Free, rule)
-    } else {
-        end.twist = value.to_radians();
-        let rule = "only a fixed end can be turned";
-        (support == Support::Fixed, rule)
+/// Whether an end is held as its motion needs.
+fn check_held(key: &str, target: &str, support: Support, problems: &mut Problems) {
+    let rule = match (target, support) {
+        (_, Support::Fixed) | ("displacement", Support::Sliding) => return,
+        ("displacement", _) => "only a fixed or sliding end can be moved, and this one is free",
+        _ => "only a fixed end can be turned",
     };
-    if !held {
-        let cure = "hold it, with \"fixed\" in [ends]";
-        problems.value(key, rule, Some(cure.into()));
-    }
+    let cure = "hold it, with \"fixed\" in [ends]";
+    problems.value(key, rule, Some(cure.into()));
 }
 
 /// Whether the wall can take a target.
 fn check_stretch(key: &str, muscle: &Muscle, ratio: f64, tube: &Tube, problems: &mut Problems) {
     let zone = format!("muscles.{}.zone", muscle.name);
     let table = format!("muscles.{}.profile.table", muscle.name);
-    if !problems.none_about(&[&zone, &table, "tube.length", "tube.diameter"]) {
+    if !problems.none_about(&[key, &zone, &table, "tube.length", "tube.diameter"]) {
         return;
     }
     let smallest = muscle.smallest_stretch(ratio, tube.length);
@@ -185,11 +200,4 @@ fn check_stretch(key: &str, muscle: &Muscle, ratio: f64, tube: &Tube, problems: 
         let rule = format!("stretches the wall {largest:.0}-fold in the zone, 100 at most");
         problems.value(key, rule, None);
     }
-}
-
-fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    names
-        .chain(["colon", "ileum"])
-        .collect::<Vec<_>>()
-        .join(", ")
 }

@@ -1,0 +1,38 @@
+//! Reading a case from disk.
+
+use crate::failure::Failure;
+use plica::case;
+use plica::study::Plan;
+use std::path::Path;
+
+/// Larger than any case; smaller than the memory of any machine.
+const LARGEST: u64 = 1 << 20;
+
+/// The text of a case file and what it means.
+pub fn open(path: &Path) -> Result<(String, Plan), Failure> {
+    let trouble = |error| Failure::Files(format!("{}: {error}", path.display()));
+    let size = std::fs::metadata(path).map_err(trouble)?.len();
+    if size > LARGEST {
+        let what = format!("{} is too large for a case ({size} bytes)", path.display());
+        return Err(Failure::Usage(what));
+    }
+    let bytes = std::fs::read(path).map_err(trouble)?;
+    let Ok(text) = String::from_utf8(bytes) else {
+        let what = format!("{} is not text (a case is TOML, in UTF-8)", path.display());
+        return Err(Failure::Usage(what));
+    };
+    match case::read(&text, &stem(path)) {
+        Ok(plan) => Ok((text, plan)),
+        Err(error) => Err(Failure::Case {
+            path: path.to_owned(),
+            text,
+            error,
+        }),
+    }
+}
+
+/// The name of a case: that of its file, without the ending.
+pub fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or(path.as_os_str());
+    stem.to_string_lossy().into_owned()
+}

@@ -1,0 +1,131 @@
+//! `plica check`.
+
+use crate::failure::Failure;
+use crate::{case_file, console};
+use plica::case::advice;
+use plica::solve::{Integrator, Scheme};
+use plica::spline::Circle;
+use plica::study::{Plan, forecast};
+use plica::tube::Symmetry;
+use std::path::Path;
+
+/// Says that a case is sound, and what it takes.
+pub fn check(path: &Path) -> Result<(), Failure> {
+    let (_, plan) = case_file::open(path)?;
+    let mut page = format!("{} is sound: {}\n\n", path.display(), plan.title);
+    for (name, value) in rows(&plan) {
+        page += &format!("  {name:<10} {value}\n");
+    }
+    for warning in advice(&plan) {
+        page += &format!("\nwarning: {warning}");
+    }
+    console::say(&(page.trim_end().to_owned() + "\n"))
+}
+
+fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
+    let (tube, mesh) = (&plan.tube, &plan.mesh);
+    let forecast = forecast(plan);
+    let [axial, around, thickness] = mesh.elements();
+    let symmetry = match plan.symmetry {
+        Symmetry::Axisymmetric => "axisymmetric".to_owned(),
+        Symmetry::Fold(m) => format!("{m}-fold"),
+        Symmetry::None => "none, the full tube".to_owned(),
+    };
+    let scheme = match &plan.solver.scheme {
+        Scheme::Static => "static",
+        Scheme::PseudoTime(p) if p.integrator == Integrator::Newmark => "newmark",
+        Scheme::PseudoTime(_) => "dragged",
+    };
+    let states = 1 + plan.stages.iter().map(|stage| stage.steps).sum::<usize>();
+    let muscles: Vec<&str> = tube.muscles.iter().map(|m| m.name.as_str()).collect();
+    let mut rows = vec![
+        (
+            "tube",
+            format!("{} D long, wall {} D thick", tube.length, tube.thickness),
+        ),
+        (
+            "muscles",
+            if muscles.is_empty() {
+                "none".into()
+            } else {
+                muscles.join(", ")
+            },
+        ),
+        ("symmetry", symmetry),
+        (
+            "mesh",
+            format!(
+                "{} x {} x {} control points of degree {}",
+                mesh.axial, mesh.around, mesh.thickness, mesh.degree
+            ),
+        ),
+        (
+            "elements",
+            format!(
+                "{axial} x {around} x {thickness}, {}",
+                grouped(forecast.elements)
+            ),
+        ),
+        (
+            "unknowns",
+            format!(
+                "{} of the whole tube, {} to solve for",
+                grouped(forecast.unknowns),
+                grouped(forecast.unknowns_solved)
+            ),
+        ),
+        (
+            "circle",
+            format!(
+                "drawn to {:.1e} of its radius",
+                Circle::new(mesh.degree, mesh.around).error
+            ),
+        ),
+        (
+            "states",
+            format!("{states}, stages: {}, scheme: {scheme}", plan.stages.len()),
+        ),
+        (
+            "memory",
+            format!("about {}", memory(forecast.memory_bytes as f64)),
+        ),
+        (
+            "time",
+            format!("about {}", duration(forecast.seconds_estimate)),
+        ),
+    ];
+    if let Some(units) = &plan.units {
+        let (d, e) = (units.diameter, units.youngs_modulus);
+        let units = format!("D = {d} {}, E = {e} {}", units.length, units.stress);
+        rows.insert(1, ("units", units));
+    }
+    rows
+}
+
+/// 439200 as 439,200.
+fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+fn memory(bytes: f64) -> String {
+    match bytes {
+        b if b < 1e9 => format!("{:.0} MB", (b / 1e6).ceil()),
+        b => format!("{:.1} GB", b / 1e9),
+    }
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{:.0} s", s.ceil()),
+        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}

@@ -1,0 +1,31 @@
+//! Printing that does not mind when nobody listens.
+
+use crate::failure::Failure;
+use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
+
+/// Prints a result. A closed pipe (`plica new - | head -1`) is not an error.
+pub fn say(text: &str) -> Result<(), Failure> {
+    let mut out = stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Files(format!("standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a line about what is going on.
+pub fn tell(line: &str) {
+    // There is nowhere left to complain to.
+    let _ = writeln!(stderr().lock(), "{line}");
+}
+
+/// Whether someone looks at standard error on a terminal that can redraw a line.
+pub fn is_watched() -> bool {
+    stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+}
+
+/// Whether messages may be coloured (see no-color.org).
+pub fn is_coloured() -> bool {
+    is_watched() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}

@@ -1,0 +1,36 @@
+//! `plica new` and `plica completions`.
+
+use crate::args::Arguments;
+use crate::console;
+use crate::failure::Failure;
+use clap::CommandFactory;
+use clap_complete::Shell;
+use plica::case::STARTER;
+use std::fs::File;
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+/// Writes the starter case, never over a file that is there.
+pub fn new(path: &Path) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return console::say(STARTER);
+    }
+    let name = path.display();
+    let written = File::create_new(path).and_then(|mut file| file.write_all(STARTER.as_bytes()));
+    match written {
+        Ok(()) => console::say(&format!(
+            "wrote {name}; look at it, then: plica run {name}\n"
+        )),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Files(format!(
+            "{name} is there already; choose another name"
+        ))),
+        Err(error) => Err(Failure::Files(format!("{name}: {error}"))),
+    }
+}
+
+/// Prints a completion script.
+pub fn completions(shell: Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "plica", &mut script);
+    console::say(&String::from_utf8_lossy(&script))
+}

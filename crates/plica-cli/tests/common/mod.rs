@@ -1,0 +1,42 @@
+//! Running the program, and comparing what it says with a file.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The program, in a directory.
+pub fn plica(directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_plica"))
+        .args(arguments)
+        .current_dir(directory)
+        .output()
+        .unwrap()
+}
+
+/// The directory of these tests.
+pub fn tests() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests")
+}
+
+/// Bytes as text, with the line ends and the program's name that they have everywhere.
+pub fn text(bytes: &[u8]) -> String {
+    let text = String::from_utf8(bytes.to_vec()).unwrap();
+    text.replace("\r\n", "\n").replace("plica.exe", "plica")
+}
+
+/// Holds a text against a file beside the tests; with `PLICA_BLESS` set, writes the file.
+pub fn compare(file: &str, text: &str) {
+    let path = tests().join(file);
+    if std::env::var_os("PLICA_BLESS").is_some() {
+        std::fs::write(&path, text).unwrap();
+    }
+    let written = std::fs::read_to_string(&path)
+        .unwrap_or_default()
+        .replace("\r\n", "\n");
+    if let Some(n) = (0..)
+        .zip(written.lines().zip(text.lines()))
+        .find(|(_, (a, b))| a != b)
+    {
+        panic!("{file}, line {}: {:?} is now {:?}", n.0 + 1, n.1.0, n.1.1);
+    }
+    assert_eq!(written.len(), text.len(), "{file} ends elsewhere");
+}
