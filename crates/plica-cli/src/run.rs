@@ -6,8 +6,28 @@ use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{case_file, console};
 use plica::case::advice;
-use plica::study::{self, RunDirectory};
+use plica::report::pictures;
+use plica::study::{self, Plan, RunDirectory, Summary};
 use std::path::PathBuf;
+
+/// Draws the pictures of a run; says which. A picture that cannot be drawn does not undo a run.
+fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<String, Failure> {
+    if !plan.output.pictures {
+        return Ok(String::new());
+    }
+    let pictures = match pictures(plan, summary) {
+        Ok(pictures) => pictures,
+        Err(error) => {
+            console::tell(&format!("warning: no pictures: {error}"));
+            return Ok(String::new());
+        }
+    };
+    for (name, png) in &pictures {
+        directory.write(name, png).map_err(Failure::Study)?;
+    }
+    let names: Vec<&str> = pictures.iter().map(|(name, _)| name.as_str()).collect();
+    Ok(format!("  {:<22} {}\n", "pictures", names.join(", ")))
+}
 
 /// Runs a case.
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
@@ -35,7 +55,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let summary = study::run(&plan, &mut directory, &mut progress);
     progress.finish();
     let summary = summary.map_err(Failure::Study)?;
-    console::say(&format!("{summary}\n"))?;
+    let drawn = draw(&plan, &summary, &directory)?;
+    console::say(&format!("{summary}\n{drawn}"))?;
     if summary.finished() {
         Ok(())
     } else if interrupt.asked() {

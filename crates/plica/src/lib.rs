@@ -17,8 +17,12 @@
 
 pub mod activation;
 pub mod assembly;
+pub mod case;
+pub mod draw;
 pub mod material;
 pub mod matrix;
+pub mod measure;
+pub mod report;
 pub mod rings;
 pub mod solve;
 pub mod spline;

@@ -1,11 +1,24 @@
-//! A study: a tube led through stages of load, state by accepted state.
+//! A study: a tube led through stages of load, state by accepted state, into a run directory.
 
+mod directory;
+mod error;
+mod forecast;
 mod history;
+mod manifest;
 mod observer;
 mod plan;
 mod problem;
+mod run;
+mod summary;
+mod units;
 
+pub use directory::RunDirectory;
+pub use error::StudyError;
+pub use forecast::{Forecast, forecast};
 pub use history::Row;
 pub use observer::Observer;
 pub use plan::{Output, Plan, Stage, Units};
 pub use problem::TubeProblem;
+pub use run::run;
+pub use summary::{Ending, Snapshot, Summary};
+pub use units::Scale;

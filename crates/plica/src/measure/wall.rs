@@ -1,0 +1,142 @@
+//! One meridian of the wall, as a curve in (z, r).
+
+use super::Side;
+use crate::assembly::{Point, SplineTube};
+use crate::tube::{Load, Tube};
+
+/// A face of the wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Face {
+    /// Reference radius D/2.
+    Outer,
+    /// Reference radius D/2 − H.
+    Inner,
+}
+
+/// A meridian of a face.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wall {
+    /// Reference angle of the meridian, in radians.
+    pub angle: f64,
+    /// Reference position of its points along the tube, in D.
+    pub reference_z: Vec<f64>,
+    /// Current (z, r) of its points, in D, colon to ileum.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Wall {
+    /// The meridian at reference positions along the tube.
+    pub fn at(
+        tube: &SplineTube,
+        load: &Load,
+        u: &[f64],
+        face: Face,
+        angle: f64,
+        reference_z: Vec<f64>,
+    ) -> Self {
+        let radius = match face {
+            Face::Outer => Tube::OUTER_RADIUS,
+            Face::Inner => tube.tube.inner_radius(),
+        };
+        let point = |&z: &f64| {
+            let [z, x, y] = tube.sample(load, u, Point { z, radius, angle }).position;
+            (z, x.hypot(y))
+        };
+        Self {
+            angle,
+            points: reference_z.iter().map(point).collect(),
+            reference_z,
+        }
+    }
+
+    /// The meridian with equally many points in every element along the tube.
+    pub fn fine(
+        tube: &SplineTube,
+        load: &Load,
+        u: &[f64],
+        face: Face,
+        angle: f64,
+        per_element: usize,
+    ) -> Self {
+        let count = tube.axial.elements() * per_element;
+        Self::at(tube, load, u, face, angle, even(tube, count + 1))
+    }
+
+    /// The point nearest to the axis: (z, r).
+    pub fn narrowest(&self) -> (f64, f64) {
+        let nearest = self.points.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.copied().unwrap_or((f64::NAN, f64::NAN))
+    }
+
+    /// The steepest angle to the axis, in degrees, from 0 to 180.
+    pub fn steepest_angle_deg(&self) -> f64 {
+        let angle = |w: &[(f64, f64)]| (w[1].1 - w[0].1).abs().atan2(w[1].0 - w[0].0);
+        self.points
+            .windows(2)
+            .map(angle)
+            .fold(0.0, f64::max)
+            .to_degrees()
+    }
+
+    /// How far the wall runs back along the axis, and on which side it does so more.
+    pub fn overhang(&self) -> (f64, Side) {
+        let narrowest = self
+            .points
+            .iter()
+            .enumerate()
+            .min_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        let middle = narrowest.map_or(0, |(i, _)| i);
+        let (colon, ileum) = (
+            runs_back(&self.points[..=middle]),
+            runs_back(&self.points[middle..]),
+        );
+        let side = match colon.max(ileum) {
+            most if most <= 0.0 => Side::None,
+            most if most == colon => Side::Colon,
+            _ => Side::Ileum,
+        };
+        (runs_back(&self.points), side)
+    }
+
+    /// Axial extent of the part that lies deeper than a fraction of the depth below a radius.
+    pub fn extent_below(&self, radius: f64) -> f64 {
+        let below = self.points.iter().filter(|p| p.1 <= radius);
+        let (low, high) = below.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+            (low.min(p.0), high.max(p.0))
+        });
+        (high - low).max(0.0)
+    }
+}
+
+/// The angles of the meridians that are looked at: one if the tube is axisymmetric, else eight
+/// that spread over the sector that repeats.
+pub fn meridians(tube: &SplineTube) -> Vec<f64> {
+    let sector = &tube.sector;
+    if sector.rings == 1 {
+        return vec![0.0];
+    }
+    let span = sector.rings as f64 * sector.angle();
+    (0..8).map(|i| span * f64::from(i) / 8.0).collect()
+}
+
+/// `count` reference positions, as dense along the tube as its elements.
+pub fn even(tube: &SplineTube, count: usize) -> Vec<f64> {
+    let elements = tube.axial.elements();
+    (0..count)
+        .map(|i| {
+            let at = elements as f64 * i as f64 / (count - 1) as f64;
+            let e = (at as usize).min(elements - 1);
+            let (from, to) = tube.axial.element(e);
+            from + (to - from) * (at - e as f64)
+        })
+        .collect()
+}
+
+fn runs_back(points: &[(f64, f64)]) -> f64 {
+    let (mut furthest, mut back) = (f64::NEG_INFINITY, 0.0_f64);
+    for &(z, _) in points {
+        furthest = furthest.max(z);
+        back = back.max(furthest - z);
+    }
+    back
+}

@@ -1,0 +1,171 @@
+//! The pictures of a run.
+
+use super::Story;
+use crate::assembly::{Point, SplineTube};
+use crate::draw::{
+    Chart, Curve, Cutaway, DrawError, Marker, Opening, Panel, Rule, Stroke, Surface,
+};
+use crate::measure::{Face, Wall};
+use crate::study::{Plan, Row, Scale, Snapshot, Summary};
+use rayon::prelude::*;
+
+/// Width of every picture, in pixels.
+const WIDTH: usize = 1800;
+/// Points per element along a drawn wall.
+const POINTS_PER_ELEMENT: usize = 4;
+
+/// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots.
+///
+/// - `energy.png`: strain energy along the path;
+/// - `walls.png`: outer and inner wall at chosen states;
+/// - `tube.png`: the tube cut open at the same states, coloured by strain energy density.
+pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
+    if summary.snapshots().is_empty() || summary.rows().len() < 2 {
+        return Ok(vec![]);
+    }
+    let rings = plan.mesh.rings(plan.symmetry);
+    let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
+    let story = Story::of(summary);
+    let drawings: [(&str, &(dyn Fn() -> Result<Vec<u8>, DrawError> + Sync)); 3] = [
+        ("energy.png", &|| energy(plan, summary, &story).png(WIDTH)),
+        ("walls.png", &|| {
+            walls(plan, summary, &story, &tube).png(WIDTH)
+        }),
+        ("tube.png", &|| {
+            cutaway(plan, summary, &story, &tube).png(WIDTH)
+        }),
+    ];
+    drawings
+        .par_iter()
+        .map(|(name, draw)| Ok(((*name).to_owned(), draw()?)))
+        .collect()
+}
+
+/// Strain energy against what changes along the path.
+fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
+    let x = |row: &Row| story.abscissa.of(row);
+    let scale = Scale::of(plan.units.as_ref());
+    let y_label = match &plan.units {
+        None => "strain energy *W*/(*E* *D*^{3})".to_owned(),
+        Some(_) => format!(
+            "strain energy *W* ({})",
+            scale.energy_name.replace('u', "µ")
+        ),
+    };
+    let within = |row: &&Row| story.rows.iter().any(|r| r.step == row.step);
+    let minimum = summary.energy_minimum().filter(within);
+    let rule = |shape: &str, label: &str| {
+        let row = story.rows.iter().find(|row| row.shape == shape)?;
+        Some(Rule {
+            at: x(row),
+            label: label.to_owned(),
+        })
+    };
+    Chart {
+        x_label: story.abscissa.label().to_owned(),
+        y_label,
+        curves: vec![Curve {
+            points: story.rows.iter().map(|row| (x(row), row.energy)).collect(),
+            dots: true,
+            colour: 1,
+            ..Curve::default()
+        }],
+        markers: minimum
+            .map(|row| Marker {
+                at: (x(row), row.energy),
+                label: format!("minimum at {:.2}", x(row)),
+            })
+            .into_iter()
+            .collect(),
+        rules: rule("square", "square")
+            .into_iter()
+            .chain(rule("invaginated", "overhang"))
+            .collect(),
+        ..Chart::default()
+    }
+}
+
+/// Outer and inner wall at the chosen states.
+fn walls(plan: &Plan, summary: &Summary, story: &Story<'_>, tube: &SplineTube) -> Chart {
+    let mut curves = vec![];
+    for (colour, row) in story.chosen.iter().enumerate() {
+        let Snapshot { load, u } = &summary.snapshots()[row.step];
+        for (face, stroke) in [(Face::Outer, Stroke::Solid), (Face::Inner, Stroke::Fine)] {
+            let label = if face == Face::Outer {
+                label(story, row)
+            } else {
+                String::new()
+            };
+            let wall = Wall::fine(tube, load, u, face, 0.0, POINTS_PER_ELEMENT);
+            curves.push(Curve {
+                label,
+                points: wall.points,
+                colour: colour + 1,
+                stroke,
+                ..Curve::default()
+            });
+        }
+    }
+    curves.push(Curve {
+        label: "inner wall".into(),
+        stroke: Stroke::Fine,
+        ..Curve::default()
+    });
+    let points = || curves.iter().flat_map(|curve| &curve.points);
+    let highest = points().map(|p| p.1).fold(0.55, f64::max);
+    let (low, high) = points().fold((0.0_f64, plan.tube.length), |(low, high), p| {
+        (low.min(p.0), high.max(p.0))
+    });
+    Chart {
+        x_label: "*z*/*D*".into(),
+        y_label: "*r*/*D*".into(),
+        equal_aspect: true,
+        x_range: Some((low, high)),
+        y_range: Some((0.0, 0.05 + highest)),
+        width_pt: 510.0,
+        curves,
+        ..Chart::default()
+    }
+}
+
+/// The tube cut open at the chosen states.
+fn cutaway(plan: &Plan, summary: &Summary, story: &Story<'_>, tube: &SplineTube) -> Cutaway {
+    let panel = |row: &&Row| {
+        let surfaces = surfaces(plan, tube, &summary.snapshots()[row.step]);
+        Panel {
+            label: label(story, row),
+            surfaces,
+        }
+    };
+    Cutaway {
+        title: plan.title.clone(),
+        panels: story.chosen.iter().map(panel).collect(),
+        value_label: "strain energy density *w*/*E*".into(),
+        ..Cutaway::default()
+    }
+}
+
+/// The surfaces of a tube with its near half taken away, coloured by strain energy density.
+fn surfaces(plan: &Plan, tube: &SplineTube, snapshot: &Snapshot) -> Vec<Surface> {
+    let along = tube.axial.elements();
+    let opening = Opening {
+        points: [2 * along + 1, 97, 13],
+        ..Opening::HALF
+    };
+    opening.surfaces(|zeta, angle, xi| {
+        let at = zeta * along as f64;
+        let element = (at as usize).min(along - 1);
+        let (from, to) = tube.axial.element(element);
+        let z = from + (to - from) * (at - element as f64);
+        let radius = plan.tube.inner_radius() + xi * plan.tube.thickness;
+        let sample = tube.sample(&snapshot.load, &snapshot.u, Point { z, radius, angle });
+        let [z, x, y] = sample.position;
+        ([x, y, z], sample.energy_density)
+    })
+}
+
+/// What a state is called in a legend.
+fn label(story: &Story<'_>, row: &Row) -> String {
+    let (label, value) = (story.abscissa.label(), story.abscissa.of(row));
+    format!("{label} = {value:.2} ({})", row.shape)
+}

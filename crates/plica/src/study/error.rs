@@ -1,0 +1,45 @@
+//! Why a study could not go on.
+
+use std::path::PathBuf;
+
+/// What can go wrong outside the physics. (A path that cannot be followed is a result, told in
+/// the [`super::Summary`].)
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// A file could not be written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The directory holds a run already.
+    #[error("{} holds a run already; give another directory with --out, or --overwrite it", .0.display())]
+    Occupied(PathBuf),
+    /// The directory holds something that is not a run.
+    #[error(
+        "{} is not empty and holds no former run, so nothing in it is touched (not even with \
+         --overwrite); give another directory with --out",
+        .0.display()
+    )]
+    NotARun(PathBuf),
+    /// The case needs more memory than the machine has.
+    #[error(
+        "the case needs about {needed_gib:.1} GiB of memory and the machine has {available_gib:.1} \
+         GiB free; use fewer control points or a symmetry that repeats more often"
+    )]
+    Memory {
+        /// Forecast, in GiB.
+        needed_gib: f64,
+        /// Free, in GiB.
+        available_gib: f64,
+    },
+}
+
+impl StudyError {
+    /// Whether it is trouble with files rather than with the case.
+    pub fn is_file_trouble(&self) -> bool {
+        !matches!(self, Self::Memory { .. })
+    }
+}

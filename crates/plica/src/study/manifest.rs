@@ -1,0 +1,85 @@
+//! `manifest.json`: what was run, where, and how it ended.
+
+use super::summary::Ending;
+use super::units::Scale;
+use super::{Plan, Row, RunDirectory};
+use serde::Serialize;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// The content of `manifest.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Manifest {
+    /// Always `plica`.
+    pub program: &'static str,
+    /// Version of the program.
+    pub version: &'static str,
+    /// Title of the case.
+    pub title: String,
+    /// BLAKE3 of `case.toml`.
+    pub case_hash: String,
+    /// Architecture and operating system.
+    pub machine: String,
+    /// Threads of the run.
+    pub threads: usize,
+    /// Unit of lengths in the tables.
+    pub length_unit: String,
+    /// Unit of energies in the tables.
+    pub energy_unit: String,
+    /// Seconds since 1970 at the start.
+    pub started_unix: u64,
+    /// Seconds since 1970 at the end; none while it runs.
+    pub ended_unix: Option<u64>,
+    /// running, complete, stopped or lost.
+    pub verdict: String,
+    /// The verdict in a sentence.
+    pub verdict_text: String,
+    /// Accepted states, rest included.
+    pub states: usize,
+    /// States that are not in equilibrium (a pseudo-time scheme may accept such).
+    pub states_out_of_equilibrium: usize,
+    /// States that are unstable.
+    pub states_unstable: usize,
+}
+
+impl Manifest {
+    /// At the start of a run.
+    pub fn begin(plan: &Plan, directory: &RunDirectory) -> Self {
+        let scale = Scale::of(plan.units.as_ref());
+        Self {
+            program: "plica",
+            version: env!("CARGO_PKG_VERSION"),
+            title: plan.title.clone(),
+            case_hash: directory.case_hash().to_owned(),
+            machine: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+            threads: rayon::current_num_threads(),
+            length_unit: scale.length_name,
+            energy_unit: scale.energy_name,
+            started_unix: now(),
+            ended_unix: None,
+            verdict: "running".into(),
+            verdict_text: "the run has not ended (or was killed)".into(),
+            states: 0,
+            states_out_of_equilibrium: 0,
+            states_unstable: 0,
+        }
+    }
+
+    /// At its end.
+    pub fn end(&mut self, ending: &Ending, rows: &[Row]) {
+        self.ended_unix = Some(now());
+        self.verdict = ending.name().into();
+        self.verdict_text = ending.to_string();
+        self.states = rows.len();
+        self.states_out_of_equilibrium = rows.iter().filter(|r| r.equilibrium == "no").count();
+        self.states_unstable = rows
+            .iter()
+            .filter(|r| r.unstable_harmonics != "none")
+            .count();
+    }
+}
+
+fn now() -> u64 {
+    SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .map_or(0, |d| d.as_secs())
+}

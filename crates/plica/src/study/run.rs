@@ -1,0 +1,267 @@
+//! Leads a tube through its stages and writes down every accepted state.
+
+use super::manifest::Manifest;
+use super::summary::{Ending, Summary};
+use super::units::Scale;
+use super::{Observer, Plan, Row, RunDirectory, Snapshot, StudyError, TubeProblem, forecast};
+use crate::assembly::{Inverted, SplineTube};
+use crate::measure::{Face, Measures, Wall, even};
+use crate::solve::{Method, Path, PathError, Step, Watch};
+use std::time::Instant;
+
+/// Runs a study from rest to the end of its last stage, or as far as the tube can be followed.
+/// What has been accepted is on disk at any time.
+pub fn run(
+    plan: &Plan,
+    directory: &mut RunDirectory,
+    observer: &mut dyn Observer,
+) -> Result<Summary, StudyError> {
+    refuse_what_does_not_fit(plan)?;
+    let mut manifest = Manifest::begin(plan, directory);
+    directory.write_manifest(&manifest)?;
+
+    let rings = plan.mesh.rings(plan.symmetry);
+    let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
+    let mut record = Record::new(plan, &problem, directory);
+    let ending = follow(plan, &problem, &mut record, observer)?;
+    let Record {
+        rows, snapshots, ..
+    } = record;
+
+    manifest.end(&ending, &rows);
+    directory.write_manifest(&manifest)?;
+    Ok(Summary::new(
+        plan,
+        rows,
+        snapshots,
+        ending,
+        directory.path(),
+    ))
+}
+
+/// Stage after stage, step after step.
+fn follow(
+    plan: &Plan,
+    problem: &TubeProblem,
+    record: &mut Record<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Ending, StudyError> {
+    let tube = &problem.tube;
+    let (rest, u) = (plan.tube.rest(), vec![0.0; tube.unknowns()]);
+    let mut path = match Path::begin(problem, rest, u, plan.solver.clone()) {
+        Ok(path) => path,
+        Err(broken) => unreachable!("a tube at rest is not inverted: {broken}"),
+    };
+    let begin = Step {
+        method: Method::Rest,
+        iterations: 1,
+        drag_work: 0.0,
+    };
+    record.accept("rest", &path, &begin, true, observer)?;
+
+    let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
+    let mut done = 0;
+    for stage in &plan.stages {
+        path.set_out(stage.load.clone());
+        for n in 1..=stage.steps {
+            let mut watch = Relay {
+                observer: &mut *observer,
+                what: format!("{}, step {n} of {}", stage.name, stage.steps),
+                fraction: done as f64 / states as f64,
+                solves: 0,
+            };
+            let from = path.reached();
+            match path.advance(n as f64 / stage.steps as f64, &mut watch) {
+                Ok(step) => record.accept(&stage.name, &path, &step, n == stage.steps, observer)?,
+                Err(error) => {
+                    // What was reached on the way is a good state too.
+                    if path.reached() > from {
+                        let part = Step {
+                            method: Method::Newton,
+                            iterations: error.iterations,
+                            drag_work: 0.0,
+                        };
+                        record.accept(&stage.name, &path, &part, true, observer)?;
+                    }
+                    return Ok(if watch_stopped(&error) {
+                        Ending::Stopped
+                    } else {
+                        Ending::Lost {
+                            stage: stage.name.clone(),
+                            error,
+                        }
+                    });
+                }
+            }
+            done += 1;
+            if observer.stop() && done < states {
+                return Ok(Ending::Stopped);
+            }
+        }
+    }
+    Ok(Ending::Complete)
+}
+
+fn watch_stopped(error: &PathError<Inverted>) -> bool {
+    matches!(error.relaxation, crate::solve::Failure::Stopped)
+}
+
+fn refuse_what_does_not_fit(plan: &Plan) -> Result<(), StudyError> {
+    let (needed, Some(available)) = (forecast::memory_bytes(plan), available_memory()) else {
+        return Ok(());
+    };
+    if needed > available {
+        let gib = |bytes: u64| bytes as f64 / (1_u64 << 30) as f64;
+        return Err(StudyError::Memory {
+            needed_gib: gib(needed),
+            available_gib: gib(available),
+        });
+    }
+    Ok(())
+}
+
+/// Free memory in bytes, where the system tells (Linux).
+fn available_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("MemAvailable:"))?;
+    line.split_whitespace()
+        .nth(1)?
+        .parse::<u64>()
+        .ok()
+        .map(|kib| kib * 1024)
+}
+
+/// What was accepted so far.
+struct Record<'a> {
+    plan: &'a Plan,
+    problem: &'a TubeProblem,
+    directory: &'a mut RunDirectory,
+    scale: Scale,
+    rows: Vec<Row>,
+    snapshots: Vec<Snapshot>,
+    since: Instant,
+}
+
+impl<'a> Record<'a> {
+    fn new(plan: &'a Plan, problem: &'a TubeProblem, directory: &'a mut RunDirectory) -> Self {
+        let scale = Scale::of(plan.units.as_ref());
+        let since = Instant::now();
+        Self {
+            plan,
+            problem,
+            directory,
+            scale,
+            rows: vec![],
+            snapshots: vec![],
+            since,
+        }
+    }
+
+    /// Writes a state down: its row, and its walls if they are wanted.
+    fn accept(
+        &mut self,
+        stage: &str,
+        path: &Path<'_, TubeProblem>,
+        step: &Step,
+        last: bool,
+        observer: &mut dyn Observer,
+    ) -> Result<(), StudyError> {
+        let (tube, state) = (&self.problem.tube, path.state());
+        // The state was accepted, so its energy exists.
+        let Ok(forces) = tube.forces(&state.load, &state.u) else {
+            unreachable!("an accepted state is not inverted")
+        };
+        let measures = Measures::of(tube, &state.load, &state.u);
+        let (length, energy) = (self.scale.length, self.scale.energy);
+        let row = Row {
+            step: self.rows.len(),
+            stage: stage.to_owned(),
+            length_ratio: self.plan.tube.length_ratio(&state.load),
+            diameter_ratio: self.plan.tube.diameter_ratio(&state.load),
+            colon_displacement: length * state.load.ends[0].displacement,
+            ileum_displacement: length * state.load.ends[1].displacement,
+            energy: energy * forces.energy,
+            energy_ungrown_volume: energy * forces.energy_ungrown,
+            residual: state.imbalance,
+            drag_work: energy * step.drag_work,
+            method: step.method.to_string(),
+            equilibrium: if state.in_equilibrium() { "yes" } else { "no" }.into(),
+            iterations: step.iterations,
+            cg_iterations: 0,
+            seconds: self.since.elapsed().as_secs_f64(),
+            outer_radius_min: length * measures.outer_radius_min,
+            z_at_min: length * measures.z_at_min,
+            max_wall_angle_deg: measures.max_wall_angle_deg,
+            overhang: length * measures.overhang,
+            side: measures.side.to_string(),
+            shape: measures.shape.to_string(),
+            min_det_fe: forces.smallest_jacobian,
+            unstable_harmonics: self.unstable_harmonics(state.negative_pivots),
+        };
+        self.directory.record(&row)?;
+        let every = self.plan.output.profiles_every;
+        if every > 0 && (last || row.step.is_multiple_of(every)) {
+            self.write_profile(row.step, path)?;
+        }
+        if self.plan.output.pictures {
+            self.snapshots.push(Snapshot {
+                load: state.load.clone(),
+                u: state.u.clone(),
+            });
+        }
+        observer.accepted(&row);
+        self.rows.push(row);
+        self.since = Instant::now();
+        Ok(())
+    }
+
+    /// The harmonics that the sector admits are 0, N_C/k, 2 N_C/k, …; only for the axisymmetric
+    /// sector is it a single one, to which the pivots can be assigned.
+    fn unstable_harmonics(&self, negative_pivots: usize) -> String {
+        match (negative_pivots, self.problem.tube.sector.rings) {
+            (0, _) => "none".into(),
+            (n, 1) => format!("0:{n}"),
+            (n, _) => format!("any:{n}"),
+        }
+    }
+
+    fn write_profile(&self, step: usize, path: &Path<'_, TubeProblem>) -> Result<(), StudyError> {
+        let (tube, state) = (&self.problem.tube, path.state());
+        let z = even(tube, self.plan.output.wall_points);
+        let wall = |face| Wall::at(tube, &state.load, &state.u, face, 0.0, z.clone());
+        let (outer, inner) = (wall(Face::Outer), wall(Face::Inner));
+        let length = self.scale.length;
+        let rows = (0..z.len()).map(|i| {
+            let (a, b) = (outer.points[i], inner.points[i]);
+            [z[i], a.0, a.1, b.0, b.1]
+                .iter()
+                .map(|x| length * x)
+                .collect()
+        });
+        let header = ["reference_z", "outer_z", "outer_r", "inner_z", "inner_r"];
+        self.directory
+            .write_table(&format!("profiles/state-{step:04}.csv"), &header, rows)
+    }
+}
+
+/// Tells an observer of every solve.
+struct Relay<'a> {
+    observer: &'a mut dyn Observer,
+    what: String,
+    fraction: f64,
+    solves: usize,
+}
+
+impl Watch for Relay<'_> {
+    fn solved(&mut self, method: Method, imbalance: f64) -> bool {
+        self.solves += 1;
+        let what = format!(
+            "{}: {method}, solve {}, residual {imbalance:.1e}",
+            self.what, self.solves
+        );
+        self.observer.working(&what, self.fraction);
+        !self.observer.stop()
+    }
+}

@@ -1,0 +1,218 @@
+//! How a run ended, and the short table it closes with.
+
+use super::units::Scale;
+use super::{Plan, Row};
+use crate::assembly::Inverted;
+use crate::solve::PathError;
+use crate::tube::Load;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// Every stage was done.
+    Complete,
+    /// Someone asked to stop.
+    Stopped,
+    /// The tube could not be followed further.
+    Lost {
+        /// The stage it was lost in.
+        stage: String,
+        /// What was tried.
+        error: PathError<Inverted>,
+    },
+}
+
+impl Ending {
+    /// In one word.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Stopped => "stopped",
+            Self::Lost { .. } => "lost",
+        }
+    }
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Complete => f.write_str("every stage was done"),
+            Self::Stopped => f.write_str("stopped on request; every state so far is kept"),
+            Self::Lost { stage, error } => write!(
+                f,
+                "the tube could not be followed further in stage `{stage}` ({error}); the last good \
+                 state is kept. Try more steps in this stage, more solver.halvings or \
+                 solver.relaxation_steps, or a finer mesh in the zone"
+            ),
+        }
+    }
+}
+
+/// An accepted state in full.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot {
+    /// The load it is under.
+    pub load: Load,
+    /// Its unknowns.
+    pub u: Vec<f64>,
+}
+
+/// What a run found.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    rows: Vec<Row>,
+    snapshots: Vec<Snapshot>,
+    ending: Ending,
+    scale: Scale,
+    directory: PathBuf,
+}
+
+impl Summary {
+    /// Of a run.
+    pub fn new(
+        plan: &Plan,
+        rows: Vec<Row>,
+        snapshots: Vec<Snapshot>,
+        ending: Ending,
+        directory: &Path,
+    ) -> Self {
+        let scale = Scale::of(plan.units.as_ref());
+        Self {
+            rows,
+            snapshots,
+            ending,
+            scale,
+            directory: directory.to_owned(),
+        }
+    }
+
+    /// Whether every stage was done.
+    pub fn finished(&self) -> bool {
+        self.ending == Ending::Complete
+    }
+
+    /// How it ended.
+    pub fn ending(&self) -> &Ending {
+        &self.ending
+    }
+
+    /// The accepted states.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// The accepted states in full, one per row; none if the case wants no pictures.
+    pub fn snapshots(&self) -> &[Snapshot] {
+        &self.snapshots
+    }
+
+    /// The state of least energy with a full contraction: a minimum of the energy over the length
+    /// ratio, if there is one inside the path.
+    pub fn energy_minimum(&self) -> Option<&Row> {
+        let last = self.rows.last()?;
+        let relaxing: Vec<&Row> = self
+            .rows
+            .iter()
+            .filter(|r| r.diameter_ratio == last.diameter_ratio)
+            .collect();
+        let at = (0..relaxing.len())
+            .min_by(|&a, &b| relaxing[a].energy.total_cmp(&relaxing[b].energy))?;
+        (at > 0 && at + 1 < relaxing.len()).then(|| relaxing[at])
+    }
+
+    /// The first state of a shape.
+    pub fn first(&self, shape: &str) -> Option<&Row> {
+        self.rows.iter().find(|row| row.shape == shape)
+    }
+
+    /// The side the tube invaginates to at the end.
+    pub fn side(&self) -> &str {
+        match self.rows.last() {
+            Some(row) if row.shape == "invaginated" => &row.side,
+            _ => "none",
+        }
+    }
+}
+
+/// Where along the path a state lies.
+fn place(row: &Row) -> String {
+    format!(
+        "Lmax/L = {:.4}, Dmin/D = {:.4}",
+        row.length_ratio, row.diameter_ratio
+    )
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(last) = self.rows.last() else {
+            return write!(f, "no state was accepted");
+        };
+        let none = || "not on this path".to_owned();
+        let energy = |row: &Row| format!("W = {:.6e} {}", row.energy, self.scale.energy_name);
+        let line = |f: &mut fmt::Formatter<'_>, name: &str, value: String| {
+            writeln!(f, "  {name:<22} {value}")
+        };
+        let minimum = self.energy_minimum();
+        line(
+            f,
+            "energy minimum",
+            minimum.map_or_else(none, |row| format!("{} at {}", energy(row), place(row))),
+        )?;
+        line(
+            f,
+            "wall turns square",
+            self.first("square").map_or_else(none, place),
+        )?;
+        line(
+            f,
+            "wall overhangs",
+            self.first("invaginated").map_or_else(none, place),
+        )?;
+        let side = match self.side() {
+            "none" => "it does not".to_owned(),
+            side => format!(
+                "toward the {side}, {:.3} {} deep",
+                last.overhang, self.scale.length_name
+            ),
+        };
+        line(f, "invaginates", side)?;
+        line(
+            f,
+            "last state",
+            format!("{}, {} ({})", energy(last), place(last), last.shape),
+        )?;
+        let count = |what: fn(&&Row) -> bool| self.rows.iter().filter(what).count();
+        let (out, unstable) = (
+            count(|row| row.equilibrium == "no"),
+            count(|row| row.unstable_harmonics != "none"),
+        );
+        let worst = self.rows[1..]
+            .iter()
+            .map(|row| row.residual)
+            .fold(0.0, f64::max);
+        line(
+            f,
+            "states",
+            format!(
+                "{}, {out} out of equilibrium (largest residual {worst:.0e}), {unstable} unstable \
+                 within the symmetry",
+                self.rows.len(),
+            ),
+        )?;
+        let relaxed = count(|row| row.method == "relaxation");
+        let solves: usize = self.rows.iter().map(|row| row.iterations).sum();
+        let seconds: f64 = self.rows.iter().map(|row| row.seconds).sum();
+        line(
+            f,
+            "work",
+            format!("{solves} solves in {seconds:.1} s, {relaxed} steps by relaxation"),
+        )?;
+        line(f, "written to", self.directory.display().to_string())?;
+        if self.ending != Ending::Complete {
+            write!(f, "\n{}", self.ending)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,84 @@
+//! Real units, at the border only.
+
+use super::Units;
+
+/// Factors from the dimensionless numbers inside to those of a table, and their names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scale {
+    /// Length: D in the unit of the case.
+    pub length: f64,
+    /// Energy: E·D³ in joules times a power of ten.
+    pub energy: f64,
+    /// Name of the unit of length.
+    pub length_name: String,
+    /// Name of the unit of energy.
+    pub energy_name: String,
+}
+
+impl Scale {
+    /// Of a case with units, or the dimensionless one.
+    pub fn of(units: Option<&Units>) -> Self {
+        let Some(units) = units else {
+            return Self {
+                length: 1.0,
+                energy: 1.0,
+                length_name: "D".into(),
+                energy_name: "E D^3".into(),
+            };
+        };
+        // Powers of ten of a metre and a pascal; their product is one of a joule.
+        let length_power = match units.length.as_str() {
+            "um" => -6,
+            "mm" => -3,
+            "cm" => -2,
+            _ => 0,
+        };
+        let stress_power = match units.stress.as_str() {
+            "kPa" => 3,
+            "MPa" => 6,
+            _ => 0,
+        };
+        let power = stress_power + 3 * length_power;
+        let (named, energy_name) = match power {
+            -18..=-13 => (-15, "fJ"),
+            -12..=-10 => (-12, "pJ"),
+            -9..=-7 => (-9, "nJ"),
+            -6..=-4 => (-6, "uJ"),
+            -3..=-1 => (-3, "mJ"),
+            _ => (0, "J"),
+        };
+        Self {
+            length: units.diameter,
+            energy: units.youngs_modulus * units.diameter.powi(3) * 10_f64.powi(power - named),
+            length_name: units.length.clone(),
+            energy_name: energy_name.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kilopascals_and_millimetres_are_microjoules() {
+        let units = Units {
+            length: "mm".into(),
+            stress: "kPa".into(),
+            diameter: 25.0,
+            youngs_modulus: 20.0,
+        };
+        let scale = Scale::of(Some(&units));
+        // 20e3 Pa · (25e-3 m)³ = 0.3125 J
+        assert!((scale.energy - 0.3125e6).abs() < 1e-6);
+        assert_eq!(scale.energy_name, "uJ");
+        let metres = Units {
+            length: "cm".into(),
+            stress: "Pa".into(),
+            ..units
+        };
+        // 20 Pa · (0.25 m)³ = 0.3125 J
+        let scale = Scale::of(Some(&metres));
+        assert!((scale.energy - 0.3125e6).abs() < 1e-6 && scale.energy_name == "uJ");
+    }
+}
