@@ -56,7 +56,10 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     progress.finish();
     let summary = summary.map_err(Failure::Study)?;
     let drawn = draw(&plan, &summary, &directory)?;
-    console::say(&format!("{summary}\n{drawn}"))?;
+    console::say(&format!("{summary}{drawn}"))?;
+    if !summary.finished() {
+        console::tell(&summary.ending().to_string());
+    }
     if summary.finished() {
         Ok(())
     } else if interrupt.asked() {

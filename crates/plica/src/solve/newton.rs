@@ -98,12 +98,11 @@ fn descend<P: Equilibrium>(
     forces: &super::Forces,
 ) -> Result<(f64, Vec<f64>, super::Forces), Descent<P::Broken>> {
     let slope: f64 = forces.residual.iter().zip(step).map(|(r, s)| r * s).sum();
-    let rounding = 1e-13 * forces.energy.abs();
     let (mut length, mut broken) = (1.0, None);
     for _ in 0..8 {
         let next: Vec<f64> = u.iter().zip(step).map(|(u, s)| u + length * s).collect();
         match problem.forces(load, &next) {
-            Ok(f) if f.energy <= forces.energy + SUFFICIENT * length * slope + rounding => {
+            Ok(f) if f.energy <= forces.energy + SUFFICIENT * length * slope + forces.rounding => {
                 return Ok((length, next, f));
             }
             Ok(_) => broken = None,

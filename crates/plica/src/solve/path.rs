@@ -50,17 +50,35 @@ pub struct Step {
     pub drag_work: f64,
 }
 
-/// Where a path ended.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("Newton: {newton}; relaxation: {relaxation}")]
+/// Where a path ended, and why: what was tried from there, in order.
+#[derive(Clone, Debug, PartialEq)]
 pub struct PathError<B: std::error::Error> {
-    /// Why Newton did not arrive.
-    pub newton: Failure<B>,
-    /// Why relaxation (or pseudo-time) did not arrive either.
-    pub relaxation: Failure<B>,
+    /// Methods and how they failed.
+    pub tried: Vec<(Method, Failure<B>)>,
     /// Linear solves that were spent.
     pub iterations: usize,
 }
+
+impl<B: std::error::Error> PathError<B> {
+    /// Whether someone asked to stop.
+    pub fn stopped(&self) -> bool {
+        self.tried
+            .iter()
+            .any(|(_, failure)| matches!(failure, Failure::Stopped))
+    }
+}
+
+impl<B: std::error::Error> std::fmt::Display for PathError<B> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (i, (method, failure)) in self.tried.iter().enumerate() {
+            let semicolon = if i > 0 { "; " } else { "" };
+            write!(f, "{semicolon}{method}: {failure}")?;
+        }
+        Ok(())
+    }
+}
+
+impl<B: std::error::Error> std::error::Error for PathError<B> {}
 
 impl<'a, P: Equilibrium> Path<'a, P> {
     /// Begins at a state that is already in equilibrium under `load`.
@@ -129,41 +147,46 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         // The step is cut into 2^halvings pieces, `done` of them behind.
         let (mut halvings, mut done) = (self.pace, 0_u64);
         while done < 1 << halvings {
-            let reach = begin + whole * (done + 1) as f64 / (1_u64 << halvings) as f64;
             let reach = if done + 1 == 1 << halvings {
                 target
             } else {
-                reach
+                begin + whole * (done + 1) as f64 / (1_u64 << halvings) as f64
             };
-            let mut tried = self.try_newton(reach, &mut step, watch);
-            let mut newton = None;
-            if let Err(failed) = &tried
-                && halvings >= NEWTON_HALVINGS.min(self.settings.halvings)
-                && !matches!(failed, Failure::Stopped)
-            {
-                newton = Some(failed.clone());
-                tried = self.try_relaxation(reach, &mut step, watch);
+            let mut tried = vec![];
+            let mut arrived = match self.try_newton(reach, &mut step, watch) {
+                Ok(()) => Some(done + 1),
+                Err(failed) => {
+                    tried.push((Method::Newton, failed));
+                    None
+                }
+            };
+            let halve_first = halvings < NEWTON_HALVINGS.min(self.settings.halvings);
+            let stopped = |tried: &[(_, _)]| {
+                tried
+                    .iter()
+                    .any(|(_, failed)| matches!(failed, Failure::Stopped))
+            };
+            if arrived.is_none() && !halve_first && !stopped(&tried) {
+                match self.try_relaxation(reach, &mut step, watch) {
+                    Ok(()) => arrived = Some(done + 1),
+                    Err(failed) => tried.push((Method::Relaxation, failed)),
+                }
             }
-            match tried {
-                Ok(()) => {
-                    done += 1;
+            match arrived {
+                Some(now) => {
+                    done = now;
                     if halvings > 0 && done % 2 == 0 {
                         (halvings, done) = (halvings - 1, done / 2);
                     }
                     self.pace = halvings;
                 }
-                Err(failed) => {
-                    if matches!(failed, Failure::Stopped) || halvings >= self.settings.halvings {
-                        let newton = newton.unwrap_or_else(|| failed.clone());
-                        let iterations = step.iterations;
-                        return Err(PathError {
-                            newton,
-                            relaxation: failed,
-                            iterations,
-                        });
-                    }
-                    (halvings, done) = (halvings + 1, 2 * done);
+                None if stopped(&tried) || halvings >= self.settings.halvings => {
+                    return Err(PathError {
+                        tried,
+                        iterations: step.iterations,
+                    });
                 }
+                None => (halvings, done) = (halvings + 1, 2 * done),
             }
         }
         Ok(step)
@@ -243,9 +266,8 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             drag_work: 0.0,
         };
         let (load, settings) = (self.load_at(t), &self.settings);
-        let fail = |failed: Failure<P::Broken>, iterations| PathError {
-            newton: failed.clone(),
-            relaxation: failed,
+        let fail = |method, failed, iterations| PathError {
+            tried: vec![(method, failed)],
             iterations,
         };
         let mut velocity = self.velocity.clone();
@@ -258,13 +280,13 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             settings,
             watch,
         )
-        .map_err(|failed| fail(failed, 0))?;
+        .map_err(|failed| fail(Method::PseudoTime, failed, 0))?;
         step.iterations += dragged.iterations;
         step.drag_work += dragged.drag_work;
         let found = if scheme.settle {
             velocity.fill(0.0);
             relaxation(self.problem, &load, dragged.u, settings, watch)
-                .map_err(|failed| fail(failed, step.iterations))?
+                .map_err(|failed| fail(Method::Relaxation, failed, step.iterations))?
         } else {
             Found {
                 iterations: 0,

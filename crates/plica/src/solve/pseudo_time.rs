@@ -1,7 +1,11 @@
 //! Pseudo-time with a drag that stays: the paper's scheme, and its backward Euler sister.
 
-use super::newton::free_part;
-use super::{Equilibrium, Failure, Forces, Found, Integrator, Method, PseudoTime, Settings, Watch};
+use super::newton::newton;
+use super::{
+    Equilibrium, Failure, Forces, Found, Integrator, Method, PseudoTime, Settings, Watch,
+    relaxation,
+};
+use crate::matrix::BlockBanded;
 
 /// Leads the problem from one load to another against a fixed drag and on until it hardly moves:
 /// C u̇ + R(u) = 0 (Okino et al. 2025, Eqs. (15)–(18)).
@@ -20,29 +24,29 @@ pub fn pseudo_time<P: Equilibrium>(
     settings: &Settings,
     watch: &mut dyn Watch,
 ) -> Result<Found, Failure<P::Broken>> {
-    let (mut iterations, mut drag_work) = (0, 0.0);
-    let mut moved = 0.0;
+    let watch = &mut Renamed(watch);
+    let (mut iterations, mut drag_work, mut moved) = (0, 0.0, 0.0);
     for n in 1..=scheme.ramp + scheme.hold {
         let t = (n as f64 / scheme.ramp as f64).min(1.0);
         let load = problem.between(from, target, t);
-        let (next, forces) = step(
-            problem,
-            &load,
-            &u,
-            velocity,
-            scheme,
-            settings,
-            &mut iterations,
-            watch,
-        )?;
-        moved = u
-            .iter()
-            .zip(&next)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
-        drag_work += work(problem, scheme, velocity, &u, &next);
-        u = next;
+        let mut start = u.clone();
+        problem.impose(&load, &mut start);
+        let dragged = Dragged::new(problem, scheme, &u, velocity);
+        let next = match newton(&dragged, &load, start.clone(), settings, watch) {
+            Ok(next) => next,
+            Err(Failure::Stopped) => return Err(Failure::Stopped),
+            // The same step, approached with more drag that shrinks back to the scheme's.
+            Err(_) => relaxation(&dragged, &load, start, settings, watch)?,
+        };
+        let now = dragged.velocity_at(&next.u);
+        let force = dragged.drag_force(&next.u);
+        let step: Vec<f64> = next.u.iter().zip(&u).map(|(a, b)| a - b).collect();
+        iterations += next.iterations;
+        drag_work += force.iter().zip(&step).map(|(f, s)| f * s).sum::<f64>();
+        moved = step.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
+        (u, *velocity) = (next.u, now);
         if n >= scheme.ramp && moved < scheme.tolerance {
+            let forces = problem.forces(&load, &u).map_err(Failure::Broken)?;
             return Ok(Found {
                 u,
                 forces,
@@ -51,80 +55,100 @@ pub fn pseudo_time<P: Equilibrium>(
             });
         }
     }
-    Err(Failure::NotConverged {
-        iterations,
-        imbalance: moved,
+    Err(Failure::StillMoving {
+        steps: scheme.hold,
+        moved,
     })
 }
 
-/// One pseudo-time step from `u`; updates the velocity.
-#[allow(clippy::too_many_arguments)] // what a step reads and writes, no more
-fn step<P: Equilibrium>(
-    problem: &P,
-    load: &P::Load,
-    u: &[f64],
-    velocity: &mut Vec<f64>,
-    scheme: &PseudoTime,
-    settings: &Settings,
-    iterations: &mut usize,
-    watch: &mut dyn Watch,
-) -> Result<(Vec<f64>, Forces), Failure<P::Broken>> {
-    let (given, C) = (problem.given(), problem.drag());
-    // u̇ = rate (x − u) − kept u̇ₙ
-    let (rate, kept) = match scheme.integrator {
-        Integrator::Newmark => (2.0, 1.0),
-        Integrator::BackwardEuler => (1.0, 0.0),
-    };
-    let mut x = u.to_vec();
-    problem.impose(load, &mut x);
-    for _ in 0..settings.newton_iterations {
-        let forces = problem.forces(load, &x).map_err(Failure::Broken)?;
-        let mut rhs: Vec<f64> = forces.residual.iter().map(|r| -r).collect();
-        let at = |i: usize| rate * (x[i] - u[i]) - kept * velocity[i];
-        let now: Vec<f64> = (0..u.len()).map(at).collect();
-        C.multiply_add(-scheme.drag, &now, &mut rhs);
-        let rhs = free_part(&rhs, given, 1.0);
-        let size =
-            rhs.iter().map(|r| r * r).sum::<f64>().sqrt() / forces.in_play.max(Forces::FLOOR);
-        if size <= settings.tolerance {
-            *velocity = now;
-            return Ok((x, forces));
-        }
-        let mut A = problem.tangent(load, &x);
-        A.add_scaled(rate * scheme.drag, C);
-        A.constrain(given);
-        let factor = A.factor()?;
-        *iterations += 1;
-        if !watch.solved(Method::PseudoTime, size) {
-            return Err(Failure::Stopped);
-        }
-        let mut correction = rhs;
-        factor.solve(&mut correction);
-        for (x, c) in x.iter_mut().zip(&correction) {
-            *x += c;
+/// One pseudo-time step as an equilibrium of its own: the energy
+/// W(x) + η (½ rate |x − u|² − kept u̇ · (x − u)) in the metric of C, whose residual is
+/// R(x) + η C u̇(x) with u̇(x) = rate (x − u) − kept u̇.
+struct Dragged<'a, P: Equilibrium> {
+    problem: &'a P,
+    u: &'a [f64],
+    velocity: &'a [f64],
+    drag: f64,
+    rate: f64,
+    kept: f64,
+}
+
+impl<'a, P: Equilibrium> Dragged<'a, P> {
+    fn new(problem: &'a P, scheme: &PseudoTime, u: &'a [f64], velocity: &'a [f64]) -> Self {
+        let (rate, kept) = match scheme.integrator {
+            Integrator::Newmark => (2.0, 1.0),
+            Integrator::BackwardEuler => (1.0, 0.0),
+        };
+        Self {
+            problem,
+            u,
+            velocity,
+            drag: scheme.drag,
+            rate,
+            kept,
         }
     }
-    Err(Failure::NotConverged {
-        iterations: *iterations,
-        imbalance: f64::NAN,
-    })
+
+    fn velocity_at(&self, x: &[f64]) -> Vec<f64> {
+        let at = |i: usize| self.rate * (x[i] - self.u[i]) - self.kept * self.velocity[i];
+        (0..x.len()).map(at).collect()
+    }
+
+    /// η C u̇(x).
+    fn drag_force(&self, x: &[f64]) -> Vec<f64> {
+        self.times_drag(&self.velocity_at(x))
+    }
+
+    fn times_drag(&self, v: &[f64]) -> Vec<f64> {
+        let mut force = vec![0.0; v.len()];
+        self.problem.drag().multiply_add(self.drag, v, &mut force);
+        force
+    }
 }
 
-/// What the drag took in a step: ∫ η u̇ᵀ C u̇ dτ by the force at its end.
-fn work<P: Equilibrium>(
-    problem: &P,
-    scheme: &PseudoTime,
-    velocity: &[f64],
-    from: &[f64],
-    to: &[f64],
-) -> f64 {
-    let mut force = vec![0.0; to.len()];
-    problem
-        .drag()
-        .multiply_add(scheme.drag, velocity, &mut force);
-    force
-        .iter()
-        .zip(from.iter().zip(to))
-        .map(|(f, (a, b))| f * (b - a))
-        .sum()
+impl<P: Equilibrium> Equilibrium for Dragged<'_, P> {
+    type Load = P::Load;
+    type Broken = P::Broken;
+
+    fn given(&self) -> &[bool] {
+        self.problem.given()
+    }
+    fn impose(&self, load: &P::Load, u: &mut [f64]) {
+        self.problem.impose(load, u);
+    }
+    fn between(&self, from: &P::Load, to: &P::Load, t: f64) -> P::Load {
+        self.problem.between(from, to, t)
+    }
+    fn forces(&self, load: &P::Load, x: &[f64]) -> Result<Forces, P::Broken> {
+        let mut forces = self.problem.forces(load, x)?;
+        // ½ rate d·d − kept u̇·d = d · (½ rate d − kept u̇)
+        let mean: Vec<f64> = (0..x.len())
+            .map(|i| 0.5 * self.rate * (x[i] - self.u[i]) - self.kept * self.velocity[i])
+            .collect();
+        let force = self.times_drag(&mean);
+        forces.energy += (0..x.len())
+            .map(|i| force[i] * (x[i] - self.u[i]))
+            .sum::<f64>();
+        for (r, f) in forces.residual.iter_mut().zip(self.drag_force(x)) {
+            *r += f;
+        }
+        Ok(forces)
+    }
+    fn tangent(&self, load: &P::Load, x: &[f64]) -> BlockBanded {
+        let mut K = self.problem.tangent(load, x);
+        K.add_scaled(self.rate * self.drag, self.problem.drag());
+        K
+    }
+    fn drag(&self) -> &BlockBanded {
+        self.problem.drag()
+    }
+}
+
+/// Tells the watcher of pseudo-time, whatever solves its steps.
+struct Renamed<'a>(&'a mut dyn Watch);
+
+impl Watch for Renamed<'_> {
+    fn solved(&mut self, _: Method, imbalance: f64) -> bool {
+        self.0.solved(Method::PseudoTime, imbalance)
+    }
 }

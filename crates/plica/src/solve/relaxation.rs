@@ -1,7 +1,7 @@
 //! Relaxation: down the energy, in a drag that shrinks.
 
 use super::newton::{EQUILIBRIUM, free_part};
-use super::{Equilibrium, Failure, Found, Method, Settings, Watch};
+use super::{Equilibrium, Failure, Forces, Found, Method, Settings, Watch};
 
 /// Drag after a rejected step, over the drag before.
 const STIFFER: f64 = 8.0;
@@ -59,7 +59,7 @@ pub fn relaxation<P: Equilibrium>(
         factor.solve(&mut step);
         let next: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + s).collect();
         match problem.forces(load, &next) {
-            Ok(f) if f.energy < forces.energy => {
+            Ok(f) if falls(&forces, &f, given) => {
                 let mut drag = vec![0.0; u.len()];
                 C.multiply_add(alpha, &step, &mut drag);
                 drag_work += drag.iter().zip(&step).map(|(d, s)| d * s).sum::<f64>();
@@ -69,14 +69,8 @@ pub fn relaxation<P: Equilibrium>(
                 alpha *= (imbalance / before).clamp(SOFTER.1, SOFTER.0);
                 refused = None;
             }
-            // Rounding: the energy no longer tells the states apart.
-            Ok(f) if imbalance <= EQUILIBRIUM => {
-                let after = f.imbalance(given);
-                if after >= 0.5 * imbalance {
-                    break;
-                }
-                (u, forces, imbalance) = (next, f, after);
-            }
+            // Rounding keeps the residual where it is.
+            Ok(_) if imbalance <= EQUILIBRIUM => break,
             Ok(_) => (alpha, tangent) = (alpha * STIFFER, Some(K)),
             Err(broken) => {
                 refused = Some(Failure::Broken(broken));
@@ -90,4 +84,10 @@ pub fn relaxation<P: Equilibrium>(
         drag_work,
         iterations,
     })
+}
+
+/// Whether the energy falls, or, where rounding hides that, the residual.
+fn falls(from: &Forces, to: &Forces, given: &[bool]) -> bool {
+    to.energy < from.energy - from.rounding
+        || (to.energy <= from.energy + from.rounding && to.imbalance(given) < from.imbalance(given))
 }

@@ -32,6 +32,8 @@ pub struct Forces {
     pub residual: Vec<f64>,
     /// The size of the forces whose balance R is.
     pub in_play: f64,
+    /// How much the energy may be off by rounding.
+    pub rounding: f64,
 }
 
 impl Forces {
@@ -131,6 +133,14 @@ pub enum Failure<B: std::error::Error> {
         iterations: usize,
         /// Residual reached.
         imbalance: f64,
+    },
+    /// Pseudo-time went on and the tube still moved.
+    #[error("still moving by {moved:.1e} D per pseudo-time step after {steps} steps")]
+    StillMoving {
+        /// Pseudo-time steps after the ramp.
+        steps: usize,
+        /// Largest motion of a control point in the last of them, in D.
+        moved: f64,
     },
     /// The tangent is singular.
     #[error(transparent)]

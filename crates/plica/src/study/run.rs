@@ -4,9 +4,9 @@ use super::manifest::Manifest;
 use super::summary::{Ending, Summary};
 use super::units::Scale;
 use super::{Observer, Plan, Row, RunDirectory, Snapshot, StudyError, TubeProblem, forecast};
-use crate::assembly::{Inverted, SplineTube};
+use crate::assembly::SplineTube;
 use crate::measure::{Face, Measures, Wall, even};
-use crate::solve::{Method, Path, PathError, Step, Watch};
+use crate::solve::{Method, Path, Step, Watch};
 use std::time::Instant;
 
 /// Runs a study from rest to the end of its last stage, or as far as the tube can be followed.
@@ -83,7 +83,7 @@ fn follow(
                         };
                         record.accept(&stage.name, &path, &part, true, observer)?;
                     }
-                    return Ok(if watch_stopped(&error) {
+                    return Ok(if error.stopped() {
                         Ending::Stopped
                     } else {
                         Ending::Lost {
@@ -100,10 +100,6 @@ fn follow(
         }
     }
     Ok(Ending::Complete)
-}
-
-fn watch_stopped(error: &PathError<Inverted>) -> bool {
-    matches!(error.relaxation, crate::solve::Failure::Stopped)
 }
 
 fn refuse_what_does_not_fit(plan: &Plan) -> Result<(), StudyError> {

@@ -127,12 +127,14 @@ impl Summary {
         self.rows.iter().find(|row| row.shape == shape)
     }
 
+    /// The first state whose wall overhangs.
+    pub fn overhang(&self) -> Option<&Row> {
+        self.rows.iter().find(|row| row.max_wall_angle_deg >= 90.0)
+    }
+
     /// The side the tube invaginates to at the end.
     pub fn side(&self) -> &str {
-        match self.rows.last() {
-            Some(row) if row.shape == "invaginated" => &row.side,
-            _ => "none",
-        }
+        self.rows.last().map_or("none", |row| &row.side)
     }
 }
 
@@ -168,7 +170,7 @@ impl fmt::Display for Summary {
         line(
             f,
             "wall overhangs",
-            self.first("invaginated").map_or_else(none, place),
+            self.overhang().map_or_else(none, place),
         )?;
         let side = match self.side() {
             "none" => "it does not".to_owned(),
@@ -210,9 +212,6 @@ impl fmt::Display for Summary {
             format!("{solves} solves in {seconds:.1} s, {relaxed} steps by relaxation"),
         )?;
         line(f, "written to", self.directory.display().to_string())?;
-        if self.ending != Ending::Complete {
-            write!(f, "\n{}", self.ending)?;
-        }
         Ok(())
     }
 }

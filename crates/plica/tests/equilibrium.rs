@@ -1,0 +1,360 @@
+//! Equilibria of whole tubes, held against closed forms, against each other, and against orders.
+
+#![allow(non_snake_case)] // the formulas keep the letters of their sources
+
+use plica::activation::{Direction, Muscle, Profile};
+use plica::assembly::{Point, SplineTube};
+use plica::material::{Material, NeoHookean};
+use plica::solve::{
+    Equilibrium, Integrator, Method, Path, PseudoTime, Scheme, Settings, State, Watch,
+};
+use plica::spline::Refinement;
+use plica::study::TubeProblem;
+use plica::tube::{Load, Mesh, Support, Tube};
+use std::f64::consts::PI;
+
+fn muscle(direction: Direction, zone: [f64; 2], profile: Profile) -> Muscle {
+    Muscle {
+        name: String::new(),
+        direction,
+        zone,
+        profile,
+    }
+}
+
+/// As active everywhere in its zone.
+fn even() -> Profile {
+    Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)])
+}
+
+fn tube(length: f64, muscles: Vec<Muscle>, ends: Support) -> Tube {
+    Tube {
+        length,
+        thickness: 0.06,
+        material: Material::NeoHookean(NeoHookean::new(1.0, 0.495)),
+        muscles,
+        ends: [ends; 2],
+    }
+}
+
+/// Elements along, around and through.
+fn mesh(degree: usize, [along, around, through]: [usize; 3]) -> Mesh {
+    Mesh {
+        axial: along + degree,
+        around,
+        thickness: through + degree,
+        degree,
+        refinements: vec![],
+    }
+}
+
+fn problem(tube: &Tube, mesh: &Mesh, rings: usize) -> TubeProblem {
+    TubeProblem::new(SplineTube::new(tube, mesh, rings))
+}
+
+/// The state at the end of legs from rest, each walked in equal steps.
+fn lead(problem: &TubeProblem, settings: Settings, legs: &[(Load, usize)]) -> State<Load> {
+    let rest = problem.tube.tube.rest();
+    let zero = vec![0.0; problem.tube.unknowns()];
+    let mut path = Path::begin(problem, rest, zero, settings).unwrap();
+    for (load, steps) in legs {
+        path.set_out(load.clone());
+        for i in 1..=*steps {
+            path.advance(i as f64 / *steps as f64, &mut ()).unwrap();
+        }
+    }
+    path.state().clone()
+}
+
+fn position(
+    problem: &TubeProblem,
+    state: &State<Load>,
+    z: f64,
+    radius: f64,
+    angle: f64,
+) -> [f64; 3] {
+    let point = Point { z, radius, angle };
+    problem.tube.sample(&state.load, &state.u, point).position
+}
+
+/// The current distance of a point of the wall from the axis.
+fn radius(problem: &TubeProblem, state: &State<Load>, z: f64, radius: f64) -> f64 {
+    let [_, x, y] = position(problem, state, z, radius, 0.0);
+    x.hypot(y)
+}
+
+/// The reference volume of the tube as its splines draw it: e_z · C e_z integrates one.
+fn volume(problem: &TubeProblem) -> f64 {
+    let (n, rings) = (problem.tube.unknowns(), problem.tube.sector.rings);
+    let shift: Vec<f64> = (0..n)
+        .map(|i| f64::from(u8::from(i / rings % 3 == 0))) // axial components
+        .collect();
+    let mut weighed = vec![0.0; n];
+    problem.drag().multiply_add(1.0, &shift, &mut weighed);
+    let sector: f64 = shift.iter().zip(&weighed).map(|(u, c)| u * c).sum();
+    sector * problem.tube.sector.repeats()
+}
+
+fn relative(a: f64, b: f64) -> f64 {
+    (a / b - 1.0).abs()
+}
+
+/// Energies that need more digits than a residual of 1e-8 gives.
+fn tight() -> Settings {
+    Settings {
+        tolerance: 1e-11,
+        ..Settings::default()
+    }
+}
+
+#[test]
+fn a_free_tube_that_relaxes_evenly_grows_and_stays_free_of_stress() {
+    let along = muscle(Direction::Longitudinal, [0.0, 1.0], even());
+    let tube = tube(1.0, vec![along], Support::Free);
+    for rings in [1, 3, 12] {
+        let problem = problem(&tube, &mesh(3, [6, 12, 2]), rings);
+        let grown = Load {
+            muscles: vec![1.3],
+            ..tube.rest()
+        };
+        let state = lead(&problem, tight(), &[(grown, 2)]);
+        // Each w is a difference of numbers of order one: rounding, over a volume of 0.08.
+        assert!(
+            state.energy.abs() < 1e-16,
+            "{rings} rings: {}",
+            state.energy
+        );
+        assert_eq!(state.negative_pivots, 0);
+        for angle in [0.2, 2.0, 4.5] {
+            let colon = position(&problem, &state, 0.0, 0.5, angle);
+            let ileum = position(&problem, &state, 1.0, 0.5, angle);
+            let length = (0..3)
+                .map(|i| (ileum[i] - colon[i]).powi(2))
+                .sum::<f64>()
+                .sqrt();
+            assert!((length - 1.3).abs() < 1e-9, "{rings} rings: {length}");
+        }
+    }
+}
+
+#[test]
+fn a_ring_that_contracts_evenly_has_the_closed_form_s_radii_and_energy() {
+    // Plane strain, E = 1, nu = 0.495, from 0.44 to 0.5; a one-dimensional solution to the digits
+    // shown. Per case: the grown ratio, inner and outer radius, energy per length.
+    let around = muscle(Direction::Circular, [0.0, 0.2], even());
+    let tube = tube(0.2, vec![around], Support::Sliding);
+    let problem = problem(&tube, &mesh(3, [3, 60, 12]), 1);
+    for (ratio, inner, outer, energy) in [
+        (0.75, 0.3227579338, 0.3827173371, 1.32551829e-5),
+        (0.5, 0.2058835933, 0.2656827340, 7.91898869e-5),
+    ] {
+        let contracted = Load {
+            muscles: vec![ratio],
+            ..tube.rest()
+        };
+        let state = lead(&problem, tight(), &[(contracted, 5)]);
+        for z in [0.0, 0.07, 0.2] {
+            // The spline circle is round to 3.1e-7.
+            let (a, b) = (
+                radius(&problem, &state, z, 0.44),
+                radius(&problem, &state, z, 0.5),
+            );
+            assert!(relative(a, inner) < 4e-7, "{ratio}: inner radius {a}");
+            assert!(relative(b, outer) < 4e-7, "{ratio}: outer radius {b}");
+        }
+        let per_length = state.energy / 0.2;
+        // Off by 1.2e-7 with half as many elements through the wall, and falling with h⁶.
+        assert!(relative(per_length, energy) < 2e-8, "{ratio}: {per_length}");
+    }
+}
+
+/// Contraction and relaxation of one zone, as in the paper's main case but less.
+fn main_case() -> (Tube, [(Load, usize); 2]) {
+    let zone = [0.5, 1.0];
+    let muscles = vec![
+        muscle(Direction::Circular, zone, Profile::RaisedCosine),
+        muscle(Direction::Longitudinal, zone, Profile::RaisedCosine),
+    ];
+    let tube = tube(3.0, muscles, Support::Fixed);
+    let load = |circular: f64, longitudinal: f64| Load {
+        muscles: vec![circular, longitudinal],
+        ..tube.rest()
+    };
+    let legs = [(load(0.7, 1.0), 2), (load(0.7, 1.03), 1)];
+    (tube, legs)
+}
+
+#[test]
+fn the_main_case_is_the_same_for_every_sector() {
+    let (tube, legs) = main_case();
+    let mesh = Mesh {
+        axial: 60,
+        around: 12,
+        thickness: 5,
+        degree: 3,
+        refinements: vec![Refinement {
+            from: 0.5,
+            to: 1.0,
+            factor: 3.0,
+        }],
+    };
+    let one = lead(&problem(&tube, &mesh, 1), tight(), &legs);
+    for rings in [2, 3] {
+        let many = lead(&problem(&tube, &mesh, rings), tight(), &legs);
+        // The energy is off by the square of what the residual leaves.
+        let off = relative(many.energy, one.energy);
+        assert!(off < 1e-10, "{rings} rings: {off:e}");
+    }
+}
+
+/// Writes down what is left of the residual after every linear solve.
+struct Sequence(Vec<f64>);
+
+impl Watch for Sequence {
+    fn solved(&mut self, _: Method, imbalance: f64) -> bool {
+        self.0.push(imbalance);
+        true
+    }
+}
+
+#[test]
+fn newton_squares_the_residual_at_the_end() {
+    let (tube, [(contracted, _), _]) = main_case();
+    let problem = problem(&tube, &mesh(3, [60, 12, 2]), 1);
+    let zero = vec![0.0; problem.tube.unknowns()];
+    let mut path = Path::begin(&problem, tube.rest(), zero, tight()).unwrap();
+    path.set_out(contracted);
+    let mut pairs = 0;
+    for t in [0.25, 0.5, 0.75, 1.0] {
+        let mut sequence = Sequence(vec![]);
+        path.advance(t, &mut sequence).unwrap();
+        for pair in sequence.0.windows(2) {
+            let [before, after] = [pair[0], pair[1]];
+            // From where the square rules to where rounding does.
+            if before < 0.1 && after > 1e-11 {
+                assert!(after < 100.0 * before * before, "{:?}", sequence.0);
+                pairs += 1;
+            }
+        }
+    }
+    assert!(pairs >= 4, "only {pairs} solves to judge by");
+}
+
+#[test]
+fn the_paper_s_scheme_arrives_where_newton_does() {
+    let (tube, _) = main_case();
+    let problem = problem(&tube, &mesh(3, [24, 12, 1]), 1);
+    let load = |circular, longitudinal| Load {
+        muscles: vec![circular, longitudinal],
+        ..tube.rest()
+    };
+    // Every step is ramped over ten of pseudo-time.
+    let legs = [(load(0.9, 1.0), 5), (load(0.9, 1.01), 2)];
+    let direct = lead(&problem, tight(), &legs);
+    for integrator in [Integrator::Newmark, Integrator::BackwardEuler] {
+        let scheme = Scheme::PseudoTime(PseudoTime {
+            integrator,
+            ..PseudoTime::default()
+        });
+        let settings = Settings {
+            scheme,
+            ..Settings::default()
+        };
+        let dragged = lead(&problem, settings, &legs);
+        let off = relative(dragged.energy, direct.energy);
+        assert!(off < 1e-9, "{integrator:?}: {off:e}");
+    }
+}
+
+#[test]
+fn a_pulled_tube_is_a_bar_under_uniaxial_stress() {
+    // P = μ (λt − 1/λt) + Λ ln J / λt across, J = λ λt²: Newton for the stretch λt at which the
+    // lateral surfaces are free, then w times the volume.
+    let (E, nu, lambda) = (1.0, 0.495, 1.1_f64);
+    let (mu, Lame) = (
+        E / (2.0 * (1.0 + nu)),
+        E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+    );
+    let mut lateral = 1.0_f64;
+    for _ in 0..50 {
+        let ln_J = (lambda * lateral * lateral).ln();
+        let stress = mu * (lateral * lateral - 1.0) + Lame * ln_J; // λt P
+        lateral -= stress / (2.0 * mu * lateral + 2.0 * Lame / lateral);
+    }
+    let ln_J = (lambda * lateral * lateral).ln();
+    let I1 = lambda * lambda + 2.0 * lateral * lateral;
+    let w = 0.5 * mu * (I1 - 3.0) - mu * ln_J + 0.5 * Lame * ln_J * ln_J;
+
+    let tube = tube(1.5, vec![], Support::Sliding);
+    let mut pulled = tube.rest();
+    pulled.ends[1].displacement = 0.15;
+    for (degree, rings) in [(1, 1), (2, 1), (3, 1), (3, 4), (3, 24)] {
+        let problem = problem(&tube, &mesh(degree, [2, 24, 1]), rings);
+        let state = lead(&problem, tight(), &[(pulled.clone(), 2)]);
+        // A whole tube is held sideways at one point of it only, so its diameter is looked at.
+        let diameter = |state: &State<Load>| {
+            let [_, x0, y0] = position(&problem, state, 0.7, 0.5, 0.0);
+            let [_, x1, y1] = position(&problem, state, 0.7, 0.5, PI);
+            (x1 - x0).hypot(y1 - y0)
+        };
+        let rest = lead(&problem, tight(), &[]);
+        let ratio = diameter(&state) / diameter(&rest);
+        let name = format!("degree {degree}, {rings} rings");
+        assert!(relative(ratio, lateral) < 1e-9, "{name}: {ratio}");
+        let off = relative(state.energy, w * volume(&problem));
+        assert!(off < 1e-11, "{name}: {off:e}");
+    }
+}
+
+#[test]
+fn a_twisted_tube_has_the_torsional_stiffness_of_saint_venant() {
+    let length = 1.0;
+    let tube = tube(length, vec![], Support::Fixed);
+    let problem = problem(&tube, &mesh(3, [12, 60, 2]), 1);
+    let mu = 1.0 / (2.0 * 1.495);
+    let stiffness = mu * PI / 2.0 * (0.5_f64.powi(4) - 0.44_f64.powi(4)) / length;
+    let off = |twist: f64| {
+        let mut twisted = tube.rest();
+        twisted.ends[1].twist = twist;
+        let state = lead(&problem, tight(), &[(twisted, 1)]);
+        // Every cross-section turns by its share.
+        let [_, x, y] = position(&problem, &state, 0.25, 0.47, 0.0);
+        assert!((y.atan2(x) - 0.25 * twist).abs() < 0.1 * twist.powi(3));
+        state.energy / (0.5 * stiffness * twist * twist) - 1.0
+    };
+    // Exact for small angles; the rest grows with the square of the angle.
+    assert!(off(0.02).abs() < 1e-4, "{:e}", off(0.02));
+    let order = (off(0.1) / off(0.05)).log2();
+    assert!((order - 2.0).abs() < 0.05, "order {order}");
+}
+
+#[test]
+fn the_energy_converges_with_twice_the_degree() {
+    // Sliding ends are planes of mirror symmetry and the profile is even about them: the solution
+    // is smooth. A compressible wall, so that straight elements do not lock.
+    let length = 1.0;
+    let around = muscle(Direction::Circular, [0.0, length], Profile::RaisedCosine);
+    let tube = Tube {
+        thickness: 0.2,
+        material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+        ..tube(length, vec![around], Support::Sliding)
+    };
+    let contracted = Load {
+        muscles: vec![0.9],
+        ..tube.rest()
+    };
+    for (degree, coarsest) in [(1, 8), (2, 4), (3, 4)] {
+        let energy = |refined: usize| {
+            let n = coarsest << refined;
+            let problem = problem(&tube, &mesh(degree, [2 * n, 24, n / 2]), 1);
+            lead(&problem, tight(), &[(contracted.clone(), 1)]).energy
+        };
+        let w = [energy(0), energy(1), energy(2)];
+        let order = ((w[0] - w[1]) / (w[1] - w[2])).log2();
+        assert!(w[0] > w[1] && w[1] > w[2], "degree {degree}: {w:?}");
+        assert!(
+            (order - 2.0 * degree as f64).abs() < 0.3,
+            "degree {degree}: order {order}"
+        );
+    }
+}
