@@ -43,7 +43,7 @@ pub struct Forces {
     pub energy: f64,
     /// ∫ w dV₀ of the whole tube, over the ungrown volume.
     pub energy_ungrown: f64,
-    /// R = ∂W/∂u_cp of the sector, in E·D².
+    /// R of the sector, in E·D²: ∂W/∂u_cp of the whole tube over the number of repeats.
     pub residual: Vec<f64>,
     /// The forces in play: root of the sum of squares of what the elements add to R, before it
     /// cancels.

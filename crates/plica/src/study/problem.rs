@@ -12,6 +12,7 @@ pub struct TubeProblem {
     /// The tube.
     pub tube: SplineTube,
     drag: BlockBanded,
+    /// Reference volume of the sector.
     volume: f64,
 }
 
@@ -21,7 +22,7 @@ impl TubeProblem {
         let (outer, inner) = (Tube::OUTER_RADIUS, tube.tube.inner_radius());
         Self {
             drag: tube.drag(),
-            volume: PI * (outer * outer - inner * inner) * tube.tube.length,
+            volume: PI * (outer * outer - inner * inner) * tube.tube.length / tube.sector.repeats(),
             tube,
         }
     }
@@ -42,12 +43,14 @@ impl Equilibrium for TubeProblem {
     }
     fn forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
         let forces = self.tube.forces(load, u)?;
+        // The solver sees one sector: its energy is that whose derivative the residual is.
+        let energy = forces.energy / self.tube.sector.repeats();
         Ok(Forces {
-            energy: forces.energy,
+            energy,
             residual: forces.residual,
             in_play: forces.in_play,
             // Every point adds an energy density of rounding size.
-            rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * forces.energy.abs(),
+            rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * energy.abs(),
         })
     }
     fn tangent(&self, load: &Load, u: &[f64]) -> BlockBanded {

@@ -181,7 +181,7 @@ impl<'a> Record<'a> {
             energy: energy * forces.energy,
             energy_ungrown_volume: energy * forces.energy_ungrown,
             residual: state.imbalance,
-            drag_work: energy * step.drag_work,
+            drag_work: energy * tube.sector.repeats() * step.drag_work,
             method: step.method.to_string(),
             equilibrium: if state.in_equilibrium() { "yes" } else { "no" }.into(),
             iterations: step.iterations,
