@@ -5,15 +5,18 @@
 //!
 //! - [`tensor`]: numbers on lanes, 3×3 tensors.
 //! - [`spline`]: bases, quadrature, the circle a spline draws.
+//! - [`matrix`]: block-banded matrices and their factorisation.
 //! - [`material`]: hyperelastic laws, one per file.
 //! - [`activation`]: muscles and their profiles.
 //! - [`tube`]: what a person means by a tube, its mesh and its load.
 //! - [`rings`]: control rings in cylindrical components, and sectors that repeat.
 //! - [`assembly`]: the element kernel; energy, residual and tangent of a tube.
-//! - [`solve`]: block-banded factorisation, Newton, relaxation, the way through a snap.
+//! - [`solve`]: Newton, relaxation, pseudo-time, the way through a snap.
+//! - [`measure`]: walls, angles, overhang, shape of a deformed tube.
 //! - [`study`]: stages, accepted states, the run directory.
 //! - [`case`]: the case file as written, and what it means.
-//! - [`report`]: measures, walls and pictures of a tube.
+//! - [`draw`]: charts and shaded cut-aways from plain data.
+//! - [`report`]: the pictures of a run.
 
 pub mod activation;
 pub mod assembly;

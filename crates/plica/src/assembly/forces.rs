@@ -151,7 +151,8 @@ fn note_worst(worst: &mut Worst, J: Lanes, [layer, around]: [usize; 2], qr: usiz
     if smallest >= worst.jacobian || worst.jacobian.is_nan() {
         return;
     }
-    let lane = J.0.iter().position(|x| *x == smallest).unwrap_or(0);
+    let is_worst = |x: &f64| *x == smallest || x.is_nan();
+    let lane = J.0.iter().position(is_worst).unwrap_or(0);
     *worst = Worst {
         jacobian: smallest,
         element: [lane, layer, around],

@@ -10,7 +10,7 @@
 //! |---|---|---|
 //! | ζ, s, R | parameters: z, the fraction of an element around, the radius | – |
 //! | X, x | reference and current position, in the frame of the element: (z, outwards, around) | – |
-//! | C | spline circle, C(s) = Σ N_b exp(i φ_b), scaled to unit radius | [`tables`] |
+//! | C | spline circle, C(s) = Σ N_b exp(i φ_b), scaled to unit radius | `tables` |
 //! | Fe | columns along, outwards, around at the point; rows as x | `Fe` |
 //!
 //! Elements are taken eight at a time, one per lane: a *slab* holds eight neighbours along the
@@ -32,6 +32,8 @@ mod spline_tube;
 mod supports;
 mod tables;
 mod tangent;
+#[cfg(test)]
+mod tests;
 
 pub use sample::{Point, Sample};
 pub use spline_tube::{Forces, Inverted, SplineTube};

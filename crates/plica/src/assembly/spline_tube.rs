@@ -69,16 +69,18 @@ pub struct Inverted {
     pub jacobian: f64,
 }
 
-/// Calls a slab kernel for the law and the degree at hand.
+/// Calls a slab kernel for the law and the degree at hand. A new law adds a line.
 macro_rules! with_law_and_degree {
     ($self:ident, $kernel:ident, $input:expr) => {
-        match ($self.tube.material, $self.degree()) {
-            (Material::NeoHookean(law), 1) => $kernel::<_, 2>(&law, $input),
-            (Material::NeoHookean(law), 2) => $kernel::<_, 3>(&law, $input),
-            (Material::NeoHookean(law), 3) => $kernel::<_, 4>(&law, $input),
-            (Material::NeoHookean(law), 4) => $kernel::<_, 5>(&law, $input),
-            (Material::NeoHookean(law), 5) => $kernel::<_, 6>(&law, $input),
-            (_, degree) => unreachable!("degree {degree} is refused by SplineTube::new"),
+        match $self.tube.material {
+            Material::NeoHookean(law) => match $self.degree() {
+                1 => $kernel::<_, 2>(&law, $input),
+                2 => $kernel::<_, 3>(&law, $input),
+                3 => $kernel::<_, 4>(&law, $input),
+                4 => $kernel::<_, 5>(&law, $input),
+                5 => $kernel::<_, 6>(&law, $input),
+                degree => unreachable!("degree {degree} is refused by SplineTube::new"),
+            },
         }
     };
 }

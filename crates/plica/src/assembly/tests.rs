@@ -441,6 +441,23 @@ fn larger_sectors_agree_with_a_sector_of_one_ring() {
 }
 
 #[test]
+fn a_tangent_too_large_to_be_held_at_once_is_summed_in_parts() {
+    // Slabs of 90 MB, so that the third is not worked on together with the first two.
+    let one = tube_and_load(1, [17, 1, 132], 1);
+    let whole = tube_and_load(1, [17, 1, 132], 132).tube;
+    let (u, d) = (wavy(&one.tube), direction(&one.tube));
+    let product = |tube: &SplineTube, u: &[f64], d: &[f64]| {
+        let mut sum = vec![0.0; u.len()];
+        tube.tangent(&one.load, u).multiply_add(1.0, d, &mut sum);
+        sum
+    };
+    let expected = replicated(&product(&one.tube, &u, &d), 132);
+    let many = product(&whole, &replicated(&u, 132), &replicated(&d, 132));
+    let off = largest(&moved(&many, &expected, -1.0));
+    assert!(off < 1e-11 * largest(&expected), "{off:e}");
+}
+
+#[test]
 fn results_do_not_depend_on_the_number_of_threads() {
     let TubeAndLoad { tube, load } = tube_and_load(3, [29, 2, 6], 6);
     let u = wavy(&tube);

@@ -1,4 +1,4 @@
-//! Compressible neo-Hookean law, Okino et al. (2025), Eqs. (8)–(10), after Bonet and Wood (2008):
+//! Compressible neo-Hookean law, Okino et al. (2025), Eqs. (9)–(11), after Bonet and Wood (2008):
 //!
 //! w = μ/2 (I₁ − 3) − μ ln J + λ/2 (ln J)²,  I₁ = tr(FeᵀFe),  J = det Fe
 //!

@@ -14,6 +14,9 @@ const WIDTH: usize = 1800;
 /// Points per element along a drawn wall.
 const POINTS_PER_ELEMENT: usize = 4;
 
+/// How a picture comes about.
+type Drawing<'a> = dyn Fn() -> Result<Vec<u8>, DrawError> + Sync + 'a;
+
 /// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots.
 ///
 /// - `energy.png`: strain energy along the path;
@@ -26,7 +29,7 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     let rings = plan.mesh.rings(plan.symmetry);
     let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
     let story = Story::of(summary);
-    let drawings: [(&str, &(dyn Fn() -> Result<Vec<u8>, DrawError> + Sync)); 3] = [
+    let drawings: [(&str, &Drawing<'_>); 3] = [
         ("energy.png", &|| energy(plan, summary, &story).png(WIDTH)),
         ("walls.png", &|| {
             walls(plan, summary, &story, &tube).png(WIDTH)

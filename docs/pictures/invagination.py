@@ -1,0 +1,29 @@
+"""The README's picture, from the tube.png of a run: python invagination.py tube.png invagination.png
+
+Puts the four panels two by two, without the quiet third of the tube at the ileum end.
+"""
+
+import sys
+
+from PIL import Image
+
+page = Image.open(sys.argv[1]).convert("RGB")
+width, height = page.size
+
+# A panel begins where ink follows a dozen white rows; before the first comes the title, after the
+# last the colour bar.
+rows = page.convert("L").load()
+inked = [any(rows[x, y] < 200 for x in range(width)) for y in range(height)]
+begins = [y for y in range(12, height) if inked[y] and not any(inked[y - 12 : y])]
+begins = begins if len(begins) > 5 else sys.exit("a picture of four panels is needed")
+tops, bar = begins[-6:-2], begins[-2]
+
+wide, high = 1290, max(b - a for a, b in zip(tops, tops[1:] + [bar]))
+sheet = Image.new("RGB", (2 * wide, 2 * high + height - bar - 20), "white")
+for i, (top, bottom) in enumerate(zip(tops, tops[1:] + [bar])):
+    panel = page.crop((20, top - 8, 20 + wide, bottom - 8))
+    sheet.paste(panel, (i % 2 * wide, i // 2 * high))
+sheet.paste(page.crop((120, bar, 1700, height)), (wide // 2, 2 * high))
+
+size = (980, round(980 * sheet.height / sheet.width))
+sheet.resize(size, Image.Resampling.LANCZOS).save(sys.argv[2], optimize=True)
