@@ -8,6 +8,8 @@ use crate::draw::{
 use crate::measure::{Face, Wall};
 use crate::study::{Plan, Row, Scale, Snapshot, Summary};
 use rayon::prelude::*;
+use std::cell::RefCell;
+use std::collections::HashMap;
 
 /// Width of every picture, in pixels.
 const WIDTH: usize = 1800;
@@ -155,15 +157,30 @@ fn surfaces(plan: &Plan, tube: &SplineTube, snapshot: &Snapshot) -> Vec<Surface>
         points: [2 * along + 1, 97, 13],
         ..Opening::HALF
     };
-    opening.surfaces(|zeta, angle, xi| {
+    let sample = |zeta: f64, angle: f64, xi: f64| {
         let at = zeta * along as f64;
         let element = (at as usize).min(along - 1);
         let (from, to) = tube.axial.element(element);
         let z = from + (to - from) * (at - element as f64);
         let radius = plan.tube.inner_radius() + xi * plan.tube.thickness;
         let sample = tube.sample(&snapshot.load, &snapshot.u, Point { z, radius, angle });
-        let [z, x, y] = sample.position;
-        ([x, y, z], sample.energy_density)
+        (sample.position, sample.energy_density)
+    };
+    // Where every meridian is the same, one is sampled and turned.
+    let axisymmetric = tube.sector.rings == 1;
+    let known: RefCell<HashMap<[u64; 2], ([f64; 3], f64)>> = RefCell::default();
+    opening.surfaces(|zeta, angle, xi| {
+        if !axisymmetric {
+            let ([z, x, y], value) = sample(zeta, angle, xi);
+            return ([x, y, z], value);
+        }
+        let place = [zeta.to_bits(), xi.to_bits()];
+        let ([z, x, y], value) = *known
+            .borrow_mut()
+            .entry(place)
+            .or_insert_with(|| sample(zeta, 0.0, xi));
+        let (sin, cos) = angle.sin_cos();
+        ([x * cos - y * sin, x * sin + y * cos, z], value)
     })
 }
 
