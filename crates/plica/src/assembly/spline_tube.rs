@@ -8,8 +8,8 @@ use super::tables::{Around, Layer, Slab};
 use super::tangent::{SlabTangent, slab_tangent};
 use crate::material::Material;
 use crate::matrix::BlockBanded;
-use crate::rings::Sector;
-use crate::spline::{Basis, Circle, graded_breakpoints};
+use crate::rings::{Sector, Turn};
+use crate::spline::{Basis, Circle, gauss_legendre, graded_breakpoints};
 use crate::tensor::Lanes;
 use crate::tube::{Load, Mesh, Tube};
 use rayon::prelude::*;
@@ -71,14 +71,14 @@ pub struct Inverted {
 
 /// Calls a slab kernel for the law and the degree at hand. A new law adds a line.
 macro_rules! with_law_and_degree {
-    ($self:ident, $kernel:ident, $input:expr) => {
+    ($self:ident, $kernel:ident, $($argument:expr),+) => {
         match $self.tube.material {
             Material::NeoHookean(law) => match $self.degree() {
-                1 => $kernel::<_, 2>(&law, $input),
-                2 => $kernel::<_, 3>(&law, $input),
-                3 => $kernel::<_, 4>(&law, $input),
-                4 => $kernel::<_, 5>(&law, $input),
-                5 => $kernel::<_, 6>(&law, $input),
+                1 => $kernel::<_, 2>(&law, $($argument),+),
+                2 => $kernel::<_, 3>(&law, $($argument),+),
+                3 => $kernel::<_, 4>(&law, $($argument),+),
+                4 => $kernel::<_, 5>(&law, $($argument),+),
+                5 => $kernel::<_, 6>(&law, $($argument),+),
                 degree => unreachable!("degree {degree} is refused by SplineTube::new"),
             },
         }
@@ -200,6 +200,33 @@ impl SplineTube {
     /// The tangent stiffness ∂R/∂u_cp of the sector at a state; every unknown is free in it. The
     /// state must not be inverted (see [`SplineTube::forces`]).
     pub fn tangent(&self, load: &Load, u: &[f64]) -> BlockBanded {
+        let turns = |point: &Around| vec![point.slots.iter().map(Turn::from).collect()];
+        self.tangent_on(load, u, &self.around.iter().map(turns).collect::<Vec<_>>())
+    }
+
+    /// The block of the whole tube's tangent that belongs to circumferential harmonic n ≥ 1, at
+    /// an axisymmetric state without twist: the tangent is block-circulant there, and real on
+    /// displacements (z cos nφ, r cos nφ, −θ sin nφ). Scaled by 2/N_C; every unknown is free.
+    pub fn harmonic_tangent(&self, load: &Load, u: &[f64], n: usize) -> BlockBanded {
+        assert!(self.sector.rings == 1 && n >= 1);
+        let rule = gauss_legendre(self.degree() + 1);
+        let turns = |&(s, _): &(f64, f64)| {
+            self.sector
+                .harmonic_at(n, s)
+                .map(|half| vec![half])
+                .to_vec()
+        };
+        self.tangent_on(load, u, &rule.iter().map(turns).collect::<Vec<_>>())
+    }
+
+    /// For every unknown of circumferential harmonic n, whether a support gives it or it is
+    /// pinned against a rigid motion of that harmonic.
+    pub fn given_in_harmonic(&self, n: usize) -> Vec<bool> {
+        self.supports
+            .in_harmonic(n, &self.axial.greville(), &self.wall.greville())
+    }
+
+    fn tangent_on(&self, load: &Load, u: &[f64], turns: &[Vec<Vec<Turn>>]) -> BlockBanded {
         let (p, m) = (self.degree(), self.row_size());
         let mut matrix = BlockBanded::zeros(self.axial.functions(), m, p);
         // What is held before it is summed: a few slabs at a time when rows are large.
@@ -212,7 +239,10 @@ impl SplineTube {
                 .map(|slab| {
                     let stretch = self.inverse_stretch(slab, load);
                     let input = self.input(slab, &stretch, u);
-                    (slab.first, with_law_and_degree!(self, slab_tangent, &input))
+                    (
+                        slab.first,
+                        with_law_and_degree!(self, slab_tangent, &input, turns),
+                    )
                 })
                 .collect();
             // A row takes what its own slab left, then what the slab before left.

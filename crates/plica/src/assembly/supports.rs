@@ -62,6 +62,31 @@ impl Supports {
         }
     }
 
+    /// The given unknowns of circumferential harmonic n of an axisymmetric tube with control
+    /// points at `z` and `r`. The rigid motions of a harmonic other than 0 are, in its first, a
+    /// shift sideways and a tilt.
+    pub fn in_harmonic(&self, n: usize, z: &[f64], r: &[f64]) -> Vec<bool> {
+        if n == 0 {
+            return self.given.clone();
+        }
+        let mut given = vec![false; self.given.len()];
+        for end in &self.ends {
+            given[end.unknown] = true;
+        }
+        if n == 1 {
+            let motion = |of: &dyn Fn(f64, f64) -> [f64; 3]| -> Vec<f64> {
+                z.iter()
+                    .flat_map(|&z| r.iter().flat_map(move |&r| of(z, r)))
+                    .collect()
+            };
+            let motions = vec![motion(&|_, _| [0.0, 1.0, 1.0]), motion(&|z, r| [-r, z, z])];
+            for pin in pins(motions, &given) {
+                given[pin] = true;
+            }
+        }
+        given
+    }
+
     /// Writes the given unknowns of a load into `u`.
     pub fn impose(&self, load: &Load, u: &mut [f64]) {
         for e in &self.ends {

@@ -11,7 +11,7 @@ use super::kinematics::Columns;
 use super::slab::{SlabInput, contract_along, contract_through, gradients};
 use super::tables::Slab;
 use crate::material::Law;
-use crate::rings::SlotValues;
+use crate::rings::Turn;
 use crate::tensor::{LANES, Lanes, Real, Tensor2};
 use fearless_simd::{Level, Simd, SimdBase, SimdFrom, dispatch, f64x8};
 
@@ -36,12 +36,25 @@ fn pairs(slots: usize) -> Vec<(usize, usize)> {
 }
 
 /// The tangent of one slab. `N` is the degree plus one.
-pub fn slab_tangent<L: Law, const N: usize>(law: &L, input: &SlabInput<'_>) -> SlabTangent {
-    dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input))
+///
+/// `turns` holds, for every point around an element, the sets of slots on which the moduli are
+/// turned; what the sets give is added up. The tangent itself has one set, of the element's own
+/// slots; a harmonic has two, of one slot each (see [`crate::rings::Sector::harmonic_at`]).
+pub fn slab_tangent<L: Law, const N: usize>(
+    law: &L,
+    input: &SlabInput<'_>,
+    turns: &[Vec<Vec<Turn>>],
+) -> SlabTangent {
+    dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input, turns))
 }
 
 #[inline(always)]
-fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'_>) -> SlabTangent {
+fn kernel<S: Simd, L: Law, const N: usize>(
+    simd: S,
+    law: &L,
+    input: &SlabInput<'_>,
+    turns: &[Vec<Vec<Turn>>],
+) -> SlabTangent {
     let SlabInput {
         slab,
         layers,
@@ -85,13 +98,15 @@ fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'
                     contract_through::<S, N>(simd, layer, qr, &along, &mut through);
                     turned.fill([[[[zero; 3]; 3]; 3]; 3]);
                     let radius = layer.radius[qr];
-                    for point in around {
+                    for (point, turns) in around.iter().zip(turns) {
                         let columns = Columns::new(point, radius, inverse_along, inverse_around);
                         let Fe = columns.elastic(point, radius, gradients(simd, point, &through));
                         let grown = weight.times(layer.weight[qr] * point.volume(radius)); // det Fp dV₀
                         let blocks = columns.moduli(&law.moduli(&Fe), grown);
-                        for (turned, &(r, s)) in turned.iter_mut().zip(&pairs) {
-                            add_turned(turned, &blocks, &point.slots[r], &point.slots[s], r == s);
+                        for slots in turns {
+                            for (turned, &(r, s)) in turned.iter_mut().zip(&pairs) {
+                                add_turned(turned, &blocks, &slots[r], &slots[s], r == s);
+                            }
                         }
                     }
                     for (k, (turned, &(r, s))) in turned.iter_mut().zip(&pairs).enumerate() {
@@ -132,8 +147,8 @@ fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'
 fn add_turned<V: Real>(
     sum: &mut [[Block<V>; 3]; 3],
     blocks: &[Block<V>; 6],
-    r: &SlotValues,
-    s: &SlotValues,
+    r: &Turn,
+    s: &Turn,
     same: bool,
 ) {
     const UPPER: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
@@ -162,29 +177,27 @@ fn slope(gradient: usize) -> usize {
     usize::from(gradient == 1)
 }
 
-/// sum += Gᵣᵀ block Gₛ with G = [[g, 0, 0], [0, re, −im], [0, im, re]].
+/// sum += Gᵣᵀ block Gₛ with G = [[g, 0, 0], [0, a, b], [0, c, d]].
 #[inline(always)]
 fn add_block<V: Real>(
     sum: &mut Block<V>,
     block: &Block<V>,
-    (r, dr): (&SlotValues, usize),
-    (s, ds): (&SlotValues, usize),
+    (r, dr): (&Turn, usize),
+    (s, ds): (&Turn, usize),
 ) {
-    let (gr, (cr, sr)) = (r.axial[dr], r.turned[dr]);
-    let (gs, (cs, ss)) = (s.axial[ds], s.turned[ds]);
     let plain = |x: f64| block[0][0].like(x);
-    let (cr, sr, minus_sr) = (plain(cr), plain(sr), plain(-sr));
-    let (gs, cs, ss, minus_ss) = (plain(gs), plain(cs), plain(ss), plain(-ss));
+    let (gr, [ar, br, cr, dr]) = (r.axial[dr], r.plane[dr].map(plain));
+    let (gs, [as_, bs, cs, ds]) = (plain(s.axial[ds]), s.plane[ds].map(plain));
     let mut half = *block;
     for j in 0..3 {
         half[0][j] = block[0][j].times(gr);
-        half[1][j] = cr.mul_add(block[1][j], sr * block[2][j]);
-        half[2][j] = cr.mul_add(block[2][j], minus_sr * block[1][j]);
+        half[1][j] = ar.mul_add(block[1][j], cr * block[2][j]);
+        half[2][j] = br.mul_add(block[1][j], dr * block[2][j]);
     }
     for i in 0..3 {
         sum[i][0] = half[i][0].mul_add(gs, sum[i][0]);
-        sum[i][1] = half[i][1].mul_add(cs, half[i][2].mul_add(ss, sum[i][1]));
-        sum[i][2] = half[i][2].mul_add(cs, half[i][1].mul_add(minus_ss, sum[i][2]));
+        sum[i][1] = half[i][1].mul_add(as_, half[i][2].mul_add(cs, sum[i][1]));
+        sum[i][2] = half[i][1].mul_add(bs, half[i][2].mul_add(ds, sum[i][2]));
     }
 }
 

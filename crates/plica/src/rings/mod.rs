@@ -43,6 +43,26 @@ pub struct SlotValues {
     pub turned: [(f64, f64); 2],
 }
 
+/// What one slot contributes to the displacement in the element's frame, as a matrix on (axial,
+/// radial, circumferential); its value and its slope along the element.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Turn {
+    /// Axial from axial.
+    pub axial: [f64; 2],
+    /// [outwards from radial, outwards from circumferential, around from radial, around from
+    /// circumferential].
+    pub plane: [[f64; 4]; 2],
+}
+
+impl From<&SlotValues> for Turn {
+    fn from(slot: &SlotValues) -> Self {
+        Self {
+            axial: slot.axial,
+            plane: slot.turned.map(|(re, im)| [re, -im, im, re]),
+        }
+    }
+}
+
 impl Sector {
     /// `rings` of `around` rings, splines of a degree.
     pub fn new(degree: usize, around: usize, rings: usize) -> Self {
@@ -93,6 +113,34 @@ impl Sector {
             }
         }
         slots
+    }
+
+    /// The two halves of a circumferential harmonic n ≥ 1 at `s` of an element: of the
+    /// displacement (z cos nφ, r cos nφ, −θ sin nφ) of rings at angle φ, with n φ counted from
+    /// the middle of the element and from a quarter wave before it. Over all elements of a tube
+    /// that is the same all around, cos² and sin² are each a half and their product nothing, so
+    /// that a quadratic form of the harmonic is the sum of those of the halves, N_C/2 times.
+    pub fn harmonic_at(&self, n: usize, s: f64) -> [Turn; 2] {
+        let v = self.basis.evaluate_in(0, s);
+        let mut halves = [Turn::default(); 2];
+        for b in 0..=self.basis.degree() {
+            let phi = self.ring_angle(b);
+            let (sin, cos) = phi.sin_cos();
+            let (wave_sin, wave_cos) = (n as f64 * phi).sin_cos();
+            for (half, [r, t]) in halves
+                .iter_mut()
+                .zip([[wave_cos, -wave_sin], [-wave_sin, -wave_cos]])
+            {
+                for (d, n) in [v.value[b], v.slope[b]].into_iter().enumerate() {
+                    half.axial[d] += n * r;
+                    let turned = [cos * r, -sin * t, sin * r, cos * t];
+                    for (sum, x) in half.plane[d].iter_mut().zip(turned) {
+                        *sum += n * x;
+                    }
+                }
+            }
+        }
+        halves
     }
 }
 

@@ -50,7 +50,9 @@ pub struct Row {
     pub shape: String,
     /// Smallest det Fe.
     pub min_det_fe: f64,
-    /// Circumferential harmonics of the tangent with negative pivots, as `harmonic:count`, or
-    /// none. Only harmonics that the symmetry of the run admits are looked at.
+    /// Circumferential harmonics with negative eigenvalues of the tangent, as `harmonic:count`
+    /// separated by spaces, or none. An axisymmetric run looks at harmonics 0 to
+    /// `output.harmonics` (only at 0 if the tube twists); any other only at its own tangent, as
+    /// `any:count`.
     pub unstable_harmonics: String,
 }

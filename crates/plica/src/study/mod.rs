@@ -9,6 +9,7 @@ mod observer;
 mod plan;
 mod problem;
 mod run;
+mod stability;
 mod summary;
 mod units;
 

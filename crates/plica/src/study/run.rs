@@ -1,6 +1,7 @@
 //! Leads a tube through its stages and writes down every accepted state.
 
 use super::manifest::Manifest;
+use super::stability::unstable_harmonics;
 use super::summary::{Ending, Summary};
 use super::units::Scale;
 use super::{Observer, Plan, Row, RunDirectory, Snapshot, StudyError, TubeProblem, forecast};
@@ -194,7 +195,7 @@ impl<'a> Record<'a> {
             side: measures.side.to_string(),
             shape: measures.shape.to_string(),
             min_det_fe: forces.smallest_jacobian,
-            unstable_harmonics: self.unstable_harmonics(state.negative_pivots),
+            unstable_harmonics: unstable_harmonics(self.problem, state, self.plan.output.harmonics),
         };
         self.directory.record(&row)?;
         let every = self.plan.output.profiles_every;
@@ -211,16 +212,6 @@ impl<'a> Record<'a> {
         self.rows.push(row);
         self.since = Instant::now();
         Ok(())
-    }
-
-    /// The harmonics that the sector admits are 0, N_C/k, 2 N_C/k, …; only for the axisymmetric
-    /// sector is it a single one, to which the pivots can be assigned.
-    fn unstable_harmonics(&self, negative_pivots: usize) -> String {
-        match (negative_pivots, self.problem.tube.sector.rings) {
-            (0, _) => "none".into(),
-            (n, 1) => format!("0:{n}"),
-            (n, _) => format!("any:{n}"),
-        }
     }
 
     fn write_profile(&self, step: usize, path: &Path<'_, TubeProblem>) -> Result<(), StudyError> {
