@@ -65,7 +65,7 @@ A case file is described, key by key, in docs/case-file.md.
 
 Exit codes:
   0    done
-  1    the run could not be finished: no equilibrium was found any more
+  1    the run could not be finished: no equilibrium was found any more, or too little memory
   2    wrong arguments, or a case with problems
   3    files could not be read or written
   130  interrupted (Ctrl-C or SIGTERM); what was computed until then is written";

@@ -44,6 +44,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     }
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
+    study::fits(&plan).map_err(Failure::Study)?;
     let mut directory =
         RunDirectory::create(&out, &text, arguments.overwrite).map_err(Failure::Study)?;
     console::tell(&format!("{}\nwriting to {}", plan.title, out.display()));

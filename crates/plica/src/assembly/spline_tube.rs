@@ -69,18 +69,25 @@ pub struct Inverted {
     pub jacobian: f64,
 }
 
-/// Calls a slab kernel for the law and the degree at hand. A new law adds a line.
+/// Calls a slab kernel for the law and the degree at hand. A new law adds one line.
 macro_rules! with_law_and_degree {
     ($self:ident, $kernel:ident, $($argument:expr),+) => {
         match $self.tube.material {
-            Material::NeoHookean(law) => match $self.degree() {
-                1 => $kernel::<_, 2>(&law, $($argument),+),
-                2 => $kernel::<_, 3>(&law, $($argument),+),
-                3 => $kernel::<_, 4>(&law, $($argument),+),
-                4 => $kernel::<_, 5>(&law, $($argument),+),
-                5 => $kernel::<_, 6>(&law, $($argument),+),
-                degree => unreachable!("degree {degree} is refused by SplineTube::new"),
-            },
+            Material::NeoHookean(law) => with_degree!($self, law, $kernel, $($argument),+),
+        }
+    };
+}
+
+/// The degree p as the number of functions p + 1 that a kernel is compiled for.
+macro_rules! with_degree {
+    ($self:ident, $law:ident, $kernel:ident, $($argument:expr),+) => {
+        match $self.degree() {
+            1 => $kernel::<_, 2>(&$law, $($argument),+),
+            2 => $kernel::<_, 3>(&$law, $($argument),+),
+            3 => $kernel::<_, 4>(&$law, $($argument),+),
+            4 => $kernel::<_, 5>(&$law, $($argument),+),
+            5 => $kernel::<_, 6>(&$law, $($argument),+),
+            degree => unreachable!("degree {degree} is refused by SplineTube::new"),
         }
     };
 }

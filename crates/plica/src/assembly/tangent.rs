@@ -4,7 +4,7 @@
 //! turned onto the slots of the element; what is left around the element is added up, then what
 //! is left through the wall, then along the tube. With N = p + 1 functions each way and one slot
 //! (axisymmetric) an element costs about 500 N³ at the points, 9 N³ (9 + 6 N) through the wall and
-//! 36 N³ (2 N + 1) along the tube: 7.4e4 multiply-adds for cubics, where multiplying out BᵀAB
+//! 9 N⁴ (N + 5) along the tube: 7.2e4 multiply-adds for cubics, where multiplying out BᵀAB
 //! would cost 9e5.
 
 use super::kinematics::Columns;

@@ -43,5 +43,14 @@ pub enum Material {
     NeoHookean(NeoHookean),
 }
 
+impl Material {
+    /// Stiffness against small longitudinal strains without lateral ones, λ + 2μ: the largest.
+    pub fn longitudinal_modulus(&self) -> f64 {
+        match self {
+            Self::NeoHookean(law) => law.lambda + 2.0 * law.mu,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests;

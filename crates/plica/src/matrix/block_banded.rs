@@ -7,7 +7,7 @@
 //! is a dense kernel of [`super::dense`]. The signs of D are those of A's eigenvalues
 //! (Sylvester), so an indefinite tangent is factored and its negative pivots are counted.
 //!
-//! Cost for n blocks: n m³ (1/3 + p + p (p+1)) multiply-adds and n (p+1) m² numbers; for the
+//! Cost for n blocks: n m³ (1/3 + p + p (p+1)) flops and n (p+1) m² numbers; for the
 //! paper's axisymmetric tube (n = 305, m = 24, p = 3) 6.5e7 and 5.6 MB.
 
 use super::dense;

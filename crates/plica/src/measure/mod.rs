@@ -77,7 +77,7 @@ impl Measures {
             max_wall_angle_deg: angle,
             overhang,
             side,
-            shape: Shape::of(deepest, &inner, angle),
+            shape: Shape::of(deepest, &inner, angle, tube.tube.diameter_ratio(load)),
         }
     }
 }

@@ -15,10 +15,11 @@ pub enum Side {
 }
 
 /// What the contracting region looks like (Okino et al. 2025, Fig. 4, name the shapes but give no
-/// measure; these thresholds are ours).
+/// measure; these thresholds are ours). V, U, square and invaginated are shapes of a tube that its
+/// circular muscles narrow; without them a tube that leaves its cylinder has collapsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// Narrowed by less than 2 % of D.
+    /// The outer face stays within 2 % of D of the cylinder.
     Straight,
     /// Narrowed, with a pointed bottom: flatness below 0.5, that of a raised cosine.
     V,
@@ -28,29 +29,32 @@ pub enum Shape {
     Square,
     /// Narrowed, with a wall that overhangs.
     Invaginated,
-    /// Not narrowed by its muscles but buckled: the outer face bulges by more than 2 % of D, or
-    /// the lumen is closed.
+    /// Buckled out of the cylinder by more than 2 % of D without a muscle that narrows it, or the
+    /// lumen is closed.
     Collapsed,
 }
 
 impl Shape {
-    /// Depth, in D, below which a tube counts as straight.
-    pub const NARROWED: f64 = 0.02;
+    /// Depth or bulge, in D, below which a tube counts as straight.
+    pub const LEAVES: f64 = 0.02;
     /// Flatness that parts V from U.
     pub const FLAT: f64 = 0.5;
     /// Wall angle from which a narrowed region is square, in degrees.
     pub const STEEP_DEG: f64 = 78.0;
 
     /// Names the shape of a tube, from the meridian of its outer face that goes deepest, that of
-    /// its inner face, and its steepest wall angle in degrees.
-    pub fn of(outer: &Wall, inner: &Wall, steepest_angle_deg: f64) -> Self {
+    /// its inner face, its steepest wall angle in degrees, and its diameter ratio Dmin/D.
+    pub fn of(outer: &Wall, inner: &Wall, steepest_angle_deg: f64, diameter_ratio: f64) -> Self {
         let depth = Tube::OUTER_RADIUS - outer.narrowest().1;
         let widest = outer.points.iter().map(|p| p.1).fold(0.0, f64::max);
         let bulge = widest - Tube::OUTER_RADIUS;
-        if inner.narrowest().1 <= 0.0 || bulge > depth.max(Self::NARROWED) {
+        let contracted = diameter_ratio <= 1.0 - Self::LEAVES;
+        if inner.narrowest().1 <= 0.0 {
             Self::Collapsed
-        } else if depth < Self::NARROWED {
+        } else if depth.max(bulge) < Self::LEAVES {
             Self::Straight
+        } else if !contracted {
+            Self::Collapsed
         } else if steepest_angle_deg >= 90.0 {
             Self::Invaginated
         } else if steepest_angle_deg >= Self::STEEP_DEG {
@@ -115,16 +119,17 @@ mod tests {
         }
     }
 
-    fn named(corners: &[(f64, f64)]) -> (Shape, Side) {
+    fn shape(corners: &[(f64, f64)], diameter_ratio: f64) -> Shape {
         let outer = wall(corners);
         let mut inner = outer.clone();
         for p in &mut inner.points {
             p.1 -= 0.06;
         }
-        (
-            Shape::of(&outer, &inner, outer.steepest_angle_deg()),
-            outer.overhang().1,
-        )
+        Shape::of(&outer, &inner, outer.steepest_angle_deg(), diameter_ratio)
+    }
+
+    fn named(corners: &[(f64, f64)]) -> (Shape, Side) {
+        (shape(corners, 0.25), wall(corners).overhang().1)
     }
 
     #[test]
@@ -171,8 +176,21 @@ mod tests {
             named(&[(0.0, 0.5), (3.0, 0.5)]),
             (Shape::Straight, Side::None)
         );
-        let bulging = [(0.0, 0.5), (0.5, 0.6), (1.0, 0.48), (3.0, 0.5)];
-        assert_eq!(named(&bulging), (Shape::Collapsed, Side::None));
+    }
+
+    #[test]
+    fn without_a_muscle_that_narrows_it_a_tube_collapses() {
+        let buckled = [(0.0, 0.5), (0.5, 0.6), (0.4, 0.3), (1.0, 0.5), (3.0, 0.5)];
+        assert_eq!(shape(&buckled, 1.0), Shape::Collapsed);
+        assert_eq!(shape(&buckled, 0.25), Shape::Invaginated);
+        assert_eq!(
+            shape(&[(0.0, 0.5), (0.5, 0.51), (3.0, 0.5)], 1.0),
+            Shape::Straight
+        );
+        assert_eq!(
+            shape(&[(0.0, 0.5), (0.5, 0.05), (3.0, 0.5)], 0.25),
+            Shape::Collapsed
+        );
     }
 
     #[test]

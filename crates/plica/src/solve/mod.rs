@@ -5,7 +5,8 @@
 //!
 //! - [`newton`]: K Δu = −R with the energy as judge. Refuses an indefinite tangent.
 //! - [`relaxation`]: (K + α C) Δu = −R, backward Euler in pseudo-time with a drag α that shrinks
-//!   as the residual does; every step lowers the energy, so it ends in a stable state.
+//!   as the residual does; every step lowers the energy, so it leaves every unstable state but
+//!   one that its symmetry keeps it on.
 //! - [`pseudo_time`]: the same with a drag that stays, and the paper's Newmark recurrence.
 //! - [`Path`]: from state to state along a load; predicts with the path's tangent, then takes the
 //!   first of these that arrives, and halves the step when none does.

@@ -23,7 +23,7 @@ pub fn newton<P: Equilibrium>(
     let mut forces = problem.forces(load, &u).map_err(Failure::Broken)?;
     let mut imbalance = forces.imbalance(given);
     let mut iterations = 0;
-    while imbalance > settings.tolerance {
+    while imbalance > settings.tolerance || imbalance.is_nan() {
         if iterations == settings.newton_iterations {
             return Err(Failure::NotConverged {
                 iterations,
@@ -44,7 +44,7 @@ pub fn newton<P: Equilibrium>(
         let (length, next, next_forces) = match descend(problem, load, &u, &step, &forces) {
             Ok(found) => found,
             // Rounding: the energy no longer tells the states apart.
-            Err(_) if imbalance <= EQUILIBRIUM => break,
+            Err(Descent::None) if imbalance <= EQUILIBRIUM => break,
             Err(Descent::Broken(broken)) => return Err(Failure::Broken(broken)),
             Err(Descent::None) => {
                 return Err(Failure::NoDescent {

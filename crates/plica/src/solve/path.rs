@@ -25,7 +25,7 @@ pub struct Path<'a, P: Equilibrium> {
     t: f64,
     /// The state before on this leg, unless a snap lies between.
     behind: Option<Behind>,
-    /// How often the last step had to be halved; the next begins there.
+    /// How often the last step had to be halved; the next begins there, or one halving longer.
     pace: usize,
     /// u̇ of the pseudo-time.
     velocity: Vec<f64>,
@@ -55,8 +55,8 @@ pub struct Step {
 pub struct PathError<B: std::error::Error> {
     /// Methods and how they failed.
     pub tried: Vec<(Method, Failure<B>)>,
-    /// Linear solves that were spent.
-    pub iterations: usize,
+    /// What was done on the way, up to the last state that was found.
+    pub step: Step,
 }
 
 impl<B: std::error::Error> PathError<B> {
@@ -160,7 +160,9 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                     None
                 }
             };
-            let halve_first = halvings < NEWTON_HALVINGS.min(self.settings.halvings);
+            // Shorter steps help a tangent that leads too far, not one that leads away.
+            let halve_first = self.state.negative_pivots == 0
+                && halvings < NEWTON_HALVINGS.min(self.settings.halvings);
             let stopped = |tried: &[(_, _)]| {
                 tried
                     .iter()
@@ -181,10 +183,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                     self.pace = halvings;
                 }
                 None if stopped(&tried) || halvings >= self.settings.halvings => {
-                    return Err(PathError {
-                        tried,
-                        iterations: step.iterations,
-                    });
+                    return Err(PathError { tried, step });
                 }
                 None => (halvings, done) = (halvings + 1, 2 * done),
             }
@@ -266,9 +265,9 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             drag_work: 0.0,
         };
         let (load, settings) = (self.load_at(t), &self.settings);
-        let fail = |method, failed, iterations| PathError {
+        let fail = |method, failed, step| PathError {
             tried: vec![(method, failed)],
-            iterations,
+            step,
         };
         let mut velocity = self.velocity.clone();
         let dragged = pseudo_time(
@@ -280,13 +279,13 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             settings,
             watch,
         )
-        .map_err(|failed| fail(Method::PseudoTime, failed, 0))?;
+        .map_err(|failed| fail(Method::PseudoTime, failed, step))?;
         step.iterations += dragged.iterations;
         step.drag_work += dragged.drag_work;
         let found = if scheme.settle {
             velocity.fill(0.0);
             relaxation(self.problem, &load, dragged.u, settings, watch)
-                .map_err(|failed| fail(Method::Relaxation, failed, step.iterations))?
+                .map_err(|failed| fail(Method::Relaxation, failed, step))?
         } else {
             Found {
                 iterations: 0,
@@ -402,7 +401,7 @@ fn accepted<P: Equilibrium>(
         load,
         energy: forces.energy,
         imbalance: forces.imbalance(problem.given()),
-        negative_pivots: factor.as_ref().map_or(0, |f| f.negative_pivots()),
+        negative_pivots: factor.as_ref().map_or(1, |f| f.negative_pivots()),
         factor,
         u,
     }

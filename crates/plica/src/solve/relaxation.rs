@@ -13,7 +13,8 @@ const LARGEST_DRAG: f64 = 1e12;
 /// From `u`, which satisfies the supports: (K + α C) Δu = −R, backward Euler in pseudo-time. A step
 /// is taken if the matrix is positive definite, no element inverts and the energy falls; then the
 /// drag shrinks with the residual (switched evolution relaxation). Otherwise it grows. This
-/// follows the tube down to the next state that is stable, whatever lies between.
+/// follows the tube down to the next equilibrium, whatever lies between. It is stable unless a
+/// symmetry of the start kept the tube on a saddle; the caller looks at the tangent there.
 pub fn relaxation<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
@@ -27,8 +28,8 @@ pub fn relaxation<P: Equilibrium>(
     let mut alpha = settings.relaxation_drag;
     let (mut iterations, mut drag_work) = (0, 0.0);
     let mut tangent = None;
-    let mut refused = None;
-    while imbalance > settings.tolerance {
+    let (mut refused, mut rejected) = (None, 0);
+    while imbalance > settings.tolerance || imbalance.is_nan() {
         if alpha > LARGEST_DRAG {
             return Err(refused.unwrap_or(Failure::NoDescent {
                 iterations,
@@ -67,11 +68,14 @@ pub fn relaxation<P: Equilibrium>(
                 let before = imbalance;
                 imbalance = forces.imbalance(given);
                 alpha *= (imbalance / before).clamp(SOFTER.1, SOFTER.0);
-                refused = None;
+                (refused, rejected) = (None, 0);
             }
-            // Rounding keeps the residual where it is.
-            Ok(_) if imbalance <= EQUILIBRIUM => break,
-            Ok(_) => (alpha, tangent) = (alpha * STIFFER, Some(K)),
+            // Rounding keeps the residual where it is, with whatever drag.
+            Ok(_) if imbalance <= EQUILIBRIUM && rejected >= 3 => break,
+            Ok(_) => {
+                rejected += 1;
+                (alpha, tangent) = (alpha * STIFFER, Some(K));
+            }
             Err(broken) => {
                 refused = Some(Failure::Broken(broken));
                 (alpha, tangent) = (alpha * STIFFER, Some(K));

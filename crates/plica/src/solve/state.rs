@@ -30,17 +30,13 @@ pub struct Forces {
     pub energy: f64,
     /// R = ∂W/∂u, for every unknown.
     pub residual: Vec<f64>,
-    /// The size of the forces whose balance R is.
+    /// The size of the forces whose balance R is; never zero.
     pub in_play: f64,
     /// How much the energy may be off by rounding.
     pub rounding: f64,
 }
 
 impl Forces {
-    /// Forces in play below which a residual is compared with this instead, in E·D²: what is left
-    /// of a tube at rest.
-    pub const FLOOR: f64 = 1e-9;
-
     /// |R| over the free unknowns, relative to the forces in play.
     pub fn imbalance(&self, given: &[bool]) -> f64 {
         let free = self
@@ -48,7 +44,7 @@ impl Forces {
             .iter()
             .zip(given)
             .filter(|(_, given)| !**given);
-        free.map(|(r, _)| r * r).sum::<f64>().sqrt() / self.in_play.max(Self::FLOOR)
+        free.map(|(r, _)| r * r).sum::<f64>().sqrt() / self.in_play
     }
 }
 
@@ -63,7 +59,8 @@ pub struct State<L> {
     pub energy: f64,
     /// Its residual without drag, relative to the forces in play.
     pub imbalance: f64,
-    /// Eigenvalues of its tangent that are negative: 0 if it is stable.
+    /// Eigenvalues of its tangent that are negative: 0 if it is stable. A singular tangent, at the
+    /// edge of stability, counts as one.
     pub negative_pivots: usize,
     /// The factored tangent; none where it is singular.
     pub(super) factor: Option<Factor>,

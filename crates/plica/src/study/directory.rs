@@ -22,6 +22,9 @@ pub struct RunDirectory {
     history: Option<csv::Writer<File>>,
 }
 
+/// What a manifest names as its program.
+pub const PROGRAM: &str = "plica";
+
 /// Name of the file by which a directory is known to be a run.
 const MANIFEST: &str = "manifest.json";
 
@@ -36,7 +39,7 @@ impl RunDirectory {
         match fs::read_dir(path) {
             Ok(mut entries) => {
                 if entries.next().is_some() {
-                    if !path.join(MANIFEST).is_file() {
+                    if !is_a_run(path) {
                         return Err(StudyError::NotARun(path.to_owned()));
                     }
                     if !overwrite {
@@ -56,7 +59,8 @@ impl RunDirectory {
             history: None,
         };
         directory.write("case.toml", case_text.as_bytes())?;
-        directory.write(MANIFEST, b"{}\n")?;
+        let begun = format!("{{ \"program\": \"{PROGRAM}\" }}\n");
+        directory.write(MANIFEST, begun.as_bytes())?;
         Ok(directory)
     }
 
@@ -108,7 +112,7 @@ impl RunDirectory {
     ) -> Result<(), StudyError> {
         let mut text = header.join(",") + "\n";
         for row in rows {
-            let numbers: Vec<String> = row.iter().map(|x| format!("{x:.9}")).collect();
+            let numbers: Vec<String> = row.iter().map(|x| format!("{x:.9e}")).collect();
             text += &(numbers.join(",") + "\n");
         }
         self.write(name, text.as_bytes())
@@ -134,28 +138,104 @@ impl RunDirectory {
     }
 }
 
-/// Takes what a former run wrote out of its directory; files it did not write stay.
+/// Whether a directory is that of a former run: its manifest says so.
+fn is_a_run(path: &Path) -> bool {
+    let manifest = fs::read(path.join(MANIFEST)).unwrap_or_default();
+    serde_json::from_slice::<serde_json::Value>(&manifest)
+        .is_ok_and(|manifest| manifest["program"] == PROGRAM)
+}
+
+/// Takes what a former run wrote out of its directory, known by name; every other file stays. The
+/// manifest goes last, so that what is left of a broken attempt is still known as a run.
 fn clear(path: &Path) -> Result<(), StudyError> {
-    let trouble = |path: &Path, source| StudyError::File {
-        path: path.to_owned(),
-        source,
-    };
-    let mut old: Vec<PathBuf> = ["case.toml", "history.csv", MANIFEST]
-        .iter()
-        .map(|name| path.join(name))
-        .collect();
-    for (folder, extension) in [(path.to_owned(), "png"), (path.join("profiles"), "csv")] {
-        let Ok(entries) = fs::read_dir(&folder) else {
-            continue;
-        };
-        let files = entries.flatten().map(|entry| entry.path());
-        old.extend(files.filter(|file| file.extension().is_some_and(|e| e == extension)));
+    let mut old: Vec<PathBuf> = [
+        "case.toml",
+        "history.csv",
+        "energy.png",
+        "walls.png",
+        "tube.png",
+    ]
+    .iter()
+    .map(|name| path.join(name))
+    .collect();
+    if let Ok(entries) = fs::read_dir(path.join("profiles")) {
+        old.extend(
+            entries
+                .flatten()
+                .map(|entry| entry.path())
+                .filter(|file| is_a_profile(file)),
+        );
     }
+    old.push(path.join(MANIFEST));
     for file in old {
         match fs::remove_file(&file) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(trouble(&file, e)),
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                return Err(StudyError::File {
+                    path: file,
+                    source: e,
+                });
+            }
             _ => {}
         }
     }
     Ok(())
+}
+
+/// Whether a file is called `state-NNNN.csv`.
+fn is_a_profile(file: &Path) -> bool {
+    let name = file
+        .file_name()
+        .and_then(|name| name.to_str())
+        .unwrap_or_default();
+    let number = name
+        .strip_prefix("state-")
+        .and_then(|rest| rest.strip_suffix(".csv"));
+    number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A directory of its own for a test, empty.
+    fn scratch(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("plica-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        path
+    }
+
+    #[test]
+    fn what_is_not_a_run_is_never_touched() {
+        let path = scratch("not-a-run");
+        fs::write(path.join(MANIFEST), r#"{"name": "my web app"}"#).unwrap();
+        fs::write(path.join("logo.png"), "logo").unwrap();
+        let refused = RunDirectory::create(&path, "case", true);
+        assert!(matches!(refused, Err(StudyError::NotARun(_))));
+        assert_eq!(fs::read(path.join("logo.png")).unwrap(), b"logo");
+        fs::remove_dir_all(path).unwrap();
+    }
+
+    #[test]
+    fn a_former_run_is_replaced_when_asked_and_other_files_stay() {
+        let path = scratch("former-run");
+        RunDirectory::create(&path, "first", false).unwrap();
+        fs::create_dir_all(path.join("profiles")).unwrap();
+        for name in [
+            "profiles/state-0003.csv",
+            "profiles/mine.csv",
+            "logo.png",
+            "energy.png",
+        ] {
+            fs::write(path.join(name), name).unwrap();
+        }
+        let again = RunDirectory::create(&path, "second", false);
+        assert!(matches!(again, Err(StudyError::Occupied(_))));
+        RunDirectory::create(&path, "second", true).unwrap();
+        assert_eq!(fs::read(path.join("case.toml")).unwrap(), b"second");
+        let stays = |name: &str| path.join(name).exists();
+        assert!(stays("logo.png") && stays("profiles/mine.csv"));
+        assert!(!stays("energy.png") && !stays("profiles/state-0003.csv"));
+        fs::remove_dir_all(path).unwrap();
+    }
 }

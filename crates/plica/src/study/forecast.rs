@@ -30,6 +30,11 @@ const PROGRAM_BYTES: u64 = 80 << 20;
 /// Elements along the piece of tube on which the speed is measured.
 const PIECE: usize = 16;
 
+/// Memory of a matrix above which its factorisation is not timed but counted.
+const TIMED_BYTES: f64 = 2e8;
+/// What the dense kernels then are taken to do.
+const FLOPS_PER_SECOND: f64 = 2e10;
+
 /// Forecasts a study.
 pub fn forecast(plan: &Plan) -> Forecast {
     let mesh = &plan.mesh;
@@ -76,6 +81,12 @@ fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
         timed * mesh.around.div_ceil(timed)
     };
     let more = rings as f64 / timed as f64;
+    // Not worth timing, or not worth the memory: a round number of flops a second.
+    let row = (3 * mesh.thickness * timed) as f64;
+    if 8.0 * (piece + p) as f64 * (p + 1) as f64 * row * row > TIMED_BYTES {
+        let row = (3 * mesh.thickness * rings) as f64;
+        return mesh.axial as f64 * row.powi(3) * (p * (p + 2)) as f64 / FLOPS_PER_SECOND;
+    }
     let short = Mesh {
         axial: piece + p,
         around,

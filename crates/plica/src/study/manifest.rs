@@ -46,7 +46,7 @@ impl Manifest {
     pub fn begin(plan: &Plan, directory: &RunDirectory) -> Self {
         let scale = Scale::of(plan.units.as_ref());
         Self {
-            program: "plica",
+            program: super::directory::PROGRAM,
             version: env!("CARGO_PKG_VERSION"),
             title: plan.title.clone(),
             case_hash: directory.case_hash().to_owned(),

@@ -20,6 +20,6 @@ pub use history::Row;
 pub use observer::Observer;
 pub use plan::{Output, Plan, Stage, Units};
 pub use problem::TubeProblem;
-pub use run::run;
+pub use run::{fits, run};
 pub use summary::{Ending, Snapshot, Summary};
 pub use units::Scale;

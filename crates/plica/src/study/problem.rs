@@ -14,15 +14,20 @@ pub struct TubeProblem {
     drag: BlockBanded,
     /// Reference volume of the sector.
     volume: f64,
+    /// Forces in play that a tube at rest is credited with, so that what rounding leaves of it
+    /// (some 1e-17 times the stiffness of the wall) is small against them.
+    at_rest: f64,
 }
 
 impl TubeProblem {
     /// Puts a tube before the solver.
     pub fn new(tube: SplineTube) -> Self {
+        let at_rest = 3e-11 * tube.tube.material.longitudinal_modulus();
         let (outer, inner) = (Tube::OUTER_RADIUS, tube.tube.inner_radius());
         Self {
             drag: tube.drag(),
             volume: PI * (outer * outer - inner * inner) * tube.tube.length / tube.sector.repeats(),
+            at_rest,
             tube,
         }
     }
@@ -48,7 +53,7 @@ impl Equilibrium for TubeProblem {
         Ok(Forces {
             energy,
             residual: forces.residual,
-            in_play: forces.in_play,
+            in_play: forces.in_play.max(self.at_rest),
             // Every point adds an energy density of rounding size.
             rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * energy.abs(),
         })

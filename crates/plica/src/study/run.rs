@@ -17,7 +17,7 @@ pub fn run(
     directory: &mut RunDirectory,
     observer: &mut dyn Observer,
 ) -> Result<Summary, StudyError> {
-    refuse_what_does_not_fit(plan)?;
+    fits(plan)?;
     let mut manifest = Manifest::begin(plan, directory);
     directory.write_manifest(&manifest)?;
 
@@ -77,12 +77,7 @@ fn follow(
                 Err(error) => {
                     // What was reached on the way is a good state too.
                     if path.reached() > from {
-                        let part = Step {
-                            method: Method::Newton,
-                            iterations: error.iterations,
-                            drag_work: 0.0,
-                        };
-                        record.accept(&stage.name, &path, &part, true, observer)?;
+                        record.accept(&stage.name, &path, &error.step, true, observer)?;
                     }
                     return Ok(if error.stopped() {
                         Ending::Stopped
@@ -103,7 +98,9 @@ fn follow(
     Ok(Ending::Complete)
 }
 
-fn refuse_what_does_not_fit(plan: &Plan) -> Result<(), StudyError> {
+/// Refuses a study that the free memory of the machine does not hold, where the system tells
+/// (Linux). [`run`] asks this too; ask first if something would be lost by then.
+pub fn fits(plan: &Plan) -> Result<(), StudyError> {
     let (needed, Some(available)) = (forecast::memory_bytes(plan), available_memory()) else {
         return Ok(());
     };

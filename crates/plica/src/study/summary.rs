@@ -5,6 +5,7 @@ use super::{Plan, Row};
 use crate::assembly::Inverted;
 use crate::solve::PathError;
 use crate::tube::Load;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -132,9 +133,37 @@ impl Summary {
         self.rows.iter().find(|row| row.max_wall_angle_deg >= 90.0)
     }
 
+    /// The harmonics that any state is unstable to, with those states.
+    pub fn lost_harmonics(&self) -> BTreeMap<&str, Vec<&Row>> {
+        let mut lost: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
+        for row in self
+            .rows
+            .iter()
+            .filter(|row| row.unstable_harmonics != "none")
+        {
+            for harmonic in row.unstable_harmonics.split(' ') {
+                let (harmonic, _count) = harmonic.split_once(':').unwrap_or((harmonic, ""));
+                lost.entry(harmonic).or_default().push(row);
+            }
+        }
+        lost
+    }
+
     /// The side the tube invaginates to at the end.
     pub fn side(&self) -> &str {
-        self.rows.last().map_or("none", |row| &row.side)
+        let invaginated = self.rows.last().filter(|row| row.shape == "invaginated");
+        invaginated.map_or("none", |row| &row.side)
+    }
+}
+
+/// What a harmonic does to a tube.
+fn named(harmonic: &str) -> String {
+    match harmonic {
+        "0" => "harmonic 0 (along or around the axis)".into(),
+        "1" => "harmonic 1 (sideways)".into(),
+        "2" => "harmonic 2 (oval)".into(),
+        "any" => "within the symmetry".into(),
+        n => format!("harmonic {n} ({n} lobes)"),
     }
 }
 
@@ -186,23 +215,39 @@ impl fmt::Display for Summary {
             format!("{}, {} ({})", energy(last), place(last), last.shape),
         )?;
         let count = |what: fn(&&Row) -> bool| self.rows.iter().filter(what).count();
-        let (out, unstable) = (
-            count(|row| row.equilibrium == "no"),
-            count(|row| row.unstable_harmonics != "none"),
-        );
-        let worst = self.rows[1..]
-            .iter()
-            .map(|row| row.residual)
-            .fold(0.0, f64::max);
+        let found = self.rows.iter().filter(|row| row.method != "rest");
+        let worst = found.map(|row| row.residual).fold(0.0, f64::max);
+        let balance = match count(|row| row.equilibrium == "no") {
+            0 => "all in equilibrium".to_owned(),
+            out => format!("{out} out of equilibrium"),
+        };
+        let states = self.rows.len();
         line(
             f,
             "states",
-            format!(
-                "{}, {out} out of equilibrium (largest residual {worst:.0e}), {unstable} unstable \
-                 within the symmetry",
-                self.rows.len(),
-            ),
+            format!("{states}, {balance} (largest residual {worst:.0e})"),
         )?;
+        let lost = self.lost_harmonics();
+        if lost.is_empty() {
+            line(f, "unstable", "no state".into())?;
+        }
+        for (i, (harmonic, rows)) in lost.iter().enumerate() {
+            let name = if i == 0 { "unstable" } else { "" };
+            let (first, last) = (rows[0], rows[rows.len() - 1]);
+            let span = if first.diameter_ratio == last.diameter_ratio {
+                format!(
+                    "Lmax/L = {:.4} to {:.4}",
+                    first.length_ratio, last.length_ratio
+                )
+            } else {
+                format!("{} to {}", place(first), place(last))
+            };
+            line(
+                f,
+                name,
+                format!("to {} at {} state(s), {span}", named(harmonic), rows.len()),
+            )?;
+        }
         let relaxed = count(|row| row.method == "relaxation");
         let solves: usize = self.rows.iter().map(|row| row.iterations).sum();
         let seconds: f64 = self.rows.iter().map(|row| row.seconds).sum();

@@ -18,7 +18,7 @@ pub trait Real:
 {
     /// A plain number, in every lane of a number like this one.
     fn like(self, value: f64) -> Self;
-    /// `self · b + c`, rounded once.
+    /// `self · b + c`, fused where the processor can.
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// Natural logarithm, lane by lane.
     fn ln(self) -> Self;
