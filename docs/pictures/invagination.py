@@ -19,7 +19,7 @@ begins = begins if len(begins) > 5 else sys.exit("a picture of four panels is ne
 tops, bar = begins[-6:-2], begins[-2]
 
 wide, high = 1290, max(b - a for a, b in zip(tops, tops[1:] + [bar]))
-sheet = Image.new("RGB", (2 * wide, 2 * high + height - bar - 20), "white")
+sheet = Image.new("RGB", (2 * wide, 2 * high + height - bar), "white")
 for i, (top, bottom) in enumerate(zip(tops, tops[1:] + [bar])):
     panel = page.crop((20, top - 8, 20 + wide, bottom - 8))
     sheet.paste(panel, (i % 2 * wide, i // 2 * high))

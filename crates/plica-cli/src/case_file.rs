@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use plica::case;
 use plica::study::Plan;
+use std::io::Read;
 use std::path::Path;
 
 /// Larger than any case; smaller than the memory of any machine.
@@ -16,7 +17,18 @@ pub fn open(path: &Path) -> Result<(String, Plan), Failure> {
         let what = format!("{} is too large for a case ({size} bytes)", path.display());
         return Err(Failure::Usage(what));
     }
-    let bytes = std::fs::read(path).map_err(trouble)?;
+    // A device or a pipe has no size; no more than the largest case is read of it.
+    let mut bytes = vec![];
+    let file = std::fs::File::open(path).map_err(trouble)?;
+    file.take(LARGEST + 1)
+        .read_to_end(&mut bytes)
+        .map_err(trouble)?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(Failure::Usage(format!(
+            "{} is too large for a case",
+            path.display()
+        )));
+    }
     let Ok(text) = String::from_utf8(bytes) else {
         let what = format!("{} is not text (a case is TOML, in UTF-8)", path.display());
         return Err(Failure::Usage(what));

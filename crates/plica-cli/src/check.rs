@@ -5,7 +5,7 @@ use crate::{case_file, console};
 use plica::case::advice;
 use plica::solve::{Integrator, Scheme};
 use plica::spline::Circle;
-use plica::study::{Plan, forecast};
+use plica::study::{Plan, fits, forecast};
 use plica::tube::Symmetry;
 use std::path::Path;
 
@@ -19,7 +19,8 @@ pub fn check(path: &Path) -> Result<(), Failure> {
     for warning in advice(&plan) {
         page += &format!("\nwarning: {warning}");
     }
-    console::say(&(page.trim_end().to_owned() + "\n"))
+    console::say(&(page.trim_end().to_owned() + "\n"))?;
+    fits(&plan).map_err(Failure::Study)
 }
 
 fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
@@ -91,7 +92,10 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         ),
         (
             "time",
-            format!("about {}", duration(forecast.seconds_estimate)),
+            format!(
+                "about {}, more where the tube snaps, and pictures",
+                duration(forecast.seconds_estimate)
+            ),
         ),
     ];
     if let Some(units) = &plan.units {

@@ -57,6 +57,8 @@ fn the_columns_of_the_history_are_listed() {
         diameter_ratio: 0.0,
         colon_displacement: 0.0,
         ileum_displacement: 0.0,
+        colon_twist_deg: 0.0,
+        ileum_twist_deg: 0.0,
         energy: 0.0,
         energy_ungrown_volume: 0.0,
         residual: 0.0,

@@ -3,7 +3,7 @@
 //! A muscle changes the stress-free state of the wall (Rodriguez et al. 1994; Okino et al. 2025,
 //! Eqs. (1)–(3)): F = Fe · Fp, Fp = θζ ζ⊗ζ + θη η⊗η + ξ⊗ξ. Over a zone [a, b] with profile s(z):
 //!
-//! - circular: θη(z) = 1 − (1 − Dmin/D) s(z), driven by the diameter ratio Dmin/D;
+//! - circular: θη(z) = 1 − (1 − Dmin/D) s(z)/max s, driven by the diameter ratio Dmin/D;
 //! - longitudinal: θζ(z) = 1 + (Lmax/L − 1) L/∫s dz · s(z), driven by the length ratio Lmax/L,
 //!   so that the grown tube is Lmax long.
 //!
@@ -54,7 +54,7 @@ impl Muscle {
     fn amplitude(&self, ratio: f64, length: f64) -> f64 {
         let [a, b] = self.zone;
         match self.direction {
-            Direction::Circular => ratio - 1.0,
+            Direction::Circular => (ratio - 1.0) / self.profile.largest(),
             Direction::Longitudinal => (ratio - 1.0) * length / ((b - a) * self.profile.integral()),
         }
     }
@@ -106,6 +106,9 @@ mod tests {
         let contracted = muscle(Direction::Circular, Profile::RaisedCosine);
         assert!((contracted.stretch(0.75, 0.25, 3.0) - 0.25).abs() < 1e-14);
         assert_eq!(contracted.stretch(0.49, 0.25, 3.0), 1.0);
+        let low = Profile::Table(vec![(0.0, 0.0), (0.5, 0.1), (1.0, 0.0)]);
+        let contracted = muscle(Direction::Circular, low);
+        assert!((contracted.stretch(0.75, 0.25, 3.0) - 0.25).abs() < 1e-14);
         assert!((contracted.smallest_stretch(0.25, 3.0) - 0.25).abs() < 1e-14);
     }
 }

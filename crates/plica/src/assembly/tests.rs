@@ -398,8 +398,14 @@ fn the_tangent_is_the_slope_of_the_residual() {
 
 /// The unknowns of a sector of one ring, on every ring of a larger one.
 fn replicated(u: &[f64], rings: usize) -> Vec<f64> {
-    u.iter()
-        .flat_map(|&x| std::iter::repeat_n(x, rings))
+    repeated(u, 1, rings)
+}
+
+/// The unknowns of a sector of `few` rings, again and again on `many`.
+fn repeated(u: &[f64], few: usize, many: usize) -> Vec<f64> {
+    let sectors = u.chunks(few);
+    sectors
+        .flat_map(|sector| sector.iter().copied().cycle().take(many))
         .collect()
 }
 
@@ -438,6 +444,81 @@ fn larger_sectors_agree_with_a_sector_of_one_ring() {
             }
         }
     }
+}
+
+#[test]
+fn the_whole_tube_agrees_with_a_sector_that_is_not_axisymmetric() {
+    for degree in 1..=5 {
+        for rings in [2, 3] {
+            let TubeAndLoad { tube, load } = tube_and_load(degree, [9, 2, 6], rings);
+            let whole = tube_and_load(degree, [9, 2, 6], 6).tube;
+            let u = wavy(&tube);
+            let few = tube.forces(&load, &u).unwrap();
+            let many = whole.forces(&load, &repeated(&u, rings, 6)).unwrap();
+            let name = format!("degree {degree}, {rings} rings");
+            assert!((many.energy / few.energy - 1.0).abs() < 1e-12, "{name}");
+            assert_close(&name, many.residual, &repeated(&few.residual, rings, 6));
+        }
+    }
+}
+
+/// The displacement (z cos nφ, r cos nφ, −θ sin nφ) of a whole tube, from (z, r, θ) of one ring.
+fn harmonic(whole: &SplineTube, u: &[f64], n: usize) -> Vec<f64> {
+    let rings = whole.sector.rings;
+    let waves: Vec<(f64, f64)> = (0..rings)
+        .map(|j| (n as f64 * whole.sector.ring_angle(j)).sin_cos())
+        .collect();
+    let mut pattern = replicated(u, rings);
+    for (i, rings) in pattern.chunks_mut(rings).enumerate() {
+        for (x, (sin, cos)) in rings.iter_mut().zip(&waves) {
+            *x *= if i % 3 == 2 { -sin } else { *cos };
+        }
+    }
+    pattern
+}
+
+#[test]
+fn harmonic_blocks_are_those_of_the_whole_tube() {
+    let around = 12;
+    let one = tube_and_load(3, [5, 2, around], 1).tube;
+    let whole = tube_and_load(3, [5, 2, around], around).tube;
+    // Strong enough that the wall buckles.
+    let load = Load {
+        muscles: vec![0.5, 1.5],
+        ..one.tube.rest()
+    };
+    let u = unknowns(&one, |z, r, _| {
+        let inside = (PI * z / 1.5).sin();
+        [0.02 * (2.0 * z).sin() * inside, -0.1 * r * inside, 0.0]
+    });
+    let mut K = whole.tangent(&load, &replicated(&u, around));
+    let v = direction(&one);
+    for n in 1..around / 2 {
+        // Quadratic forms are 2/N_C of the whole tube's and so is |cos nφ|²: the blocks are equal.
+        let mut block = vec![0.0; v.len()];
+        one.harmonic_tangent(&load, &u, n)
+            .multiply_add(1.0, &v, &mut block);
+        let mut product = vec![0.0; whole.unknowns()];
+        K.multiply_add(1.0, &harmonic(&whole, &v, n), &mut product);
+        let expected = harmonic(&whole, &block, n);
+        assert_close(&format!("harmonic {n}"), product, &expected);
+    }
+
+    let negative = |n: usize| {
+        let mut block = match n {
+            0 => one.tangent(&load, &u),
+            _ => one.harmonic_tangent(&load, &u, n),
+        };
+        block.constrain(&one.given_in_harmonic(n));
+        block.factor().unwrap().negative_pivots()
+    };
+    let counts: Vec<usize> = (0..=around / 2).map(negative).collect();
+    assert!(counts[1..around / 2].iter().any(|&n| n > 0), "{counts:?}");
+    // Every harmonic but the first and the last comes as a cosine and as a sine.
+    let expected = 2 * counts.iter().sum::<usize>() - counts[0] - counts[around / 2];
+    K.constrain(whole.given());
+    let found = K.factor().unwrap().negative_pivots();
+    assert_eq!(found, expected, "{counts:?}");
 }
 
 #[test]

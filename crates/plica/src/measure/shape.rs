@@ -10,7 +10,7 @@ pub enum Side {
     Colon,
     /// Toward z = L.
     Ileum,
-    /// It does not.
+    /// It does not, or to both sides alike.
     None,
 }
 
@@ -19,7 +19,7 @@ pub enum Side {
 /// circular muscles narrow; without them a tube that leaves its cylinder has collapsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// The outer face stays within 2 % of D of the cylinder.
+    /// The outer face stays within 2 % of D of the cylinder, or its circular muscles widen it.
     Straight,
     /// Narrowed, with a pointed bottom: flatness below 0.5, that of a raised cosine.
     V,
@@ -51,7 +51,7 @@ impl Shape {
         let contracted = diameter_ratio <= 1.0 - Self::LEAVES;
         if inner.narrowest().1 <= 0.0 {
             Self::Collapsed
-        } else if depth.max(bulge) < Self::LEAVES {
+        } else if depth.max(bulge) < Self::LEAVES || diameter_ratio > 1.0 {
             Self::Straight
         } else if !contracted {
             Self::Collapsed

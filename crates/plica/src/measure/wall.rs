@@ -91,7 +91,8 @@ impl Wall {
             runs_back(&self.points[middle..]),
         );
         let side = match colon.max(ileum) {
-            most if most <= 0.0 => Side::None,
+            // Nowhere, or on both sides alike.
+            most if most <= 0.0 || (colon - ileum).abs() < 1e-6 => Side::None,
             most if most == colon => Side::Colon,
             _ => Side::Ileum,
         };

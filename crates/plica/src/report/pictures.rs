@@ -150,6 +150,9 @@ fn cutaway(plan: &Plan, summary: &Summary, story: &Story<'_>, tube: &SplineTube)
     }
 }
 
+/// Position (z, x, y) and strain energy density.
+type Sampled = ([f64; 3], f64);
+
 /// The surfaces of a tube with its near half taken away, coloured by strain energy density.
 fn surfaces(plan: &Plan, tube: &SplineTube, snapshot: &Snapshot) -> Vec<Surface> {
     let along = tube.axial.elements();
@@ -164,11 +167,13 @@ fn surfaces(plan: &Plan, tube: &SplineTube, snapshot: &Snapshot) -> Vec<Surface>
         let z = from + (to - from) * (at - element as f64);
         let radius = plan.tube.inner_radius() + xi * plan.tube.thickness;
         let sample = tube.sample(&snapshot.load, &snapshot.u, Point { z, radius, angle });
-        (sample.position, sample.energy_density)
+        // What rounding leaves of a wall without stress is no energy.
+        let density = sample.energy_density;
+        (sample.position, if density < 1e-12 { 0.0 } else { density })
     };
     // Where every meridian is the same, one is sampled and turned.
     let axisymmetric = tube.sector.rings == 1;
-    let known: RefCell<HashMap<[u64; 2], ([f64; 3], f64)>> = RefCell::default();
+    let known: RefCell<HashMap<[u64; 2], Sampled>> = RefCell::default();
     opening.surfaces(|zeta, angle, xi| {
         if !axisymmetric {
             let ([z, x, y], value) = sample(zeta, angle, xi);

@@ -27,6 +27,8 @@ mod pseudo_time;
 mod relaxation;
 mod settings;
 mod state;
+#[cfg(test)]
+mod tests;
 
 pub use newton::newton;
 pub use path::{Path, PathError, Step};

@@ -18,6 +18,10 @@ pub struct Row {
     pub colon_displacement: f64,
     /// Axial displacement of the ileum end.
     pub ileum_displacement: f64,
+    /// Twist of the colon end about the axis, in degrees.
+    pub colon_twist_deg: f64,
+    /// Twist of the ileum end.
+    pub ileum_twist_deg: f64,
     /// Strain energy W = ∫ w det Fp dV₀, over the grown volume.
     pub energy: f64,
     /// Strain energy ∫ w dV₀, over the ungrown volume, as some other programs report it.

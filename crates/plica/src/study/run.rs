@@ -176,12 +176,19 @@ impl<'a> Record<'a> {
             diameter_ratio: self.plan.tube.diameter_ratio(&state.load),
             colon_displacement: length * state.load.ends[0].displacement,
             ileum_displacement: length * state.load.ends[1].displacement,
-            energy: energy * forces.energy,
-            energy_ungrown_volume: energy * forces.energy_ungrown,
+            colon_twist_deg: state.load.ends[0].twist.to_degrees(),
+            ileum_twist_deg: state.load.ends[1].twist.to_degrees(),
+            energy: energy * self.above_rounding(forces.energy),
+            energy_ungrown_volume: energy * self.above_rounding(forces.energy_ungrown),
             residual: state.imbalance,
             drag_work: energy * tube.sector.repeats() * step.drag_work,
             method: step.method.to_string(),
-            equilibrium: if state.in_equilibrium() { "yes" } else { "no" }.into(),
+            equilibrium: if state.in_equilibrium() || step.method == Method::Rest {
+                "yes"
+            } else {
+                "no"
+            }
+            .into(),
             iterations: step.iterations,
             cg_iterations: 0,
             seconds: self.since.elapsed().as_secs_f64(),
@@ -209,6 +216,13 @@ impl<'a> Record<'a> {
         self.rows.push(row);
         self.since = Instant::now();
         Ok(())
+    }
+
+    /// An energy, or zero where it is only what rounding leaves of a tube without stress.
+    fn above_rounding(&self, energy: f64) -> f64 {
+        let tube = &self.plan.tube;
+        let rounding = 1e-15 * tube.material.longitudinal_modulus() * tube.thickness * tube.length;
+        if energy.abs() < rounding { 0.0 } else { energy }
     }
 
     fn write_profile(&self, step: usize, path: &Path<'_, TubeProblem>) -> Result<(), StudyError> {

@@ -130,7 +130,7 @@ impl Summary {
 
     /// The first state whose wall overhangs.
     pub fn overhang(&self) -> Option<&Row> {
-        self.rows.iter().find(|row| row.max_wall_angle_deg >= 90.0)
+        self.first("invaginated")
     }
 
     /// The harmonics that any state is unstable to, with those states.

@@ -1,0 +1,266 @@
+//! The solver on energies of one or two unknowns, whose equilibria are known.
+
+use super::{
+    Equilibrium, Failure, Forces, Method, Path, Scheme, Settings, State, Watch, newton, relaxation,
+};
+use crate::matrix::BlockBanded;
+
+/// An energy with its slopes and curvatures.
+type Jet<const N: usize> = (f64, [f64; N], [[f64; N]; N]);
+
+/// An energy W(load, u) of N unknowns, all free, that may end at a wall.
+struct Toy<const N: usize> {
+    jet: fn(f64, [f64; N]) -> Jet<N>,
+    /// Where the first unknown may not go.
+    wall: f64,
+    drag: BlockBanded,
+}
+
+/// The first unknown is past the wall.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("past the wall")]
+struct PastTheWall;
+
+fn toy<const N: usize>(jet: fn(f64, [f64; N]) -> Jet<N>) -> Toy<N> {
+    let mut unit = [[0.0; N]; N];
+    for i in 0..N {
+        unit[i][i] = 1.0;
+    }
+    Toy {
+        jet,
+        wall: f64::INFINITY,
+        drag: matrix(unit),
+    }
+}
+
+fn matrix<const N: usize>(entries: [[f64; N]; N]) -> BlockBanded {
+    let mut matrix = BlockBanded::zeros(1, N, 1);
+    let places: Vec<[usize; N]> = (0..N)
+        .map(|i| std::array::from_fn(|j| matrix.place(0, i, j)))
+        .collect();
+    let panel = matrix.panels_mut().next().unwrap();
+    for i in 0..N {
+        for j in 0..N {
+            panel[places[i][j]] = entries[i][j];
+        }
+    }
+    matrix
+}
+
+impl<const N: usize> Equilibrium for Toy<N> {
+    type Load = f64;
+    type Broken = PastTheWall;
+
+    fn given(&self) -> &[bool] {
+        &[false; 2][..N]
+    }
+    fn impose(&self, _: &f64, _: &mut [f64]) {}
+    fn between(&self, from: &f64, to: &f64, t: f64) -> f64 {
+        from + t * (to - from)
+    }
+    fn forces(&self, load: &f64, u: &[f64]) -> Result<Forces, PastTheWall> {
+        if u[0] >= self.wall {
+            return Err(PastTheWall);
+        }
+        let (energy, residual, _) = (self.jet)(*load, u.try_into().unwrap());
+        Ok(Forces {
+            energy,
+            residual: residual.to_vec(),
+            in_play: 1.0,
+            rounding: 1e-15,
+        })
+    }
+    fn tangent(&self, load: &f64, u: &[f64]) -> BlockBanded {
+        matrix((self.jet)(*load, u.try_into().unwrap()).2)
+    }
+    fn drag(&self) -> &BlockBanded {
+        &self.drag
+    }
+}
+
+/// A shallow truss: wells at u = −1 and 1, and a load that pushes from the one to the other. The
+/// near one ends at u = −1/√3 under a load of 2/(3√3) = 0.385.
+fn truss() -> Toy<1> {
+    toy(|load, [u]| {
+        let well = u * u - 1.0;
+        let energy = 0.25 * well * well - load * u;
+        (energy, [u * well - load], [[3.0 * u * u - 1.0]])
+    })
+}
+
+/// A strut: x follows the load, and beyond x = 1 the straight y = 0 is a saddle. The bent branch
+/// is x = 2 load − 1, y² = x − 1.
+fn strut() -> Toy<2> {
+    toy(|load, [x, y]| {
+        let energy = 0.5 * (x - load).powi(2) + 0.25 * y.powi(4) + 0.5 * (1.0 - x) * y * y;
+        let residual = [x - load - 0.5 * y * y, y * y * y + (1.0 - x) * y];
+        (energy, residual, [[1.0, -y], [-y, 3.0 * y * y + 1.0 - x]])
+    })
+}
+
+/// A unit spring, and a wall at u = 1.
+fn spring_before_a_wall() -> Toy<1> {
+    Toy {
+        wall: 1.0,
+        ..toy(|load, [u]| (0.5 * u * u - load * u, [u - load], [[1.0]]))
+    }
+}
+
+/// A spring that stiffens towards a wall at u = 1, which it never reaches: u = load/(1 + load).
+fn stiffening_spring() -> Toy<1> {
+    Toy {
+        wall: 1.0,
+        ..toy(|load, [u]| {
+            let left = 1.0 - u;
+            let energy = -u - left.ln() - load * u;
+            (energy, [u / left - load], [[1.0 / (left * left)]])
+        })
+    }
+}
+
+fn set_out<const N: usize>(problem: &Toy<N>, from: f64, u: [f64; N], to: f64) -> Path<'_, Toy<N>> {
+    let settings = Settings {
+        scheme: Scheme::Static,
+        ..Settings::default()
+    };
+    let mut path = Path::begin(problem, from, u.to_vec(), settings).unwrap();
+    path.set_out(to);
+    path
+}
+
+/// States of tolerance 1e-8 and stiffness about one are as exact as that.
+fn assert_at<const N: usize>(state: &State<f64>, u: [f64; N]) {
+    for i in 0..N {
+        assert!(
+            (state.u[i] - u[i]).abs() < 1e-7,
+            "{:?} is not {u:?}",
+            state.u
+        );
+    }
+}
+
+#[test]
+fn a_truss_is_followed_by_newton_and_snaps_to_the_far_well() {
+    let truss = truss();
+    let mut path = set_out(&truss, 0.0, [-1.0], 0.5);
+    for t in [0.2, 0.4, 0.6] {
+        let step = path.advance(t, &mut ()).unwrap();
+        assert_eq!((step.method, step.drag_work), (Method::Newton, 0.0));
+        assert!(path.state().u[0] < -1.0 / 3.0_f64.sqrt());
+    }
+    let near = path.state().u.clone();
+    let step = path.advance(0.8, &mut ()).unwrap();
+    assert_eq!(step.method, Method::Relaxation);
+    assert!(step.drag_work > 0.0);
+    let state = path.state();
+    assert_eq!((state.load, path.reached()), (0.4, 0.8));
+    assert!(state.energy < truss.forces(&0.4, &near).unwrap().energy);
+    assert!(state.in_equilibrium() && state.negative_pivots == 0);
+    // u³ − u = 0.4 has one real root.
+    let u = 2.0 / 3.0_f64.sqrt() * ((0.6 * 3.0_f64.sqrt()).acosh() / 3.0).cosh();
+    assert_at(state, [u]);
+    let step = path.advance(1.0, &mut ()).unwrap();
+    assert_eq!(step.method, Method::Newton);
+}
+
+#[test]
+fn a_state_that_symmetry_keeps_on_a_saddle_is_never_called_stable() {
+    let strut = strut();
+    let mut path = set_out(&strut, 1.5, [1.5, 0.0], 2.0);
+    assert_eq!(path.state().negative_pivots, 1);
+    path.advance(1.0, &mut ()).unwrap();
+    let state = path.state();
+    assert_at(state, [2.0, 0.0]);
+    assert!(state.in_equilibrium());
+    assert_eq!((state.u[1], state.negative_pivots), (0.0, 1));
+
+    // The least push off it leads to the bent branch.
+    let pushed = vec![2.0, 1e-3];
+    let found = relaxation(&strut, &2.0, pushed, &Settings::default(), &mut ()).unwrap();
+    let mut path = set_out(&strut, 2.0, found.u.try_into().unwrap(), 2.1);
+    assert_at(path.state(), [3.0, 2.0_f64.sqrt()]);
+    assert_eq!(path.state().negative_pivots, 0);
+    let step = path.advance(1.0, &mut ()).unwrap();
+    assert_eq!(step.method, Method::Newton);
+    assert_at(path.state(), [3.2, 2.2_f64.sqrt()]);
+}
+
+#[test]
+fn newton_refuses_an_indefinite_tangent() {
+    let found = newton(
+        &strut(),
+        &1.5,
+        vec![1.5, 0.1],
+        &Settings::default(),
+        &mut (),
+    );
+    let failure = found.unwrap_err();
+    assert_eq!(failure, Failure::Indefinite { negative_pivots: 1 });
+}
+
+#[test]
+fn steps_that_lead_past_a_wall_are_shortened() {
+    let spring = stiffening_spring();
+    let mut path = set_out(&spring, 0.0, [0.0], 3.0);
+    // The tangent alone leads to u = 3.
+    let step = path.advance(1.0, &mut ()).unwrap();
+    assert_eq!(step.method, Method::Newton);
+    assert_at(path.state(), [0.75]);
+}
+
+#[test]
+fn a_path_that_ends_at_a_wall_says_so_and_stays_before_it() {
+    let spring = spring_before_a_wall();
+    let mut path = set_out(&spring, 0.0, [0.0], 2.0);
+    path.advance(0.4, &mut ()).unwrap();
+    let error = path.advance(0.9, &mut ()).unwrap_err();
+    let broken = (Method::Newton, Failure::Broken(PastTheWall));
+    assert!(error.tried.contains(&broken), "{error}");
+    assert!(error.to_string().contains("past the wall"), "{error}");
+    assert!(!error.stopped());
+    // As near to load 1 as steps that are halved eight times get.
+    let (state, shortest) = (path.state(), 0.5 / 256.0);
+    assert!(path.reached() < 0.5 && path.reached() + shortest >= 0.5);
+    assert_eq!(state.load, 2.0 * path.reached());
+    assert!(state.in_equilibrium());
+    assert_at(state, [state.load]);
+}
+
+/// Someone who has seen enough.
+struct Stops;
+
+impl Watch for Stops {
+    fn solved(&mut self, _: Method, _: f64) -> bool {
+        false
+    }
+}
+
+#[test]
+fn a_path_that_is_stopped_stays_where_it_was() {
+    let truss = truss();
+    let mut path = set_out(&truss, 0.0, [-1.0], 0.5);
+    path.advance(0.2, &mut ()).unwrap();
+    let before = path.state().clone();
+    // Before the snap and past it.
+    for t in [0.4, 1.0] {
+        let error = path.advance(t, &mut Stops).unwrap_err();
+        assert!(error.stopped(), "{error}");
+        assert_eq!(path.reached(), 0.2);
+        assert_eq!(path.state().load, before.load);
+        assert_eq!(path.state().u, before.u);
+    }
+    path.advance(0.4, &mut ()).unwrap();
+}
+
+#[test]
+fn on_a_smooth_branch_no_step_costs_more_than_the_first() {
+    let truss = truss();
+    let mut path = set_out(&truss, 0.0, [1.0], 4.0);
+    let costs: Vec<usize> = (1..=10)
+        .map(|i| path.advance(f64::from(i) / 10.0, &mut ()).unwrap())
+        .map(|step| step.iterations)
+        .collect();
+    assert!(costs.iter().all(|&cost| cost <= costs[0]), "{costs:?}");
+    // The cubic through two states comes closer and closer.
+    assert!(costs[9] < costs[0], "{costs:?}");
+}

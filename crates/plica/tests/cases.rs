@@ -1,0 +1,85 @@
+//! What must hold of every case of the house.
+
+#![allow(non_snake_case)] // the formulas keep the letters of their sources
+
+use plica::assembly::SplineTube;
+
+/// Unknowns from a function of z, reference radius and ring (0 to 1 over the sector) that gives
+/// the axial, radial and circumferential component.
+fn unknowns(tube: &SplineTube, field: impl Fn(f64, f64, f64) -> [f64; 3]) -> Vec<f64> {
+    let rings = tube.sector.rings;
+    let mut u = vec![];
+    for z in tube.axial.greville() {
+        for r in tube.wall.greville() {
+            let at = |j: usize| field(z, r, j as f64 / rings as f64);
+            for i in 0..3 {
+                u.extend((0..rings).map(|j| at(j)[i]));
+            }
+        }
+    }
+    u
+}
+
+/// A sum of waves with wave numbers and phases from a fixed recurrence, of size one.
+fn waves(seed: u64) -> impl Fn(f64, f64, f64) -> [f64; 3] {
+    let mut state = seed;
+    let mut next = || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 33) as f64 / (1_u64 << 31) as f64
+    };
+    let numbers = [(); 12].map(|()| [4.0 * next(), 4.0 * next(), std::f64::consts::TAU * next()]);
+    move |z, r, s| {
+        let turn = std::f64::consts::TAU * s;
+        [0, 1, 2].map(|i| {
+            let waves = numbers[4 * i..4 * i + 4].iter();
+            waves
+                .map(|[along, through, phase]| 0.5 * (along * z + through * r + turn + phase).sin())
+                .sum()
+        })
+    }
+}
+
+fn moved(u: &[f64], direction: &[f64], h: f64) -> Vec<f64> {
+    u.iter().zip(direction).map(|(u, d)| u + h * d).collect()
+}
+
+#[test]
+fn the_tangent_of_every_case_is_the_slope_of_its_residual() {
+    let cases = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let mut held = 0;
+    for entry in std::fs::read_dir(cases).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.display();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut plan = plica::case::read(&text, "case").unwrap();
+        (plan.mesh.axial, plan.mesh.thickness) = (40, 5); // seconds, not minutes
+        let rings = plan.mesh.rings(plan.symmetry);
+        let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
+        let load = plan.tube.rest().towards(&plan.stages[0].load, 0.5);
+        // A displacement less than half as large as the wall is thick.
+        let mut u = moved(
+            &vec![0.0; tube.unknowns()],
+            &unknowns(&tube, waves(1)),
+            0.2 * plan.tube.thickness,
+        );
+        tube.impose(&load, &mut u);
+        let d = unknowns(&tube, waves(2));
+
+        let residual = |h: f64| tube.forces(&load, &moved(&u, &d, h)).unwrap().residual;
+        let mut exact = vec![0.0; u.len()];
+        tube.tangent(&load, &u).multiply_add(1.0, &d, &mut exact);
+        let size = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let error = |h: f64| {
+            let slope = moved(&residual(h), &residual(-h), -1.0);
+            size(&moved(&exact, &slope, -0.5 / h))
+        };
+        let order = (error(1e-3) / error(5e-4)).log2();
+        assert!((order - 2.0).abs() < 0.05, "{name}: order {order}");
+        // A wrong entry would leave an error that no step makes smaller.
+        assert!(error(1e-4) < 1e-3 * size(&exact), "{name}");
+        held += 1;
+    }
+    assert!(held >= 6, "only {held} cases");
+}
