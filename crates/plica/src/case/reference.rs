@@ -58,8 +58,23 @@ pub fn reference() -> String {
         }
         page += &row(key);
     }
-    page
+    page + CLOSING
 }
+
+/// Rules that are not a range of one key.
+const CLOSING: &str = "
+## Rules between keys
+
+- The length is 0.01 to 1000 D, the wall at least 0.001 D thick and thinner than D/2.
+- A zone lies within the tube and is at least 0.001 D long; zones of muscles of one direction do not
+  overlap.
+- Targets keep every stress-free stretch between 0.02 and 100, and the ends between 0.05 and 10 times
+  their distance at rest. `diameter_ratio` drives a circular muscle, `length_ratio` a longitudinal one;
+  a displacement needs a fixed or sliding end, a twist a fixed one.
+- There are at least p + 1 control points along the tube and through the wall, and 2 p + 2 around it;
+  `fold` divides those around; at most 20 million are solved for.
+- A muscle's name has at most 40 letters, digits, - and _; names of stages differ.
+";
 
 fn row(key: &Key) -> String {
     let kind = match key.kind {

@@ -86,7 +86,7 @@ pub const KEYS: &[Key] = &[
         "`\"static\"`: equilibrium after equilibrium, with relaxation where the path breaks off. `\"newmark\"`: the pseudo-time of \
          Okino et al. (2025). `\"dragged\"`: pseudo-time by backward Euler."),
     key("solver.tolerance", Number, "", Or("1e-8"), above(0.0).to(1e-6).because("a looser state is not an equilibrium"),
-        "A state is accepted when its residual, without drag and over the forces in play, is at most this."),
+        "A state is accepted when its residual, without drag and over the forces in play, is at most this (or at most 1e-6 where rounding allows no better)."),
     key("solver.newton_iterations", Count, "", Or("12"), from(1.0).to(1000.0),
         "Newton iterations before a step is given to relaxation."),
     key("solver.relaxation_steps", Count, "", Or("200"), from(1.0).to(1e6),
