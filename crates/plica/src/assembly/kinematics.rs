@@ -39,19 +39,25 @@ impl<S: Real> Columns<S> {
     #[inline(always)]
     pub fn elastic(&self, point: &Around, radius: f64, [zeta, s, r]: [Vector<S>; 3]) -> Tensor2<S> {
         let plain = |x: f64| self.along.like(x);
-        let x_zeta = [zeta[0] + plain(1.0), zeta[1], zeta[2]];
+        let zeta = [zeta[0] + plain(1.0), zeta[1], zeta[2]];
         let (slope, circle) = (point.circle_slope, point.circle);
-        let x_s = [
+        let s = [
             s[0],
             s[1] + plain(radius * slope.0),
             s[2] + plain(radius * slope.1),
         ];
-        let x_r = [r[0], r[1] + plain(circle.0), r[2] + plain(circle.1)];
+        let r = [r[0], r[1] + plain(circle.0), r[2] + plain(circle.1)];
+        self.linear([zeta, s, r])
+    }
+
+    /// The change of Fe with the gradients over ζ, s and R.
+    #[inline(always)]
+    pub fn linear(&self, [zeta, s, r]: [Vector<S>; 3]) -> Tensor2<S> {
         let mut Fe = [[self.along; 3]; 3];
         for i in 0..3 {
-            Fe[i][0] = x_zeta[i] * self.along;
-            Fe[i][1] = x_r[i] * self.outwards;
-            Fe[i][2] = x_s[i].mul_add(self.around, x_r[i] * self.across);
+            Fe[i][0] = zeta[i] * self.along;
+            Fe[i][1] = r[i] * self.outwards;
+            Fe[i][2] = s[i].mul_add(self.around, r[i] * self.across);
         }
         Tensor2(Fe)
     }

@@ -24,6 +24,8 @@
 mod drag;
 mod forces;
 mod kinematics;
+mod linearised;
+mod pencil;
 #[cfg(test)]
 mod plain;
 mod sample;
@@ -35,5 +37,6 @@ mod tangent;
 #[cfg(test)]
 mod tests;
 
+pub use linearised::Linearised;
 pub use sample::{Point, Sample};
 pub use spline_tube::{Forces, Inverted, SplineTube};

@@ -2,6 +2,7 @@
 
 use super::drag::drag;
 use super::forces::{SlabForces, Worst, slab_forces};
+use super::pencil::RingLanes;
 use super::slab::SlabInput;
 use super::supports::Supports;
 use super::tables::{Around, Layer, Slab};
@@ -31,9 +32,10 @@ pub struct SplineTube {
     /// Basis through the wall, over the reference radius R.
     pub wall: Basis,
     pub(super) supports: Supports,
-    slabs: Vec<Slab>,
-    layers: Vec<Layer>,
-    around: Vec<Around>,
+    pub(super) slabs: Vec<Slab>,
+    pub(super) layers: Vec<Layer>,
+    pub(super) around: Vec<Around>,
+    pub(super) lanes: RingLanes,
 }
 
 /// Energy and residual at a state.
@@ -92,6 +94,8 @@ macro_rules! with_degree {
     };
 }
 
+pub(super) use {with_degree, with_law_and_degree};
+
 impl SplineTube {
     /// Lays a mesh over a tube; `rings` of the mesh's rings are solved for and repeat.
     pub fn new(tube: &Tube, mesh: &Mesh, rings: usize) -> Self {
@@ -117,6 +121,7 @@ impl SplineTube {
             slabs: Slab::all(&axial),
             layers: Layer::all(&wall),
             around: Around::all(p, &sector, &circle),
+            lanes: RingLanes::new(sector.rings),
             tube: tube.clone(),
             sector,
             circle,
@@ -158,15 +163,18 @@ impl SplineTube {
 
     /// Energy and residual of a state `u` under a load.
     pub fn forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
-        let slabs: Vec<SlabForces> = self
-            .slabs
-            .par_iter()
-            .map(|slab| {
+        let slabs: Vec<SlabForces> = if self.sector.rings < FEW_RINGS {
+            let forces = |slab| {
                 let stretch = self.inverse_stretch(slab, load);
                 let input = self.input(slab, &stretch, u);
                 with_law_and_degree!(self, slab_forces, &input)
-            })
-            .collect();
+            };
+            self.slabs.par_iter().map(forces).collect()
+        } else {
+            let u = self.lanes.pad(u);
+            let forces = |slab| self.forces_by_pencils(slab, load, &u);
+            self.slabs.par_iter().map(forces).collect()
+        };
 
         let repeats = self.sector.repeats();
         let mut forces = Forces {
@@ -303,7 +311,7 @@ impl SplineTube {
         places
     }
 
-    fn inverse_stretch(&self, slab: &Slab, load: &Load) -> Vec<(Lanes, Lanes)> {
+    pub(super) fn inverse_stretch(&self, slab: &Slab, load: &Load) -> Vec<(Lanes, Lanes)> {
         let at = |z: &Lanes| {
             let (mut along, mut around) = (Lanes::default(), Lanes::default());
             for l in 0..z.0.len() {
@@ -335,6 +343,9 @@ impl SplineTube {
         }
     }
 }
+
+/// Rings from which their elements fill vectors better than neighbours along the tube do.
+const FEW_RINGS: usize = 5;
 
 /// Bytes of slab tangents that are held before they are summed.
 const SLAB_MEMORY: usize = 256 << 20;

@@ -107,6 +107,8 @@ impl Layer {
 /// One quadrature point around an element; every element around the tube has the same.
 #[derive(Clone, Debug)]
 pub struct Around {
+    /// Where along the element, 0 to 1.
+    pub s: f64,
     /// What each slot contributes.
     pub slots: Vec<SlotValues>,
     /// Weight.
@@ -137,6 +139,7 @@ impl Around {
         let (c, slope) = (scale(0), scale(1));
         let radius = c.0.hypot(c.1);
         Self {
+            s,
             slots,
             weight,
             circle: c,

@@ -11,11 +11,13 @@ use super::kinematics::Columns;
 use super::slab::{SlabInput, contract_along, contract_through, gradients};
 use super::tables::Slab;
 use crate::material::Law;
+use crate::matrix::BlockBanded;
 use crate::rings::Turn;
 use crate::tensor::{LANES, Lanes, Real, Tensor2};
 use fearless_simd::{Level, Simd, SimdBase, SimdFrom, dispatch, f64x8};
 
-type Block<V> = [[V; 3]; 3];
+/// A block of 3×3 numbers.
+pub type Block<V> = [[V; 3]; 3];
 
 /// K of a slab, lower half by rows of control points: the block `d` rows below the diagonal, entry
 /// (`row`, `column`) of it, for every row of the slab, is at
@@ -26,6 +28,22 @@ pub struct SlabTangent {
     pub entries: Vec<f64>,
     /// Rows of control points of the slab.
     pub rows: usize,
+}
+
+impl SlabTangent {
+    /// Adds it to the rows of a matrix from `first` on; rows hold `m` unknowns, and degree p couples
+    /// p + 1 of them.
+    pub fn add_to(&self, matrix: &mut BlockBanded, first: usize, m: usize, p: usize) {
+        let places: Vec<usize> = (0..(p + 1) * m * m)
+            .map(|i| matrix.place(i / (m * m), i % m, i / m % m))
+            .collect();
+        let panels = matrix.panels_mut().skip(first).take(self.rows);
+        for (row, panel) in panels.enumerate() {
+            for (&place, entry) in places.iter().zip(self.entries.chunks_exact(self.rows)) {
+                panel[place] += entry[row];
+            }
+        }
+    }
 }
 
 /// Where a pair of slots (r ≤ r') keeps its numbers.
@@ -144,7 +162,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(
 
 /// Adds Gᵣᵀ A Gₛ for every pair of gradients; for r = s only those on and above the diagonal.
 #[inline(always)]
-fn add_turned<V: Real>(
+pub fn add_turned<V: Real>(
     sum: &mut [[Block<V>; 3]; 3],
     blocks: &[Block<V>; 6],
     r: &Turn,
@@ -203,7 +221,7 @@ fn add_block<V: Real>(
 
 /// Fills the pairs of gradients below the diagonal from those above.
 #[inline(always)]
-fn mirror<V: Copy>(sum: &mut [[Block<V>; 3]; 3]) {
+pub fn mirror<V: Copy>(sum: &mut [[Block<V>; 3]; 3]) {
     for alpha in 0..3 {
         for beta in 0..alpha {
             for i in 0..3 {
@@ -217,7 +235,7 @@ fn mirror<V: Copy>(sum: &mut [[Block<V>; 3]; 3]) {
 
 /// Adds what one point through the wall contributes to every (c, c', i, j).
 #[inline(always)]
-fn add_through<V: Real, const N: usize>(
+pub fn add_through<V: Real, const N: usize>(
     wall: &mut [[[V; 4]; N]],
     qz: usize,
     a: &[[Block<V>; 3]; 3],
@@ -250,7 +268,7 @@ fn add_through<V: Real, const N: usize>(
 
 /// Adds up along the tube, for one (c, i) and (c', j), and leaves the numbers in the slab.
 #[inline(always)]
-fn add_along<S: Simd, const N: usize>(
+pub fn add_along<S: Simd, const N: usize>(
     simd: S,
     out: &mut SlabTangent,
     slab: &Slab,

@@ -22,13 +22,17 @@ const MESHES: [(usize, [usize; 3]); 7] = [
 ];
 
 /// A short, thick tube and a load under which both its muscles are active.
-struct TubeAndLoad {
-    tube: SplineTube,
-    load: Load,
+pub(in crate::assembly) struct TubeAndLoad {
+    pub(in crate::assembly) tube: SplineTube,
+    pub(in crate::assembly) load: Load,
 }
 
 /// A tube of so many elements, `rings` of which are solved for.
-fn tube_and_load(degree: usize, elements: [usize; 3], rings: usize) -> TubeAndLoad {
+pub(in crate::assembly) fn tube_and_load(
+    degree: usize,
+    elements: [usize; 3],
+    rings: usize,
+) -> TubeAndLoad {
     let muscle = |direction, zone| Muscle {
         name: String::new(),
         direction,
@@ -64,7 +68,10 @@ fn tube_and_load(degree: usize, elements: [usize; 3], rings: usize) -> TubeAndLo
 
 /// Unknowns from a function of z, reference radius and ring (0 to 1 over the sector) that gives
 /// the axial, radial and circumferential component.
-fn unknowns(tube: &SplineTube, field: impl Fn(f64, f64, f64) -> [f64; 3]) -> Vec<f64> {
+pub(in crate::assembly) fn unknowns(
+    tube: &SplineTube,
+    field: impl Fn(f64, f64, f64) -> [f64; 3],
+) -> Vec<f64> {
     let rings = tube.sector.rings;
     let mut u = vec![];
     for z in tube.axial.greville() {
@@ -80,7 +87,7 @@ fn unknowns(tube: &SplineTube, field: impl Fn(f64, f64, f64) -> [f64; 3]) -> Vec
 
 /// A displacement without any symmetry but the sector's: waves as large as the wall is thick,
 /// and a small noise from a fixed recurrence.
-fn wavy(tube: &SplineTube) -> Vec<f64> {
+pub(in crate::assembly) fn wavy(tube: &SplineTube) -> Vec<f64> {
     let mut u = unknowns(tube, |z, r, s| {
         let turn = TAU * s;
         [
@@ -100,7 +107,7 @@ fn wavy(tube: &SplineTube) -> Vec<f64> {
 }
 
 /// Another, to differentiate along.
-fn direction(tube: &SplineTube) -> Vec<f64> {
+pub(in crate::assembly) fn direction(tube: &SplineTube) -> Vec<f64> {
     unknowns(tube, |z, r, s| {
         let turn = TAU * s;
         [
@@ -111,15 +118,15 @@ fn direction(tube: &SplineTube) -> Vec<f64> {
     })
 }
 
-fn moved(u: &[f64], direction: &[f64], h: f64) -> Vec<f64> {
+pub(in crate::assembly) fn moved(u: &[f64], direction: &[f64], h: f64) -> Vec<f64> {
     u.iter().zip(direction).map(|(u, d)| u + h * d).collect()
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(in crate::assembly) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn largest(a: &[f64]) -> f64 {
+pub(in crate::assembly) fn largest(a: &[f64]) -> f64 {
     a.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
@@ -402,7 +409,7 @@ fn replicated(u: &[f64], rings: usize) -> Vec<f64> {
 }
 
 /// The unknowns of a sector of `few` rings, again and again on `many`.
-fn repeated(u: &[f64], few: usize, many: usize) -> Vec<f64> {
+pub(in crate::assembly) fn repeated(u: &[f64], few: usize, many: usize) -> Vec<f64> {
     let sectors = u.chunks(few);
     sectors
         .flat_map(|sector| sector.iter().copied().cycle().take(many))

@@ -34,7 +34,16 @@ pub trait Law: Copy + Send + Sync {
     fn stress<S: Real>(&self, F: &Tensor2<S>) -> Tensor2<S>;
     /// Tangent moduli A = ∂²w/∂Fe∂Fe.
     fn moduli<S: Real>(&self, F: &Tensor2<S>) -> Moduli<S>;
+    /// What [`Law::change`] needs to know of Fe; unused places are zero.
+    fn keep<S: Real>(&self, F: &Tensor2<S>) -> Kept<S>;
+    /// Change of the stress A : dF with a change of Fe. Symmetric in dF and what it is contracted
+    /// with, whatever rounding `kept` has seen.
+    fn change<S: Real>(&self, kept: &Kept<S>, dF: &Tensor2<S>) -> Tensor2<S>;
 }
+
+/// What a law keeps of a state at a point, to multiply with its tangent moduli again and again.
+/// Ten numbers, where the moduli are 45: memory is what a matrix-free product waits for.
+pub type Kept<S> = [S; 10];
 
 /// The law of a wall, as a case chooses it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@
 //! Valid for J > 0. It loses ellipticity under strong expansion (ln J > 1), far from where a
 //! nearly incompressible wall goes.
 
-use super::{Law, Moduli};
+use super::{Kept, Law, Moduli};
 use crate::tensor::{Real, Tensor2};
 
 /// The compressible neo-Hookean law. Both constants have the unit of a stress.
@@ -77,5 +77,38 @@ impl Law for NeoHookean {
             }
         }
         A
+    }
+
+    // F⁻ᵀ row by row, then μ − λ ln J.
+    #[inline(always)]
+    fn keep<S: Real>(&self, F: &Tensor2<S>) -> Kept<S> {
+        let cofactor = F.cofactor();
+        let J = F.determinant_with(cofactor);
+        let m = J.like(self.mu) - J.ln().times(self.lambda);
+        let [a, b, c] = cofactor.scaled(J.like(1.0) / J).0;
+        [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], m]
+    }
+
+    // A : dF = μ dF + (μ − λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ + λ (F⁻ᵀ : dF) F⁻ᵀ
+    #[inline(always)]
+    fn change<S: Real>(&self, kept: &Kept<S>, dF: &Tensor2<S>) -> Tensor2<S> {
+        let [a0, a1, a2, b0, b1, b2, c0, c1, c2, m] = *kept;
+        let G = Tensor2([[a0, a1, a2], [b0, b1, b2], [c0, c1, c2]]);
+        let H = dF.transpose().times(G);
+        let trace = G.dot(*dF).times(self.lambda);
+        let mut middle = H;
+        for i in 0..3 {
+            for j in 0..3 {
+                middle.0[i][j] = H.0[i][j] * m;
+            }
+            middle.0[i][i] = m.mul_add(H.0[i][i], trace);
+        }
+        let mut P = G.times(middle);
+        for i in 0..3 {
+            for j in 0..3 {
+                P.0[i][j] = P.0[i][j] + dF.0[i][j].times(self.mu);
+            }
+        }
+        P
     }
 }

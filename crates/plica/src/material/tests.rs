@@ -81,6 +81,22 @@ fn moduli_are_the_slope_of_stress(name: &str, law: impl Law) {
     assert!((order - 2.0).abs() < 0.05, "{name}: order {order}");
 }
 
+fn change_is_the_slope_of_stress(name: &str, law: impl Law) {
+    let F = deformation();
+    let exact = law.change(&law.keep(&F), &SHIFT);
+    let error = |h: f64| {
+        let (a, b) = (
+            law.stress(&moved(&F, &SHIFT, h)),
+            law.stress(&moved(&F, &SHIFT, -h)),
+        );
+        let slope = moved(&a, &b, -1.0).scaled(1.0 / (2.0 * h));
+        let off = moved(&slope, &exact, -1.0);
+        off.dot(off).sqrt()
+    };
+    let order = order(error);
+    assert!((order - 2.0).abs() < 0.05, "{name}: order {order}");
+}
+
 fn energy_does_not_see_rotations(name: &str, law: impl Law) {
     let (c, s) = (0.7_f64.cos(), 0.7_f64.sin());
     let Q = Tensor2([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]);
@@ -119,6 +135,7 @@ fn every_law_keeps_the_identities() {
     for (name, law) in laws() {
         stress_is_the_slope_of_energy(name, law);
         moduli_are_the_slope_of_stress(name, law);
+        change_is_the_slope_of_stress(name, law);
         energy_does_not_see_rotations(name, law);
         rest_is_free_of_stress(name, law);
         lanes_agree_with_scalars(name, law);

@@ -11,6 +11,7 @@
 //! paper's axisymmetric tube (n = 305, m = 24, p = 3) 6.5e7 and 5.6 MB.
 
 use super::dense;
+use fearless_simd::{Level, dispatch};
 
 /// A symmetric matrix of n × n blocks of m × m, of half-bandwidth p blocks; lower half stored.
 #[derive(Clone, Debug)]
@@ -82,6 +83,31 @@ impl BlockBanded {
             return 0.0;
         }
         self.panels[panel * self.panel_len() + self.place(d, i % self.size, j % self.size)]
+    }
+
+    /// The sum of matrices of one shape, each entry times a factor that depends on its row and
+    /// column inside its block.
+    pub fn combined<F: Fn(usize, usize) -> f64>(parts: &[(&Self, F)]) -> Self {
+        let mut sum = Self::zeros(parts[0].0.blocks, parts[0].0.size, parts[0].0.band);
+        let (size, height) = (sum.size, sum.height());
+        let factors: Vec<Vec<f64>> = parts
+            .iter()
+            .map(|(_, factor)| {
+                (0..size * height)
+                    .map(|at| factor(at % height % size, at / height))
+                    .collect()
+            })
+            .collect();
+        let len = sum.panel_len();
+        for (j, panel) in sum.panels.chunks_exact_mut(len).enumerate() {
+            for ((part, _), factors) in parts.iter().zip(&factors) {
+                let from = &part.panels[j * len..][..len];
+                for ((sum, x), factor) in panel.iter_mut().zip(from).zip(factors) {
+                    *sum += factor * x;
+                }
+            }
+        }
+        sum
     }
 
     /// Adds `factor` times another matrix of the same shape.
@@ -165,6 +191,53 @@ impl Factor {
         self.negative_pivots
     }
 
+    /// Makes the sign of every pivot positive: what is left is positive definite, and the matrix
+    /// that was factored if that was.
+    pub fn make_positive(&mut self) {
+        let a = &mut self.matrix;
+        let (m, height, len) = (a.size, a.height(), a.panel_len());
+        for panel in a.panels.chunks_exact_mut(len) {
+            for c in 0..m {
+                let pivot = &mut panel[c * height + c];
+                *pivot = pivot.abs();
+            }
+        }
+    }
+
+    /// Solves A x = b in place, for two right-hand sides at once: the factor is read once.
+    pub fn solve_pair(&self, b: [&mut [f64]; 2]) {
+        dispatch!(Level::new(), _simd => self.solve_pair_in(b));
+    }
+
+    #[inline(always)]
+    fn solve_pair_in(&self, [b0, b1]: [&mut [f64]; 2]) {
+        let a = &self.matrix;
+        let (m, height, len) = (a.size, a.height(), a.panel_len());
+        for (j, panel) in a.panels.chunks_exact(len).enumerate() {
+            let below = (a.blocks - j).min(a.band + 1) * m;
+            let (b0, b1) = (&mut b0[j * m..][..below], &mut b1[j * m..][..below]);
+            for c in 0..m {
+                let (x0, x1) = (b0[c], b1[c]);
+                let column = &panel[c * height..][c + 1..below];
+                for ((y0, y1), l) in b0[c + 1..].iter_mut().zip(&mut b1[c + 1..]).zip(column) {
+                    *y0 -= l * x0;
+                    *y1 -= l * x1;
+                }
+            }
+        }
+        for (j, panel) in a.panels.chunks_exact(len).enumerate().rev() {
+            let below = (a.blocks - j).min(a.band + 1) * m;
+            let (b0, b1) = (&mut b0[j * m..][..below], &mut b1[j * m..][..below]);
+            for c in (0..m).rev() {
+                let column = &panel[c * height..][c + 1..below];
+                let [sum0, sum1] = dot_pair(column, &b0[c + 1..], &b1[c + 1..]);
+                let pivot = panel[c * height + c];
+                b0[c] = b0[c] / pivot - sum0;
+                b1[c] = b1[c] / pivot - sum1;
+            }
+        }
+    }
+
     /// Solves A x = b in place.
     pub fn solve(&self, b: &mut [f64]) {
         let a = &self.matrix;
@@ -192,6 +265,35 @@ impl Factor {
             }
         }
     }
+}
+
+/// l · x and l · y, in eight sums each that are added up in their order.
+#[inline(always)]
+fn dot_pair(l: &[f64], x: &[f64], y: &[f64]) -> [f64; 2] {
+    const LANES: usize = 8;
+    let mut sums = [[0.0; LANES]; 2];
+    let (l8, x8, y8) = (
+        l.chunks_exact(LANES),
+        x.chunks_exact(LANES),
+        y.chunks_exact(LANES),
+    );
+    let tail = l8
+        .remainder()
+        .iter()
+        .zip(x8.remainder())
+        .zip(y8.remainder());
+    let mut rest = [0.0; 2];
+    for ((l, x), y) in tail {
+        rest[0] += l * x;
+        rest[1] += l * y;
+    }
+    for ((l, x), y) in l8.zip(x8).zip(y8) {
+        for i in 0..LANES {
+            sums[0][i] += l[i] * x[i];
+            sums[1][i] += l[i] * y[i];
+        }
+    }
+    [0, 1].map(|k| sums[k].iter().sum::<f64>() + rest[k])
 }
 
 #[cfg(test)]
@@ -268,6 +370,27 @@ mod tests {
         a.factor().unwrap().solve(&mut b);
         for i in (0..15).step_by(4) {
             assert_eq!(b[i], i as f64);
+        }
+    }
+
+    #[test]
+    fn a_pair_is_solved_as_each_is() {
+        for (blocks, size, band) in [(7, 5, 3), (9, 24, 3), (1, 4, 2)] {
+            let a = matrix(blocks, size, band, 20.0);
+            let x = |phase: f64| -> Vec<f64> {
+                (0..a.unknowns())
+                    .map(|i| (i as f64 * 0.7 + phase).sin())
+                    .collect()
+            };
+            let (mut x0, mut x1) = (x(0.0), x(1.0));
+            let (mut y0, mut y1) = (x0.clone(), x1.clone());
+            let factor = a.factor().unwrap();
+            factor.solve(&mut y0);
+            factor.solve(&mut y1);
+            factor.solve_pair([&mut x0, &mut x1]);
+            for (x, y) in x0.iter().chain(&x1).zip(y0.iter().chain(&y1)) {
+                assert!((x - y).abs() < 1e-14, "{x} {y}");
+            }
         }
     }
 

@@ -94,3 +94,28 @@ impl Kernels {
         );
     }
 }
+
+/// A matrix in a slice: its numbers, its rows and columns, and the steps from row to row and from
+/// column to column, one of which is one.
+type Strided<'a> = (&'a [f64], [usize; 2], [usize; 2]);
+
+/// C = A B, for matrices whose rows or columns are each in one piece; C is given with the steps of its rows and columns.
+pub fn multiply(a: Strided<'_>, b: Strided<'_>, c: (&mut [f64], [usize; 2])) {
+    let (rows, columns) = (a.1[0], b.1[1]);
+    let (numbers, [down, right]) = c;
+    let target = if right == 1 && down >= columns {
+        MatMut::from_column_major_slice_with_stride_mut(numbers, columns, rows, down)
+            .transpose_mut()
+    } else {
+        MatMut::from_column_major_slice_with_stride_mut(numbers, rows, columns, right)
+    };
+    matmul::matmul(target, Accum::Replace, view(a), view(b), 1.0, Par::Seq);
+}
+
+fn view((numbers, [rows, columns], [down, right]): Strided<'_>) -> MatRef<'_, f64> {
+    if right == 1 && down >= columns {
+        MatRef::from_column_major_slice_with_stride(numbers, columns, rows, down).transpose()
+    } else {
+        MatRef::from_column_major_slice_with_stride(numbers, rows, columns, right)
+    }
+}

@@ -4,3 +4,4 @@ mod block_banded;
 mod dense;
 
 pub use block_banded::{BlockBanded, Factor, Singular};
+pub use dense::multiply;

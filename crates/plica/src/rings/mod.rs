@@ -21,6 +21,14 @@
 //! | g, g' | Σ N_b over the functions of a slot, and its slope | [`SlotValues::axial`] |
 //! | t, t' | Σ N_b exp(i φ_b), and its slope | [`SlotValues::turned`] |
 
+mod circulant;
+mod harmonic_solver;
+mod transform;
+
+pub use circulant::Circulant;
+pub use harmonic_solver::HarmonicSolver;
+pub use transform::{Transform, Wave};
+
 use crate::spline::Basis;
 use std::f64::consts::TAU;
 
@@ -101,10 +109,20 @@ impl Sector {
 
     /// The slots of an element at `s` in [0, 1] along it; slopes are per unit of `s`.
     pub fn at(&self, s: f64) -> Vec<SlotValues> {
+        self.folded_at(s, self.slots())
+    }
+
+    /// Every function of an element at `s` as a slot of its own, as if the sector had rings enough.
+    pub fn unfolded_at(&self, s: f64) -> Vec<SlotValues> {
+        self.folded_at(s, self.basis.degree() + 1)
+    }
+
+    fn folded_at(&self, s: f64, slots: usize) -> Vec<SlotValues> {
         let v = self.basis.evaluate_in(0, s);
-        let mut slots = vec![SlotValues::default(); self.slots()];
+        let mut slots = vec![SlotValues::default(); slots];
+        let distinct = slots.len();
         for b in 0..=self.basis.degree() {
-            let slot = &mut slots[b % self.rings];
+            let slot = &mut slots[b % distinct];
             let (sin, cos) = self.ring_angle(b).sin_cos();
             for (d, n) in [v.value[b], v.slope[b]].into_iter().enumerate() {
                 slot.axial[d] += n;

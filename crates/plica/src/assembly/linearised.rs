@@ -1,0 +1,208 @@
+//! A tube of many rings at a state, by pencils: its forces, and its tangent without a matrix.
+
+use super::SplineTube;
+use super::forces::{SlabForces, Worst};
+use super::pencil::{
+    AVERAGED, Averaged, Kept, PencilInput, kept_len, pencil_forces, pencil_keep, pencil_product,
+    slab_offsets,
+};
+use super::spline_tube::{with_degree, with_law_and_degree};
+use super::tables::Slab;
+use super::tangent::SlabTangent;
+use crate::material::Material;
+use crate::matrix::BlockBanded;
+use crate::rings::Circulant;
+use crate::tensor::Lanes;
+use crate::tube::Load;
+use rayon::prelude::*;
+
+/// The tangent stiffness at a state: what its products need, and its average around the tube.
+#[derive(Clone, Debug)]
+pub struct Linearised {
+    /// 1/θζ and 1/θη, element by element along the tube.
+    stretch: Vec<Vec<(Lanes, Lanes)>>,
+    /// By slab.
+    kept: Vec<Kept>,
+    /// The tangent averaged over the rings; every unknown is free.
+    pub average: Circulant,
+}
+
+impl SplineTube {
+    /// The tangent stiffness ∂R/∂u_cp of the sector at a state, for products. The state must not
+    /// be inverted (see [`SplineTube::forces`]). Takes ten numbers of memory, in single
+    /// precision, for every quadrature point.
+    pub fn linearised(&self, load: &Load, u: &[f64]) -> Linearised {
+        let u = self.lanes.pad(u);
+        let stretch: Vec<_> = (0..self.axial.elements())
+            .map(|e| self.pencil_stretch(e, load))
+            .collect();
+        let functions = self.degree() + 1;
+        let element = functions.pow(3) * self.layers.len() * AVERAGED;
+        let parts: Vec<(Kept, Vec<f64>)> = self
+            .slabs
+            .par_iter()
+            .map(|slab| {
+                let len = kept_len(functions, self.layers.len(), self.lanes.vectors());
+                let mut kept = vec![[0.0; 16]; len * slab.elements];
+                let mut averaged = vec![0.0; element * slab.elements];
+                for lane in 0..slab.elements {
+                    let input = self.pencil(slab, lane, &stretch[slab.first + lane], &u);
+                    let kept = &mut kept[lane * len..][..len];
+                    let averaged = &mut averaged[lane * element..][..element];
+                    with_law_and_degree!(self, pencil_keep, &input, kept, averaged);
+                }
+                (kept, averaged)
+            })
+            .collect();
+        let (kept, averaged): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        let averaged = Averaged {
+            numbers: averaged.concat(),
+            element,
+            elements_around: self.sector.rings as f64,
+        };
+        Linearised {
+            stretch,
+            kept,
+            average: self.circulant(&averaged),
+        }
+    }
+
+    /// y += factor · K v.
+    pub fn product(&self, at: &Linearised, factor: f64, v: &[f64], y: &mut [f64]) {
+        let v = self.lanes.pad(v);
+        let row = self.wall.functions() * 3 * self.lanes.padded;
+        let parts: Vec<Vec<f64>> = self
+            .slabs
+            .par_iter()
+            .zip(&at.kept)
+            .map(|(slab, kept)| {
+                let mut out = vec![0.0; (slab.elements + self.degree()) * row];
+                let len = kept.len() / slab.elements;
+                for lane in 0..slab.elements {
+                    let stretch = &at.stretch[slab.first + lane];
+                    let input = self.pencil(slab, lane, stretch, &v);
+                    let kept = &kept[lane * len..][..len];
+                    let out = &mut out[lane * row..][..(self.degree() + 1) * row];
+                    with_law_and_degree!(self, pencil_product, &input, kept, out);
+                }
+                out
+            })
+            .collect();
+        for (slab, part) in self.slabs.iter().zip(&parts) {
+            self.add_rows(slab, factor, part, y);
+        }
+    }
+
+    /// What [`SplineTube::forces`] wants of a slab.
+    pub(super) fn forces_by_pencils(&self, slab: &Slab, load: &Load, u: &[f64]) -> SlabForces {
+        let row = self.wall.functions() * 3 * self.lanes.padded;
+        let mut residual = vec![0.0; (slab.elements + self.degree()) * row];
+        let mut sum = SlabForces {
+            worst: Worst {
+                jacobian: f64::INFINITY,
+                ..Worst::default()
+            },
+            ..SlabForces::default()
+        };
+        for lane in 0..slab.elements {
+            let stretch = self.pencil_stretch(slab.first + lane, load);
+            let input = self.pencil(slab, lane, &stretch, u);
+            let residual = &mut residual[lane * row..][..(self.degree() + 1) * row];
+            let part = with_law_and_degree!(self, pencil_forces, &input, residual);
+            sum.energy += part.energy;
+            sum.energy_ungrown += part.energy_ungrown;
+            sum.squares += part.squares;
+            let worse = part.worst.jacobian.is_nan() || part.worst.jacobian < sum.worst.jacobian;
+            if worse && !sum.worst.jacobian.is_nan() {
+                sum.worst = part.worst;
+                sum.worst.element[0] = lane;
+            }
+        }
+        sum.residual = vec![0.0; (slab.elements + self.degree()) * self.row_size()];
+        let alone = Slab {
+            first: 0,
+            ..slab.clone()
+        };
+        self.add_rows(&alone, 1.0, &residual, &mut sum.residual);
+        sum
+    }
+
+    /// Adds the padded rows of a slab to those of the tube.
+    fn add_rows(&self, slab: &Slab, factor: f64, part: &[f64], y: &mut [f64]) {
+        let k = self.sector.rings;
+        let rows = y[slab.first * self.row_size()..].chunks_exact_mut(k);
+        for (y, part) in rows.zip(part.chunks_exact(self.lanes.padded)) {
+            for (y, x) in y.iter_mut().zip(part) {
+                *y += factor * x;
+            }
+        }
+    }
+
+    /// The blocks of an averaged tangent between rings.
+    fn circulant(&self, averaged: &Averaged) -> Circulant {
+        let (p, points) = (self.degree(), self.wall.functions());
+        let parts: Vec<Vec<SlabTangent>> = self
+            .slabs
+            .par_iter()
+            .map(|slab| {
+                let (layers, sector, around) = (&self.layers, &self.sector, &self.around);
+                let offsets = |n: usize| match n {
+                    1 => slab_offsets::<2>(slab, layers, points, sector, around, averaged),
+                    2 => slab_offsets::<3>(slab, layers, points, sector, around, averaged),
+                    3 => slab_offsets::<4>(slab, layers, points, sector, around, averaged),
+                    4 => slab_offsets::<5>(slab, layers, points, sector, around, averaged),
+                    5 => slab_offsets::<6>(slab, layers, points, sector, around, averaged),
+                    degree => unreachable!("degree {degree} is refused by SplineTube::new"),
+                };
+                offsets(p)
+            })
+            .collect();
+        let m = points * 3;
+        let offsets = (0..=p)
+            .into_par_iter()
+            .map(|d| {
+                let mut matrix = BlockBanded::zeros(self.axial.functions(), m, p);
+                for (slab, part) in self.slabs.iter().zip(&parts) {
+                    part[d].add_to(&mut matrix, slab.first, m, p);
+                }
+                matrix
+            })
+            .collect();
+        Circulant {
+            offsets,
+            angle: self.sector.angle(),
+        }
+    }
+
+    /// What a pencil kernel reads, at an element along the tube.
+    fn pencil<'a>(
+        &'a self,
+        slab: &'a Slab,
+        lane: usize,
+        inverse_stretch: &'a [(Lanes, Lanes)],
+        u: &'a [f64],
+    ) -> PencilInput<'a> {
+        let row = self.wall.functions() * 3 * self.lanes.padded;
+        PencilInput {
+            slab,
+            lane,
+            layers: &self.layers,
+            around: &self.around,
+            points: self.wall.functions(),
+            rings: &self.lanes,
+            inverse_stretch,
+            u: &u[(slab.first + lane) * row..][..(self.degree() + 1) * row],
+        }
+    }
+
+    fn pencil_stretch(&self, element: usize, load: &Load) -> Vec<(Lanes, Lanes)> {
+        let slab = &self.slabs[element / crate::tensor::LANES];
+        let lane = element - slab.first;
+        let at = |z: &Lanes| {
+            let (along, around) = self.tube.stretches(z.0[lane], load);
+            let all = |x: f64| Lanes([x; crate::tensor::LANES]);
+            (all(1.0 / along), all(1.0 / around))
+        };
+        slab.z.iter().map(at).collect()
+    }
+}

@@ -1,0 +1,178 @@
+//! Energy and residual of a pencil.
+
+use super::super::forces::Worst;
+use super::super::kinematics::{Columns, turn_back};
+use super::{PencilInput, gradients, load, slots, store, sum_along, sum_through};
+use crate::material::Law;
+use crate::tensor::{LANES, Lanes, Real};
+use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+
+/// What a pencil adds to the energy and the residual.
+#[derive(Clone, Debug, Default)]
+pub struct PencilForces {
+    /// ∫ w det Fp dV₀.
+    pub energy: f64,
+    /// ∫ w dV₀.
+    pub energy_ungrown: f64,
+    /// Where det Fe is smallest; the element's first number is not set.
+    pub worst: Worst,
+    /// Sum of the squares of what the elements add to each entry of R.
+    pub squares: f64,
+}
+
+/// Energy and residual of one pencil; R is added to `residual`, p + 1 rows of (point, component)
+/// times R rings. `N` is the degree plus one.
+pub fn pencil_forces<L: Law, const N: usize>(
+    law: &L,
+    input: &PencilInput<'_>,
+    residual: &mut [f64],
+) -> PencilForces {
+    dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input, residual))
+}
+
+#[inline(always)]
+fn kernel<S: Simd, L: Law, const N: usize>(
+    simd: S,
+    law: &L,
+    input: &PencilInput<'_>,
+    residual: &mut [f64],
+) -> PencilForces {
+    let (row, R, W) = (input.row(), input.rings.padded, input.rings.wide());
+    let nil = f64x8::splat(simd, 0.0);
+    let slots = slots::<N>(input.around);
+    let mut worst = Worst {
+        jacobian: f64::INFINITY,
+        ..Worst::default()
+    };
+    let (mut energy, mut energy_ungrown, mut squares) = (nil, nil, nil);
+
+    let mut along = vec![0.0; N * 2 * row];
+    for qz in 0..N {
+        sum_along::<S, N>(simd, input, qz, &mut along[qz * 2 * row..][..2 * row]);
+    }
+    let mut through = vec![0.0; 9 * W];
+    // Per (c, r), gradient (value, ζ) and component: R elements. Then per (a, c, r), component.
+    let mut along_force = vec![0.0; N * N * 6 * R];
+    let mut force = vec![0.0; N * N * N * 3 * R];
+
+    for (t, layer) in input.layers.iter().enumerate() {
+        force.fill(0.0);
+        for qz in 0..N {
+            along_force.fill(0.0);
+            for qr in 0..N {
+                let radius = layer.radius[qr];
+                let rows = &along[qz * 2 * row..][..2 * row];
+                sum_through::<S, N>(simd, input, layer, qr, rows, &mut through);
+                for v in 0..input.rings.vectors() {
+                    let mask = input.rings.mask[v].load(simd);
+                    let mut pulled = [[[nil; 3]; 3]; N];
+                    for qs in 0..N {
+                        let point = &input.around[qs];
+                        let (inverse_along, inverse_around) =
+                            input.stretch::<S, N>(simd, qz, qs, v);
+                        let columns = Columns::new(point, radius, inverse_along, inverse_around);
+                        let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
+                        let Fe = columns.elastic(point, radius, g);
+                        note_worst(&mut worst, Lanes::store(Fe.determinant()), t, v, qr);
+
+                        let volume =
+                            mask.times(input.weight(qz) * layer.weight[qr] * point.volume(radius)); // dV₀
+                        let grown = volume / (inverse_along * inverse_around); // det Fp dV₀
+                        let w = law.energy(&Fe);
+                        energy = Real::mul_add(w, grown, energy);
+                        energy_ungrown = Real::mul_add(w, volume, energy_ungrown);
+                        pulled[qs] = columns.pulled_back(&law.stress(&Fe).scaled(grown));
+                    }
+                    for r in 0..N {
+                        let mut f = [[nil; 3]; 3];
+                        for qs in 0..N {
+                            let [zeta, s, over_r] = pulled[qs];
+                            f[0] = turn_back(&slots[qs][r], 1, s, f[0]); // ∂N : P Fp⁻ᵀ det Fp
+                            f[1] = turn_back(&slots[qs][r], 0, zeta, f[1]);
+                            f[2] = turn_back(&slots[qs][r], 0, over_r, f[2]);
+                        }
+                        for c in 0..N {
+                            let m = nil.like(layer.value[qr * N + c]);
+                            let dm = nil.like(layer.slope[qr * N + c]);
+                            for i in 0..3 {
+                                let at = ((c * N + r) * 6 + i) * R + v * LANES;
+                                let sum = Real::mul_add(dm, f[2][i], load(simd, &along_force, at));
+                                store(Real::mul_add(m, f[0][i], sum), &mut along_force, at);
+                                let at = at + 3 * R;
+                                let sum = load(simd, &along_force, at);
+                                store(Real::mul_add(m, f[1][i], sum), &mut along_force, at);
+                            }
+                        }
+                    }
+                }
+            }
+            for a in 0..N {
+                let (n, dn) = input.along::<N>(qz, a);
+                for cr in 0..N * N {
+                    for x in (0..3 * R).step_by(LANES) {
+                        let at = (a * N * N + cr) * 3 * R + x;
+                        let value = load(simd, &along_force, cr * 6 * R + x);
+                        let slope = load(simd, &along_force, (cr * 6 + 3) * R + x);
+                        let sum = Real::mul_add(slope, nil.like(dn), load(simd, &force, at));
+                        store(Real::mul_add(value, nil.like(n), sum), &mut force, at);
+                    }
+                }
+            }
+        }
+        for x in (0..force.len()).step_by(LANES) {
+            let f = load(simd, &force, x);
+            squares = Real::mul_add(f, f, squares);
+        }
+        scatter::<N>(input, layer.first, &force, residual);
+    }
+    PencilForces {
+        energy: Lanes::store(energy).sum(),
+        energy_ungrown: Lanes::store(energy_ungrown).sum(),
+        squares: Lanes::store(squares).sum(),
+        worst,
+    }
+}
+
+/// Adds the forces of elements to the rings of their slots.
+fn scatter<const N: usize>(
+    input: &PencilInput<'_>,
+    first: usize,
+    force: &[f64],
+    residual: &mut [f64],
+) {
+    let (row, R, k) = (input.row(), input.rings.padded, input.rings.rings);
+    for a in 0..N {
+        for c in 0..N {
+            for r in 0..N {
+                let from = &force[((a * N + c) * N + r) * 3 * R..][..3 * R];
+                let to = &mut residual[a * row + (first + c) * 3 * R..][..3 * R];
+                for (to, from) in to.chunks_exact_mut(R).zip(from.chunks_exact(R)) {
+                    // Element e adds to ring e + r.
+                    let wrap = r % k;
+                    for (to, f) in to[wrap..k].iter_mut().zip(&from[..k - wrap]) {
+                        *to += f;
+                    }
+                    for (to, f) in to[..wrap].iter_mut().zip(&from[k - wrap..k]) {
+                        *to += f;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Keeps the smallest det Fe; one that is not a number counts as smallest.
+#[inline(always)]
+fn note_worst(worst: &mut Worst, J: Lanes, layer: usize, v: usize, qr: usize) {
+    let smallest = J.min();
+    if smallest >= worst.jacobian || worst.jacobian.is_nan() {
+        return;
+    }
+    let is_worst = |x: &f64| *x == smallest || x.is_nan();
+    let lane = J.0.iter().position(is_worst).unwrap_or(0);
+    *worst = Worst {
+        jacobian: smallest,
+        element: [0, layer, v * LANES + lane],
+        qr,
+    };
+}

@@ -1,0 +1,135 @@
+//! That a tube by pencils is the tube by slabs, whose matrices are assembled.
+
+use crate::assembly::SplineTube;
+use crate::assembly::tests::{
+    TubeAndLoad, direction, dot, largest, repeated, tube_and_load, unknowns, wavy,
+};
+use crate::matrix::BlockBanded;
+use crate::rings::HarmonicSolver;
+
+/// Degrees, elements, and rings of the sector: below, at and above a vector of eight.
+const SECTORS: [(usize, [usize; 3], usize); 8] = [
+    (1, [10, 2, 8], 8),
+    (2, [3, 2, 6], 6),
+    (2, [9, 1, 18], 9),
+    (3, [3, 2, 12], 12),
+    (3, [9, 1, 16], 8),
+    (3, [2, 2, 7], 7),
+    (4, [2, 1, 10], 10),
+    (5, [2, 1, 12], 6),
+];
+
+/// Of an axisymmetric state: waves along the tube, the same at every ring.
+fn axisymmetric(tube: &SplineTube) -> Vec<f64> {
+    unknowns(tube, |z, r, _| {
+        [
+            0.05 * (2.0 * z + 1.0).sin(),
+            r * (0.08 * (3.0 * z).cos() - 0.1 + 0.2 * (r - 0.4)),
+            0.0,
+        ]
+    })
+}
+
+fn multiplied(matrix: &BlockBanded, v: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; v.len()];
+    matrix.multiply_add(1.0, v, &mut y);
+    y
+}
+
+#[test]
+fn the_product_is_that_of_the_assembled_tangent() {
+    for (degree, elements, rings) in SECTORS {
+        let TubeAndLoad { tube, load } = tube_and_load(degree, elements, rings);
+        let (u, v) = (wavy(&tube), direction(&tube));
+        let assembled = multiplied(&tube.tangent(&load, &u), &v);
+        let mut product = vec![0.0; v.len()];
+        tube.product(&tube.linearised(&load, &u), 1.0, &v, &mut product);
+        let scale = largest(&assembled);
+        for (a, b) in product.iter().zip(&assembled) {
+            // Ten numbers of a point are kept in single precision.
+            assert!(
+                (a - b).abs() < 1e-6 * scale,
+                "{degree} {elements:?} {rings}: {a} {b}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_product_is_symmetric() {
+    let TubeAndLoad { tube, load } = tube_and_load(3, [9, 2, 12], 12);
+    let at = tube.linearised(&load, &wavy(&tube));
+    let (v, w) = (direction(&tube), wavy(&tube));
+    let product = |v: &[f64]| {
+        let mut y = vec![0.0; v.len()];
+        tube.product(&at, 1.0, v, &mut y);
+        y
+    };
+    let (vw, wv) = (dot(&w, &product(&v)), dot(&v, &product(&w)));
+    assert!((vw - wv).abs() < 1e-13 * vw.abs(), "{vw} {wv}");
+}
+
+#[test]
+fn averaged_blocks_are_the_harmonics_of_an_axisymmetric_tube() {
+    for (degree, elements, rings) in SECTORS {
+        let TubeAndLoad { tube, load } = tube_and_load(degree, elements, rings);
+        let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
+        let average = tube.linearised(&load, &axisymmetric(&tube)).average;
+        let u = axisymmetric(&one);
+        for n in [1, 2, 3] {
+            let exact = one.harmonic_tangent(&load, &u, n);
+            let block = average.harmonic(n);
+            let v = direction(&one);
+            let (a, b) = (multiplied(&block, &v), multiplied(&exact, &v));
+            let scale = largest(&b);
+            for (a, b) in a.iter().zip(&b) {
+                assert!(
+                    (a - b).abs() < 1e-13 * scale,
+                    "{degree} {elements:?}, {n}: {a} {b}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_harmonic_solver_inverts_the_tangent_of_an_axisymmetric_tube() {
+    for (degree, elements, rings) in SECTORS {
+        let TubeAndLoad { tube, load } = tube_and_load(degree, elements, rings);
+        let u = axisymmetric(&tube);
+        let repeats = elements[2] / rings;
+        let average = tube.linearised(&load, &u).average;
+        let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
+        let solver = HarmonicSolver::new(rings, |n| {
+            let mut block = average.harmonic(n * repeats);
+            block.constrain(one.given());
+            block
+        })
+        .unwrap();
+        let x: Vec<f64> = direction(&tube)
+            .iter()
+            .zip(tube.given())
+            .map(|(x, &given)| if given { 0.0 } else { *x })
+            .collect();
+        let mut K = tube.tangent(&load, &u);
+        K.constrain(tube.given());
+        let solved = solver.solve(&multiplied(&K, &x));
+        let scale = largest(&x);
+        for (a, b) in solved.iter().zip(&x) {
+            assert!(
+                (a - b).abs() < 1e-8 * scale,
+                "{degree} {elements:?} {rings}: {a} {b}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_symmetric_state_stays_symmetric_to_the_last_bit() {
+    let TubeAndLoad { tube, load } = tube_and_load(3, [9, 2, 12], 12);
+    let u = repeated(&axisymmetric(&tube_and_load(3, [9, 2, 12], 1).tube), 1, 12);
+    let residual = tube.forces(&load, &u).unwrap().residual;
+    for rings in residual.chunks_exact(12) {
+        assert!(rings.iter().all(|r| r == &rings[0]), "{rings:?}");
+    }
+}

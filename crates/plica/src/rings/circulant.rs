@@ -1,0 +1,46 @@
+//! Matrices that do not change when the tube is turned by a ring, nor mirrored through its axis.
+//!
+//! Such a matrix is known by its blocks M_d between rings d = 0 to p apart. On displacements of
+//! circumferential harmonic n, (z cos nφ, r cos nφ, −θ sin nφ) or a quarter wave on, it is the same
+//! real matrix
+//!
+//! B_n = Σ_d M_d cos(n α d), with −sin and +sin where an axial or radial component meets a
+//! circumferential one,
+//!
+//! so that it falls apart into one block-banded matrix of the size of the axisymmetric tube for
+//! every harmonic. The tangent of an axisymmetric state without twist is such a matrix.
+
+use crate::matrix::BlockBanded;
+
+/// A matrix that is the same at every ring.
+#[derive(Clone, Debug)]
+pub struct Circulant {
+    /// M_0 = K̄_0 and M_d = K̄_d + S K̄_dᵀ S for d = 1 to p, where K̄_d couples ring j with ring j + d
+    /// and S changes the sign of circumferential components; each numbered as one ring is.
+    pub offsets: Vec<BlockBanded>,
+    /// α: the angle between rings.
+    pub angle: f64,
+}
+
+impl Circulant {
+    /// B_n: the matrix on circumferential harmonic n of the whole tube; every unknown is free.
+    pub fn harmonic(&self, n: usize) -> BlockBanded {
+        let parts: Vec<_> = self
+            .offsets
+            .iter()
+            .enumerate()
+            .map(|(d, offset)| {
+                let (sin, cos) = (n as f64 * self.angle * d as f64).sin_cos();
+                // By component of the row and of the column.
+                let factor = move |row: usize, column: usize| match (row % 3 == 2, column % 3 == 2)
+                {
+                    (false, true) => -sin,
+                    (true, false) => sin,
+                    _ => cos,
+                };
+                (offset, factor)
+            })
+            .collect();
+        BlockBanded::combined(&parts)
+    }
+}

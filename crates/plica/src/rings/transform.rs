@@ -1,0 +1,135 @@
+//! The discrete Fourier transform over the rings of a sector.
+//!
+//! A vector of k rings is a matrix of k columns, one row for every unknown of a ring. Its
+//! coefficients on 1, cos φ, sin φ, cos 2φ, … are that matrix times a k × k one. For the tens of
+//! rings of a tube the dense product costs no more than a fast transform of so many short rows
+//! (1.3e7 multiply-adds at paper scale, 2 ms), keeps the rings of a harmonic side by side, and adds
+//! up in an order that never changes.
+
+use crate::matrix::multiply;
+use std::f64::consts::TAU;
+
+/// The transform over k rings.
+#[derive(Clone, Debug)]
+pub struct Transform {
+    rings: usize,
+    /// Row by row of rings: the values of 1, cos φ, sin φ, … at each ring.
+    waves: Vec<f64>,
+    /// What a coefficient is divided by: the sum of the squares of its wave.
+    scale: Vec<f64>,
+}
+
+/// Circumferential harmonics of a sector: the coefficients that belong to one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wave {
+    /// Harmonic of the sector: waves around the k rings.
+    pub harmonic: usize,
+    /// Column of its cosine.
+    pub cosine: usize,
+    /// Column of its sine; none for those that alternate or do not change.
+    pub sine: Option<usize>,
+}
+
+impl Transform {
+    /// Over `rings` rings.
+    pub fn new(rings: usize) -> Self {
+        let waves = (0..rings)
+            .flat_map(|column| {
+                let n = column.div_ceil(2);
+                (0..rings).map(move |j| {
+                    // n j modulo k, so that every wave is exact.
+                    let phi = TAU * ((n * j) % rings) as f64 / rings as f64;
+                    if column % 2 == 1 || column == 0 {
+                        phi.cos()
+                    } else {
+                        phi.sin()
+                    }
+                })
+            })
+            .collect();
+        let alone = |column: usize| column == 0 || (column == rings - 1 && rings.is_multiple_of(2));
+        let scale = (0..rings)
+            .map(|column| if alone(column) { 1.0 } else { 2.0 } / rings as f64)
+            .collect();
+        Self {
+            rings,
+            waves,
+            scale,
+        }
+    }
+
+    /// k.
+    pub fn rings(&self) -> usize {
+        self.rings
+    }
+
+    /// The harmonics, 0 to k/2.
+    pub fn harmonics(&self) -> impl Iterator<Item = Wave> + use<> {
+        let rings = self.rings;
+        (0..=rings / 2).map(move |harmonic| Wave {
+            harmonic,
+            cosine: if harmonic == 0 { 0 } else { 2 * harmonic - 1 },
+            sine: (harmonic > 0 && 2 * harmonic < rings).then_some(2 * harmonic),
+        })
+    }
+
+    /// Sums over the rings against every wave: column by column of unknowns of one ring.
+    pub fn forward(&self, u: &[f64]) -> Vec<f64> {
+        let (k, lines) = (self.rings, u.len() / self.rings);
+        let mut out = vec![0.0; u.len()];
+        multiply(
+            (u, [lines, k], [k, 1]),
+            (&self.waves, [k, k], [1, k]),
+            (&mut out, [1, lines]),
+        );
+        out
+    }
+
+    /// The displacements of given coefficients, each over the sum of the squares of its wave: the
+    /// inverse of [`Transform::forward`].
+    pub fn back(&self, coefficients: &[f64]) -> Vec<f64> {
+        let (k, lines) = (self.rings, coefficients.len() / self.rings);
+        let scaled: Vec<f64> = (0..k * k)
+            .map(|at| self.scale[at / k] * self.waves[at])
+            .collect();
+        let mut out = vec![0.0; coefficients.len()];
+        multiply(
+            (coefficients, [lines, k], [1, lines]),
+            (&scaled, [k, k], [k, 1]),
+            (&mut out, [k, 1]),
+        );
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn back_undoes_forward() {
+        for rings in [1, 2, 3, 4, 7, 12, 60] {
+            let transform = Transform::new(rings);
+            let u: Vec<f64> = (0..5 * rings).map(|i| (i as f64 * 0.37).sin()).collect();
+            let back = transform.back(&transform.forward(&u));
+            for (a, b) in back.iter().zip(&u) {
+                assert!((a - b).abs() < 1e-14, "{rings} rings: {a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wave_is_found_in_its_column() {
+        let (rings, n) = (12, 3);
+        let transform = Transform::new(rings);
+        let u: Vec<f64> = (0..rings)
+            .map(|j| (TAU * (n * j) as f64 / rings as f64).sin())
+            .collect();
+        let wave = transform.harmonics().nth(n).unwrap();
+        let found = transform.forward(&u);
+        for (column, x) in found.iter().enumerate() {
+            let expected = if Some(column) == wave.sine { 6.0 } else { 0.0 };
+            assert!((x - expected).abs() < 1e-14, "column {column}: {x}");
+        }
+    }
+}
