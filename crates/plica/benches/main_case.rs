@@ -5,7 +5,6 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use plica::assembly::SplineTube;
-use plica::matrix::BlockBanded;
 use plica::solve::{Equilibrium, Path};
 use plica::study::{Plan, TubeProblem};
 use std::hint::black_box;
@@ -53,9 +52,9 @@ fn kernels(c: &mut Criterion) {
         b.iter(|| black_box(problem.forces(load, u)))
     });
     group.bench_function("tangent", |b| {
-        b.iter(|| black_box(problem.tangent(load, u)))
+        b.iter(|| black_box(problem.tube.tangent(load, u)))
     });
-    let mut tangent: BlockBanded = problem.tangent(load, u);
+    let mut tangent = problem.tube.tangent(load, u);
     tangent.constrain(problem.given());
     group.bench_function("factorisation", |b| {
         b.iter(|| black_box(tangent.clone().factor()))

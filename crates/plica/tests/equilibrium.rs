@@ -90,7 +90,7 @@ fn volume(problem: &TubeProblem) -> f64 {
         .map(|i| f64::from(u8::from(i / rings % 3 == 0))) // axial components
         .collect();
     let mut weighed = vec![0.0; n];
-    problem.drag().multiply_add(1.0, &shift, &mut weighed);
+    problem.drag(1.0, &shift, &mut weighed);
     let sector: f64 = shift.iter().zip(&weighed).map(|(u, c)| u * c).sum();
     sector * problem.tube.sector.repeats()
 }

@@ -2,6 +2,9 @@
 //!
 //! This room never hears of a tube. It sees an [`Equilibrium`]: an energy W(u, load) with its
 //! residual R = ∂W/∂u, its tangent K = ∂²W/∂u², a drag matrix C, and unknowns that supports give.
+//! How a linear system is solved it leaves to the [`Tangent`] and its [`Solver`]: [`Direct`] has
+//! matrices that are factored; others may iterate, and then say where they meet an energy that is
+//! curved downwards.
 //!
 //! - [`newton`]: K Δu = −R with the energy as judge. Refuses an indefinite tangent.
 //! - [`relaxation`]: (K + α C) Δu = −R, backward Euler in pseudo-time with a drag α that shrinks
@@ -21,12 +24,14 @@
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
+mod forcing;
 mod newton;
 mod path;
 mod pseudo_time;
 mod relaxation;
 mod settings;
 mod state;
+mod tangent;
 #[cfg(test)]
 mod tests;
 
@@ -35,4 +40,5 @@ pub use path::{Path, PathError, Step};
 pub use pseudo_time::pseudo_time;
 pub use relaxation::relaxation;
 pub use settings::{Integrator, PseudoTime, Scheme, Settings};
-pub use state::{Equilibrium, Failure, Forces, Found, Method, State, Watch};
+pub use state::{Balance, Equilibrium, Failure, Found, Method, State, Watch};
+pub use tangent::{Direct, NegativeCurvature, Solver, Tangent};

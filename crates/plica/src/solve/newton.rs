@@ -1,6 +1,7 @@
 //! Newton's method with the energy as judge.
 
-use super::{Equilibrium, Failure, Found, Method, Settings, Watch};
+use super::forcing::Forcing;
+use super::{Balance, Equilibrium, Failure, Found, Method, Settings, Solver, Tangent, Watch};
 
 /// A residual this small, relative to the forces in play, is equilibrium even if rounding keeps
 /// the solver from its own, finer tolerance.
@@ -22,6 +23,7 @@ pub fn newton<P: Equilibrium>(
     let given = problem.given();
     let mut forces = problem.forces(load, &u).map_err(Failure::Broken)?;
     let mut imbalance = forces.imbalance(given);
+    let mut forcing = Forcing::new(settings.tolerance);
     let mut iterations = 0;
     while imbalance > settings.tolerance || imbalance.is_nan() {
         if iterations == settings.newton_iterations {
@@ -30,17 +32,21 @@ pub fn newton<P: Equilibrium>(
                 imbalance,
             });
         }
-        let mut K = problem.tangent(load, &u);
-        K.constrain(given);
-        let factor = K.factor()?;
+        let solver = problem.tangent(load, &u).into_shifted(0.0)?;
         iterations += 1;
-        if factor.negative_pivots() > 0 {
+        if solver.negative_pivots() > 0 {
             return Err(Failure::Indefinite {
-                negative_pivots: factor.negative_pivots(),
+                negative_pivots: solver.negative_pivots(),
             });
         }
         let mut step = free_part(&forces.residual, given, -1.0);
-        factor.solve(&mut step);
+        match solver.solve(&mut step, forcing.accuracy(imbalance)) {
+            Ok(inner) => watch.iterated(inner),
+            Err(down) => {
+                watch.iterated(down.iterations);
+                return Err(Failure::Indefinite { negative_pivots: 1 });
+            }
+        }
         let (length, next, next_forces) = match descend(problem, load, &u, &step, &forces) {
             Ok(found) => found,
             // Rounding: the energy no longer tells the states apart.
@@ -72,6 +78,7 @@ pub fn newton<P: Equilibrium>(
         forces,
         drag_work: 0.0,
         iterations,
+        negative_curvature: false,
     })
 }
 
@@ -95,8 +102,8 @@ fn descend<P: Equilibrium>(
     load: &P::Load,
     u: &[f64],
     step: &[f64],
-    forces: &super::Forces,
-) -> Result<(f64, Vec<f64>, super::Forces), Descent<P::Broken>> {
+    forces: &Balance,
+) -> Result<(f64, Vec<f64>, Balance), Descent<P::Broken>> {
     let slope: f64 = forces.residual.iter().zip(step).map(|(r, s)| r * s).sum();
     let (mut length, mut broken) = (1.0, None);
     for _ in 0..8 {

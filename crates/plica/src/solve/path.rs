@@ -2,8 +2,8 @@
 
 use super::newton::EQUILIBRIUM;
 use super::{
-    Equilibrium, Failure, Forces, Found, Method, PseudoTime, Scheme, Settings, State, Watch,
-    newton, pseudo_time, relaxation,
+    Balance, Equilibrium, Failure, Found, Method, PseudoTime, Scheme, Settings, Solver, State,
+    Tangent, Watch, newton, pseudo_time, relaxation,
 };
 
 /// How often a step is halved for Newton before relaxation takes over.
@@ -12,13 +12,19 @@ const NEWTON_HALVINGS: usize = 5;
 /// Step of the difference that gives ∂R/∂t, as a fraction of a leg.
 const DIFFERENCE: f64 = 1e-5;
 
+/// Accuracy of du/dt, which a state is predicted with.
+const PREDICTION: f64 = 1e-4;
+
 /// A way through states, leg by leg; a leg is a straight way through loads, t from 0 to 1. It owns
 /// the last accepted state.
-#[derive(Debug)]
 pub struct Path<'a, P: Equilibrium> {
     problem: &'a P,
     settings: Settings,
     state: State<P::Load>,
+    /// Solves with the tangent stiffness of the state, unless that is singular.
+    solver: Option<SolverOf<P>>,
+    /// du/dt at the state, or that there is none, once it has been asked for.
+    tangent: Option<Option<Vec<f64>>>,
     /// The leg, and how far along it the state is.
     from: P::Load,
     to: P::Load,
@@ -30,6 +36,8 @@ pub struct Path<'a, P: Equilibrium> {
     /// u̇ of the pseudo-time.
     velocity: Vec<f64>,
 }
+
+type SolverOf<P> = <<P as Equilibrium>::Tangent as Tangent>::Solver;
 
 /// A state of the path and its tangent du/dt.
 #[derive(Clone, Debug)]
@@ -46,6 +54,8 @@ pub struct Step {
     pub method: Method,
     /// Linear solves, counting those of tries that failed.
     pub iterations: usize,
+    /// Iterations inside the linear solves; 0 where the solver is direct.
+    pub inner_iterations: usize,
     /// Energy spent on drag.
     pub drag_work: f64,
 }
@@ -90,12 +100,14 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     ) -> Result<Self, P::Broken> {
         let forces = problem.forces(&load, &u)?;
         let velocity = vec![0.0; u.len()];
-        let state = accepted(problem, load.clone(), u, &forces);
+        let (state, solver) = accepted(problem, load.clone(), u, &forces);
         let (from, to) = (load.clone(), load);
         Ok(Self {
             problem,
             settings,
             state,
+            solver,
+            tangent: None,
             from,
             to,
             t: 0.0,
@@ -113,7 +125,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     /// Sets out on a leg from where the path is to a load.
     pub fn set_out(&mut self, to: P::Load) {
         (self.from, self.to, self.t) = (self.state.load.clone(), to, 0.0);
-        (self.behind, self.pace) = (None, 0);
+        (self.tangent, self.behind, self.pace) = (None, None, 0);
     }
 
     /// How far along its leg the path is, 0 to 1.
@@ -124,10 +136,20 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     /// Goes on to `t` of the leg. On failure the path stays at the last state that it found on
     /// the way.
     pub fn advance(&mut self, t: f64, watch: &mut dyn Watch) -> Result<Step, PathError<P::Broken>> {
-        match self.settings.scheme.clone() {
+        let watch = &mut Counted {
+            watch,
+            inner_iterations: 0,
+        };
+        let mut advanced = match self.settings.scheme.clone() {
             Scheme::Static => self.advance_static(t, watch),
             Scheme::PseudoTime(scheme) => self.advance_dragged(t, &scheme, watch),
-        }
+        };
+        let step = match &mut advanced {
+            Ok(step) => step,
+            Err(error) => &mut error.step,
+        };
+        step.inner_iterations = watch.inner_iterations;
+        advanced
     }
 
     /// Newton from the path's tangent. Where that fails the step is halved, since a branch that
@@ -141,6 +163,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         let mut step = Step {
             method: Method::Newton,
             iterations: 0,
+            inner_iterations: 0,
             drag_work: 0.0,
         };
         let (begin, whole) = (self.t, target - self.t);
@@ -197,6 +220,9 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         step: &mut Step,
         watch: &mut dyn Watch,
     ) -> Result<(), Failure<P::Broken>> {
+        // To ask for it may tell that the state is unstable.
+        let stable = self.state.negative_pivots == 0;
+        let tangent = if stable { self.tangent(watch) } else { None };
         if self.state.negative_pivots > 0 {
             // The tangent leads away from an unstable state, not along it.
             return Err(Failure::Indefinite {
@@ -204,7 +230,6 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             });
         }
         let load = self.load_at(t);
-        let tangent = self.tangent();
         let start = self.predict(t, &load, tangent.as_deref());
         let found = newton(self.problem, &load, start, &self.settings, watch)
             .inspect_err(|failed| step.iterations += spent(failed))?;
@@ -231,7 +256,8 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         self.problem.impose(&load, &mut start);
         if start != self.state.u {
             self.behind = None;
-            start = self.predict(t, &load, self.tangent().as_deref());
+            let tangent = self.tangent(watch);
+            start = self.predict(t, &load, tangent.as_deref());
         }
         let found = relaxation(self.problem, &load, start, &self.settings, watch)
             .inspect_err(|failed| step.iterations += spent(failed))?;
@@ -248,8 +274,11 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     fn accept(&mut self, t: f64, load: P::Load, found: Found, step: &mut Step) {
         step.iterations += found.iterations + 1;
         step.drag_work += found.drag_work;
-        self.state = accepted(self.problem, load, found.u, &found.forces);
-        self.t = t;
+        (self.state, self.solver) = accepted(self.problem, load, found.u, &found.forces);
+        if found.negative_curvature {
+            self.state.negative_pivots = self.state.negative_pivots.max(1);
+        }
+        (self.tangent, self.t) = (None, t);
     }
 
     /// Pseudo-time with a fixed drag, then to equilibrium without if the scheme says so.
@@ -262,6 +291,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         let mut step = Step {
             method: Method::PseudoTime,
             iterations: 0,
+            inner_iterations: 0,
             drag_work: 0.0,
         };
         let (load, settings) = (self.load_at(t), &self.settings);
@@ -298,11 +328,20 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         Ok(step)
     }
 
-    /// The path's tangent du/dt at the state: K du/dt = −∂R/∂t, the supports moving as they do.
-    /// None where the tangent stiffness is singular or the residual does not exist.
-    fn tangent(&self) -> Option<Vec<f64>> {
+    /// The path's tangent du/dt at the state. None where the tangent stiffness is singular or the
+    /// residual does not exist, and where the solver meets negative curvature: the state is then
+    /// known to be unstable.
+    fn tangent(&mut self, watch: &mut dyn Watch) -> Option<Vec<f64>> {
+        if self.tangent.is_none() {
+            self.tangent = Some(self.solve_for_tangent(watch));
+        }
+        self.tangent.clone().flatten()
+    }
+
+    /// K du/dt = −∂R/∂t, the supports moving as they do.
+    fn solve_for_tangent(&mut self, watch: &mut dyn Watch) -> Option<Vec<f64>> {
         let (problem, given, u) = (self.problem, self.problem.given(), &self.state.u);
-        let factor = self.state.factor.as_ref()?;
+        let solver = self.solver.as_ref()?;
         // Central difference in t; the residual is smooth in the load.
         let at = |t: f64| {
             let load = self.load_at(t);
@@ -332,8 +371,17 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                 tangent[i] = motion[i];
             }
         }
-        factor.solve(&mut tangent);
-        Some(tangent)
+        match solver.solve(&mut tangent, PREDICTION) {
+            Ok(inner) => {
+                watch.iterated(inner);
+                Some(tangent)
+            }
+            Err(down) => {
+                watch.iterated(down.iterations);
+                self.state.negative_pivots = self.state.negative_pivots.max(1);
+                None
+            }
+        }
     }
 
     /// Where the path leads: along its tangent, or along the cubic through the state before and
@@ -386,25 +434,39 @@ fn spent<B: std::error::Error>(failure: &Failure<B>) -> usize {
     }
 }
 
-/// Makes a state of a solution: factors its tangent, which tells whether it is stable and leads to
-/// the next.
+/// Counts the iterations inside the linear solves, those of failed tries too.
+struct Counted<'a> {
+    watch: &'a mut dyn Watch,
+    inner_iterations: usize,
+}
+
+impl Watch for Counted<'_> {
+    fn solved(&mut self, method: Method, imbalance: f64) -> bool {
+        self.watch.solved(method, imbalance)
+    }
+    fn iterated(&mut self, inner_iterations: usize) {
+        self.inner_iterations += inner_iterations;
+        self.watch.iterated(inner_iterations);
+    }
+}
+
+/// Makes a state of a solution, and readies its tangent, which may tell whether it is stable and
+/// leads to the next.
 fn accepted<P: Equilibrium>(
     problem: &P,
     load: P::Load,
     u: Vec<f64>,
-    forces: &Forces,
-) -> State<P::Load> {
-    let mut K = problem.tangent(&load, &u);
-    K.constrain(problem.given());
-    let factor = K.factor().ok();
-    State {
+    forces: &Balance,
+) -> (State<P::Load>, Option<SolverOf<P>>) {
+    let solver = problem.tangent(&load, &u).into_shifted(0.0).ok();
+    let state = State {
         load,
         energy: forces.energy,
         imbalance: forces.imbalance(problem.given()),
-        negative_pivots: factor.as_ref().map_or(1, |f| f.negative_pivots()),
-        factor,
+        negative_pivots: solver.as_ref().map_or(1, |s| s.negative_pivots()),
         u,
-    }
+    };
+    (state, solver)
 }
 
 impl<L> State<L> {

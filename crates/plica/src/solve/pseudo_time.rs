@@ -2,10 +2,10 @@
 
 use super::newton::newton;
 use super::{
-    Equilibrium, Failure, Forces, Found, Integrator, Method, PseudoTime, Settings, Watch,
+    Balance, Equilibrium, Failure, Found, Integrator, Method, PseudoTime, Settings, Tangent, Watch,
     relaxation,
 };
-use crate::matrix::BlockBanded;
+use crate::matrix::Singular;
 
 /// Leads the problem from one load to another against a fixed drag and on until it hardly moves:
 /// C u̇ + R(u) = 0 (Okino et al. 2025, Eqs. (15)–(18)).
@@ -52,6 +52,7 @@ pub fn pseudo_time<P: Equilibrium>(
                 forces,
                 drag_work,
                 iterations,
+                negative_curvature: false,
             });
         }
     }
@@ -101,14 +102,15 @@ impl<'a, P: Equilibrium> Dragged<'a, P> {
 
     fn times_drag(&self, v: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; v.len()];
-        self.problem.drag().multiply_add(self.drag, v, &mut force);
+        self.problem.drag(self.drag, v, &mut force);
         force
     }
 }
 
-impl<P: Equilibrium> Equilibrium for Dragged<'_, P> {
+impl<'a, P: Equilibrium> Equilibrium for Dragged<'a, P> {
     type Load = P::Load;
     type Broken = P::Broken;
+    type Tangent = DraggedTangent<'a, P>;
 
     fn given(&self) -> &[bool] {
         self.problem.given()
@@ -119,7 +121,7 @@ impl<P: Equilibrium> Equilibrium for Dragged<'_, P> {
     fn between(&self, from: &P::Load, to: &P::Load, t: f64) -> P::Load {
         self.problem.between(from, to, t)
     }
-    fn forces(&self, load: &P::Load, x: &[f64]) -> Result<Forces, P::Broken> {
+    fn forces(&self, load: &P::Load, x: &[f64]) -> Result<Balance, P::Broken> {
         let mut forces = self.problem.forces(load, x)?;
         // ½ rate d·d − kept u̇·d = d · (½ rate d − kept u̇)
         let mean: Vec<f64> = (0..x.len())
@@ -134,13 +136,37 @@ impl<P: Equilibrium> Equilibrium for Dragged<'_, P> {
         }
         Ok(forces)
     }
-    fn tangent(&self, load: &P::Load, x: &[f64]) -> BlockBanded {
-        let mut K = self.problem.tangent(load, x);
-        K.add_scaled(self.rate * self.drag, self.problem.drag());
-        K
+    fn tangent(&self, load: &P::Load, x: &[f64]) -> DraggedTangent<'a, P> {
+        DraggedTangent {
+            problem: self.problem,
+            stiffness: self.problem.tangent(load, x),
+            drag: self.rate * self.drag,
+        }
     }
-    fn drag(&self) -> &BlockBanded {
-        self.problem.drag()
+    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.problem.drag(factor, v, y);
+    }
+}
+
+/// K of a problem and the drag of a pseudo-time step.
+struct DraggedTangent<'a, P: Equilibrium> {
+    problem: &'a P,
+    stiffness: P::Tangent,
+    drag: f64,
+}
+
+impl<P: Equilibrium> Tangent for DraggedTangent<'_, P> {
+    type Solver = <P::Tangent as Tangent>::Solver;
+
+    fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.stiffness.multiply_add(factor, v, y);
+        self.problem.drag(factor * self.drag, v, y);
+    }
+    fn shifted(&self, alpha: f64) -> Result<Self::Solver, Singular> {
+        self.stiffness.shifted(self.drag + alpha)
+    }
+    fn into_shifted(self, alpha: f64) -> Result<Self::Solver, Singular> {
+        self.stiffness.into_shifted(self.drag + alpha)
     }
 }
 
@@ -150,5 +176,8 @@ struct Renamed<'a>(&'a mut dyn Watch);
 impl Watch for Renamed<'_> {
     fn solved(&mut self, _: Method, imbalance: f64) -> bool {
         self.0.solved(Method::PseudoTime, imbalance)
+    }
+    fn iterated(&mut self, inner_iterations: usize) {
+        self.0.iterated(inner_iterations);
     }
 }

@@ -1,6 +1,7 @@
 //! What is solved, and what a solution is.
 
-use crate::matrix::{BlockBanded, Factor, Singular};
+use super::Tangent;
+use crate::matrix::Singular;
 
 /// An energy to be made stationary. Pure in (u, load): nothing remembers the last call.
 pub trait Equilibrium {
@@ -8,6 +9,8 @@ pub trait Equilibrium {
     type Load: Clone;
     /// Why its energy does not exist at some state.
     type Broken: std::error::Error + Clone;
+    /// Its tangent stiffness.
+    type Tangent: Tangent;
 
     /// For every unknown, whether a support gives it.
     fn given(&self) -> &[bool];
@@ -16,16 +19,16 @@ pub trait Equilibrium {
     /// The load a fraction `t` of the way from one to another.
     fn between(&self, from: &Self::Load, to: &Self::Load, t: f64) -> Self::Load;
     /// Energy and residual.
-    fn forces(&self, load: &Self::Load, u: &[f64]) -> Result<Forces, Self::Broken>;
-    /// Tangent stiffness, every unknown free.
-    fn tangent(&self, load: &Self::Load, u: &[f64]) -> BlockBanded;
-    /// Drag matrix, every unknown free.
-    fn drag(&self) -> &BlockBanded;
+    fn forces(&self, load: &Self::Load, u: &[f64]) -> Result<Balance, Self::Broken>;
+    /// Tangent stiffness K at a state.
+    fn tangent(&self, load: &Self::Load, u: &[f64]) -> Self::Tangent;
+    /// y += factor · C v with the drag matrix C, every unknown free.
+    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]);
 }
 
 /// Energy and residual at a state.
 #[derive(Clone, Debug)]
-pub struct Forces {
+pub struct Balance {
     /// The energy W.
     pub energy: f64,
     /// R = ∂W/∂u, for every unknown.
@@ -36,7 +39,7 @@ pub struct Forces {
     pub rounding: f64,
 }
 
-impl Forces {
+impl Balance {
     /// |R| over the free unknowns, relative to the forces in play.
     pub fn imbalance(&self, given: &[bool]) -> f64 {
         let free = self
@@ -59,11 +62,10 @@ pub struct State<L> {
     pub energy: f64,
     /// Its residual without drag, relative to the forces in play.
     pub imbalance: f64,
-    /// Eigenvalues of its tangent that are negative: 0 if it is stable. A singular tangent, at the
-    /// edge of stability, counts as one.
+    /// Negative eigenvalues of its tangent that the solver knows of. A direct solver knows all: 0
+    /// if the state is stable. An iterative one counts a direction of negative curvature that it
+    /// met as one. A singular tangent, at the edge of stability, counts as one too.
     pub negative_pivots: usize,
-    /// The factored tangent; none where it is singular.
-    pub(super) factor: Option<Factor>,
 }
 
 /// A solution on its way to becoming a state.
@@ -72,11 +74,13 @@ pub struct Found {
     /// Unknowns.
     pub u: Vec<f64>,
     /// Energy and residual there.
-    pub forces: Forces,
+    pub forces: Balance,
     /// Energy spent on drag.
     pub drag_work: f64,
     /// Linear solves.
     pub iterations: usize,
+    /// Whether the iteration of the last of them met a direction of negative curvature.
+    pub negative_curvature: bool,
 }
 
 /// How a state was found.
@@ -152,6 +156,8 @@ pub trait Watch {
     /// A linear solve was done: in what method, and what is left of the residual. The solver
     /// stops if this returns false.
     fn solved(&mut self, method: Method, imbalance: f64) -> bool;
+    /// A linear solve took so many iterations of its own; 0 if it was direct.
+    fn iterated(&mut self, _inner_iterations: usize) {}
 }
 
 /// Nobody watches.

@@ -1,9 +1,11 @@
 //! The solver on energies of one or two unknowns, whose equilibria are known.
 
 use super::{
-    Equilibrium, Failure, Forces, Method, Path, Scheme, Settings, State, Watch, newton, relaxation,
+    Balance, Direct, Equilibrium, Failure, Method, Path, Scheme, Settings, State, Watch, newton,
+    relaxation,
 };
 use crate::matrix::BlockBanded;
+use std::sync::Arc;
 
 /// An energy with its slopes and curvatures.
 type Jet<const N: usize> = (f64, [f64; N], [[f64; N]; N]);
@@ -13,7 +15,7 @@ struct Toy<const N: usize> {
     jet: fn(f64, [f64; N]) -> Jet<N>,
     /// Where the first unknown may not go.
     wall: f64,
-    drag: BlockBanded,
+    drag: Arc<BlockBanded>,
 }
 
 /// The first unknown is past the wall.
@@ -29,7 +31,7 @@ fn toy<const N: usize>(jet: fn(f64, [f64; N]) -> Jet<N>) -> Toy<N> {
     Toy {
         jet,
         wall: f64::INFINITY,
-        drag: matrix(unit),
+        drag: Arc::new(matrix(unit)),
     }
 }
 
@@ -50,6 +52,7 @@ fn matrix<const N: usize>(entries: [[f64; N]; N]) -> BlockBanded {
 impl<const N: usize> Equilibrium for Toy<N> {
     type Load = f64;
     type Broken = PastTheWall;
+    type Tangent = Direct;
 
     fn given(&self) -> &[bool] {
         &[false; 2][..N]
@@ -58,23 +61,24 @@ impl<const N: usize> Equilibrium for Toy<N> {
     fn between(&self, from: &f64, to: &f64, t: f64) -> f64 {
         from + t * (to - from)
     }
-    fn forces(&self, load: &f64, u: &[f64]) -> Result<Forces, PastTheWall> {
+    fn forces(&self, load: &f64, u: &[f64]) -> Result<Balance, PastTheWall> {
         if u[0] >= self.wall {
             return Err(PastTheWall);
         }
         let (energy, residual, _) = (self.jet)(*load, u.try_into().unwrap());
-        Ok(Forces {
+        Ok(Balance {
             energy,
             residual: residual.to_vec(),
             in_play: 1.0,
             rounding: 1e-15,
         })
     }
-    fn tangent(&self, load: &f64, u: &[f64]) -> BlockBanded {
-        matrix((self.jet)(*load, u.try_into().unwrap()).2)
+    fn tangent(&self, load: &f64, u: &[f64]) -> Direct {
+        let stiffness = matrix((self.jet)(*load, u.try_into().unwrap()).2);
+        Direct::new(stiffness, self.drag.clone(), self.given().into())
     }
-    fn drag(&self) -> &BlockBanded {
-        &self.drag
+    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.drag.multiply_add(factor, v, y);
     }
 }
 

@@ -1,9 +1,8 @@
 //! What a study will take, without running it.
 
-use super::{Plan, TubeProblem};
+use super::Plan;
 use crate::assembly::SplineTube;
-use crate::matrix::BlockBanded;
-use crate::solve::{Equilibrium, Scheme};
+use crate::solve::Scheme;
 use crate::tube::Mesh;
 use std::time::Instant;
 
@@ -93,14 +92,14 @@ fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
         refinements: vec![],
         ..mesh.clone()
     };
-    let problem = TubeProblem::new(SplineTube::new(&plan.tube, &short, timed));
-    let (load, u) = (plan.tube.rest(), vec![0.0; problem.tube.unknowns()]);
+    let tube = SplineTube::new(&plan.tube, &short, timed);
+    let (load, u) = (plan.tube.rest(), vec![0.0; tube.unknowns()]);
     let mut seconds = f64::INFINITY;
     for _ in 0..3 {
         let start = Instant::now();
-        let mut tangent: BlockBanded = problem.tangent(&load, &u);
+        let mut tangent = tube.tangent(&load, &u);
         let assembly = start.elapsed().as_secs_f64();
-        tangent.constrain(problem.given());
+        tangent.constrain(tube.given());
         let start = Instant::now();
         let _ = tangent.factor();
         let factor = start.elapsed().as_secs_f64();

@@ -2,16 +2,18 @@
 
 use crate::assembly::{Inverted, SplineTube};
 use crate::matrix::BlockBanded;
-use crate::solve::{Equilibrium, Forces};
+use crate::solve::{Balance, Direct, Equilibrium};
 use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// The equilibrium of a spline tube under muscles and moved ends.
 #[derive(Clone, Debug)]
 pub struct TubeProblem {
     /// The tube.
     pub tube: SplineTube,
-    drag: BlockBanded,
+    drag: Arc<BlockBanded>,
+    given: Arc<[bool]>,
     /// Reference volume of the sector.
     volume: f64,
     /// Forces in play that a tube at rest is credited with, so that what rounding leaves of it
@@ -25,7 +27,8 @@ impl TubeProblem {
         let at_rest = 3e-11 * tube.tube.material.longitudinal_modulus();
         let (outer, inner) = (Tube::OUTER_RADIUS, tube.tube.inner_radius());
         Self {
-            drag: tube.drag(),
+            drag: Arc::new(tube.drag()),
+            given: tube.given().into(),
             volume: PI * (outer * outer - inner * inner) * tube.tube.length / tube.sector.repeats(),
             at_rest,
             tube,
@@ -36,9 +39,10 @@ impl TubeProblem {
 impl Equilibrium for TubeProblem {
     type Load = Load;
     type Broken = Inverted;
+    type Tangent = Direct;
 
     fn given(&self) -> &[bool] {
-        self.tube.given()
+        &self.given
     }
     fn impose(&self, load: &Load, u: &mut [f64]) {
         self.tube.impose(load, u);
@@ -46,11 +50,11 @@ impl Equilibrium for TubeProblem {
     fn between(&self, from: &Load, to: &Load, t: f64) -> Load {
         from.towards(to, t)
     }
-    fn forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
+    fn forces(&self, load: &Load, u: &[f64]) -> Result<Balance, Inverted> {
         let forces = self.tube.forces(load, u)?;
         // The solver sees one sector: its energy is that whose derivative the residual is.
         let energy = forces.energy / self.tube.sector.repeats();
-        Ok(Forces {
+        Ok(Balance {
             energy,
             residual: forces.residual,
             in_play: forces.in_play.max(self.at_rest),
@@ -58,10 +62,11 @@ impl Equilibrium for TubeProblem {
             rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * energy.abs(),
         })
     }
-    fn tangent(&self, load: &Load, u: &[f64]) -> BlockBanded {
-        self.tube.tangent(load, u)
+    fn tangent(&self, load: &Load, u: &[f64]) -> Direct {
+        let stiffness = self.tube.tangent(load, u);
+        Direct::new(stiffness, self.drag.clone(), self.given.clone())
     }
-    fn drag(&self) -> &BlockBanded {
-        &self.drag
+    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.drag.multiply_add(factor, v, y);
     }
 }

@@ -56,6 +56,7 @@ fn follow(
     let begin = Step {
         method: Method::Rest,
         iterations: 1,
+        inner_iterations: 0,
         drag_work: 0.0,
     };
     record.accept("rest", &path, &begin, true, observer)?;
@@ -190,7 +191,7 @@ impl<'a> Record<'a> {
             }
             .into(),
             iterations: step.iterations,
-            cg_iterations: 0,
+            cg_iterations: step.inner_iterations,
             seconds: self.since.elapsed().as_secs_f64(),
             outer_radius_min: length * measures.outer_radius_min,
             z_at_min: length * measures.z_at_min,

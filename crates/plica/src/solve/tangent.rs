@@ -1,0 +1,119 @@
+//! The tangent stiffness as the drivers see it: something that multiplies, and that can be solved
+//! with once a drag is added.
+
+use crate::matrix::{BlockBanded, Factor, Singular};
+use std::sync::Arc;
+
+/// The tangent stiffness K of a state, ready to be shifted by a drag.
+pub trait Tangent {
+    /// What solves with it.
+    type Solver: Solver;
+
+    /// y += factor · K v, every unknown free.
+    fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]);
+
+    /// K + α C on the free unknowns, ready to be solved with.
+    ///
+    /// # Errors
+    ///
+    /// If K + α C, or what stands in for it in a preconditioner, is singular to working precision.
+    fn shifted(&self, alpha: f64) -> Result<Self::Solver, Singular>;
+
+    /// The same where K is not needed for anything else, which may save a copy of it.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Tangent::shifted`].
+    fn into_shifted(self, alpha: f64) -> Result<Self::Solver, Singular>
+    where
+        Self: Sized,
+    {
+        self.shifted(alpha)
+    }
+}
+
+/// K + α C on the free unknowns.
+pub trait Solver {
+    /// Negative eigenvalues that a factorisation tells of. One of the whole matrix tells of all;
+    /// one of a part (the symmetry that the state itself has) of those in the part; where there is
+    /// none, 0, and only the iteration may tell.
+    fn negative_pivots(&self) -> usize;
+
+    /// Solves (K + α C) x = b in place for the free unknowns, until the Euclidean norm of the
+    /// residual is at most `accuracy` times that of b, or as far as it gets: what it then leaves is
+    /// still a direction in which the energy falls. Entries of unknowns that supports give take no
+    /// part and stay as they are. A direct solver is exact, whatever the accuracy.
+    ///
+    /// Returns the iterations it took; 0 if it is direct.
+    ///
+    /// # Errors
+    ///
+    /// If it meets a direction of negative curvature. What is in `b` then means nothing.
+    fn solve(&self, b: &mut [f64], accuracy: f64) -> Result<usize, NegativeCurvature>;
+}
+
+/// A direction d along which the energy is curved downwards: d · (K + α C) d ≤ 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NegativeCurvature {
+    /// d · (K + α C) d over d · C d; at most 0. A drag larger by more than its size makes up for
+    /// it along d.
+    pub curvature: f64,
+    /// d, for every unknown; zero where a support gives it.
+    pub direction: Vec<f64>,
+    /// Iterations until it was met.
+    pub iterations: usize,
+}
+
+/// A tangent stiffness that is assembled and factored.
+#[derive(Clone, Debug)]
+pub struct Direct {
+    stiffness: BlockBanded,
+    drag: Arc<BlockBanded>,
+    given: Arc<[bool]>,
+}
+
+impl Direct {
+    /// Of an assembled stiffness K and drag matrix C, every unknown free, and the unknowns that
+    /// supports give. Panics if their sizes differ.
+    pub fn new(stiffness: BlockBanded, drag: Arc<BlockBanded>, given: Arc<[bool]>) -> Self {
+        assert_eq!(stiffness.unknowns(), drag.unknowns());
+        assert_eq!(stiffness.unknowns(), given.len());
+        Self {
+            stiffness,
+            drag,
+            given,
+        }
+    }
+}
+
+impl Tangent for Direct {
+    type Solver = Factor;
+
+    fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.stiffness.multiply_add(factor, v, y);
+    }
+
+    fn shifted(&self, alpha: f64) -> Result<Factor, Singular> {
+        self.clone().into_shifted(alpha)
+    }
+
+    fn into_shifted(self, alpha: f64) -> Result<Factor, Singular> {
+        let mut A = self.stiffness;
+        if alpha != 0.0 {
+            A.add_scaled(alpha, &self.drag);
+        }
+        A.constrain(&self.given);
+        A.factor()
+    }
+}
+
+impl Solver for Factor {
+    fn negative_pivots(&self) -> usize {
+        Factor::negative_pivots(self)
+    }
+
+    fn solve(&self, b: &mut [f64], _: f64) -> Result<usize, NegativeCurvature> {
+        Factor::solve(self, b);
+        Ok(0)
+    }
+}
