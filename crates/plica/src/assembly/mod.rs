@@ -28,6 +28,7 @@ mod linearised;
 mod pencil;
 #[cfg(test)]
 mod plain;
+mod ring_drag;
 mod sample;
 mod slab;
 mod spline_tube;
@@ -38,5 +39,6 @@ mod tangent;
 mod tests;
 
 pub use linearised::Linearised;
+pub use ring_drag::RingDrag;
 pub use sample::{Point, Sample};
 pub use spline_tube::{Forces, Inverted, SplineTube};

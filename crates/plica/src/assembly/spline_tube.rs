@@ -1,6 +1,7 @@
 //! A tube laid out in splines: numbering, slabs over threads, sums in their order.
 
 use super::drag::drag;
+use super::ring_drag::RingDrag;
 use super::forces::{SlabForces, Worst, slab_forces};
 use super::pencil::RingLanes;
 use super::slab::SlabInput;
@@ -32,6 +33,8 @@ pub struct SplineTube {
     /// Basis through the wall, over the reference radius R.
     pub wall: Basis,
     pub(super) supports: Supports,
+    /// Of one ring alone.
+    pub(super) ring_supports: Supports,
     pub(super) slabs: Vec<Slab>,
     pub(super) layers: Vec<Layer>,
     pub(super) around: Vec<Around>,
@@ -117,6 +120,8 @@ impl SplineTube {
             .map(|r| r * circle.control_radius)
             .collect();
         let supports = Supports::new(tube, &sector, &axial.greville(), &control_radii);
+        let ring = Sector::new(p, around, 1);
+        let ring_supports = Supports::new(tube, &ring, &axial.greville(), &control_radii);
         Self {
             slabs: Slab::all(&axial),
             layers: Layer::all(&wall),
@@ -128,6 +133,7 @@ impl SplineTube {
             axial,
             wall,
             supports,
+            ring_supports,
         }
     }
 
@@ -237,7 +243,7 @@ impl SplineTube {
     /// For every unknown of circumferential harmonic n, whether a support gives it or it is
     /// pinned against a rigid motion of that harmonic.
     pub fn given_in_harmonic(&self, n: usize) -> Vec<bool> {
-        self.supports
+        self.ring_supports
             .in_harmonic(n, &self.axial.greville(), &self.wall.greville())
     }
 
@@ -295,6 +301,18 @@ impl SplineTube {
             &self.around,
             &self.sector,
             shape,
+            self.degree(),
+        )
+    }
+
+    /// The drag matrix of the sector as a product of three small ones.
+    pub fn ring_drag(&self) -> RingDrag {
+        RingDrag::new(
+            &self.slabs,
+            &self.layers,
+            &self.around,
+            &self.sector,
+            [self.axial.functions(), self.wall.functions()],
             self.degree(),
         )
     }

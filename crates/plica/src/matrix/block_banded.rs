@@ -75,6 +75,13 @@ impl BlockBanded {
         column * self.height() + d * self.size + row
     }
 
+    /// Adds to the entry in row `row` and column `column` of the block `d` below the diagonal, of
+    /// panel `panel`.
+    pub fn add_at(&mut self, panel: usize, d: usize, row: usize, column: usize, value: f64) {
+        let at = panel * self.panel_len() + self.place(d, row, column);
+        self.panels[at] += value;
+    }
+
     /// The entry in row i and column j, wherever it is stored.
     pub fn entry(&self, i: usize, j: usize) -> f64 {
         let (i, j) = (i.max(j), i.min(j));

@@ -3,6 +3,7 @@
 mod directory;
 mod error;
 mod forecast;
+mod harmonic_tangent;
 mod history;
 mod manifest;
 mod observer;

@@ -1,8 +1,9 @@
 //! A spline tube as the solver sees it.
 
-use crate::assembly::{Inverted, SplineTube};
-use crate::matrix::BlockBanded;
-use crate::solve::{Balance, Direct, Equilibrium};
+use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent};
+use crate::assembly::{Inverted, RingDrag, SplineTube};
+use crate::matrix::{BlockBanded, Factor, Singular};
+use crate::solve::{Balance, Direct, Equilibrium, NegativeCurvature, Solver, Tangent};
 use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -11,8 +12,8 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct TubeProblem {
     /// The tube.
-    pub tube: SplineTube,
-    drag: Arc<BlockBanded>,
+    pub tube: Arc<SplineTube>,
+    drag: Drag,
     given: Arc<[bool]>,
     /// Reference volume of the sector.
     volume: f64,
@@ -21,17 +22,51 @@ pub struct TubeProblem {
     at_rest: f64,
 }
 
+/// The drag matrix: assembled for few rings, as are their tangents.
+#[derive(Clone, Debug)]
+enum Drag {
+    Assembled(Arc<BlockBanded>),
+    Rings(Arc<RingDrag>),
+}
+
+/// The tangent stiffness of a tube: assembled and factored for one ring, without a matrix for more.
+#[derive(Clone, Debug)]
+pub enum TubeTangent {
+    /// For one ring.
+    Direct(Direct),
+    /// For more.
+    Harmonic(HarmonicTangent),
+}
+
+/// What solves with a [`TubeTangent`].
+#[derive(Clone, Debug)]
+pub enum TubeSolver {
+    /// For one ring.
+    Direct(Factor),
+    /// For more.
+    Harmonic(HarmonicSystem),
+}
+
 impl TubeProblem {
     /// Puts a tube before the solver.
     pub fn new(tube: SplineTube) -> Self {
+        let drag = if tube.sector.rings == 1 {
+            Drag::Assembled(Arc::new(tube.drag()))
+        } else {
+            Drag::Rings(Arc::new(tube.ring_drag()))
+        };
+        Self::with_drag(tube, drag)
+    }
+
+    fn with_drag(tube: SplineTube, drag: Drag) -> Self {
         let at_rest = 3e-11 * tube.tube.material.longitudinal_modulus();
         let (outer, inner) = (Tube::OUTER_RADIUS, tube.tube.inner_radius());
         Self {
-            drag: Arc::new(tube.drag()),
+            drag,
             given: tube.given().into(),
             volume: PI * (outer * outer - inner * inner) * tube.tube.length / tube.sector.repeats(),
             at_rest,
-            tube,
+            tube: Arc::new(tube),
         }
     }
 }
@@ -39,7 +74,7 @@ impl TubeProblem {
 impl Equilibrium for TubeProblem {
     type Load = Load;
     type Broken = Inverted;
-    type Tangent = Direct;
+    type Tangent = TubeTangent;
 
     fn given(&self) -> &[bool] {
         &self.given
@@ -62,11 +97,61 @@ impl Equilibrium for TubeProblem {
             rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * energy.abs(),
         })
     }
-    fn tangent(&self, load: &Load, u: &[f64]) -> Direct {
-        let stiffness = self.tube.tangent(load, u);
-        Direct::new(stiffness, self.drag.clone(), self.given.clone())
+    fn tangent(&self, load: &Load, u: &[f64]) -> TubeTangent {
+        match &self.drag {
+            Drag::Assembled(drag) => {
+                let stiffness = self.tube.tangent(load, u);
+                TubeTangent::Direct(Direct::new(stiffness, drag.clone(), self.given.clone()))
+            }
+            Drag::Rings(drag) => {
+                let at = self.tube.linearised(load, u);
+                let (tube, drag) = (self.tube.clone(), drag.clone());
+                TubeTangent::Harmonic(HarmonicTangent::new(tube, drag, at, u))
+            }
+        }
     }
     fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        self.drag.multiply_add(factor, v, y);
+        match &self.drag {
+            Drag::Assembled(drag) => drag.multiply_add(factor, v, y),
+            Drag::Rings(drag) => drag.multiply_add(factor, v, y),
+        }
+    }
+}
+
+impl Tangent for TubeTangent {
+    type Solver = TubeSolver;
+
+    fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        match self {
+            Self::Direct(tangent) => tangent.multiply_add(factor, v, y),
+            Self::Harmonic(tangent) => tangent.multiply_add(factor, v, y),
+        }
+    }
+    fn shifted(&self, alpha: f64) -> Result<TubeSolver, Singular> {
+        match self {
+            Self::Direct(tangent) => tangent.shifted(alpha).map(TubeSolver::Direct),
+            Self::Harmonic(tangent) => tangent.shifted(alpha).map(TubeSolver::Harmonic),
+        }
+    }
+    fn into_shifted(self, alpha: f64) -> Result<TubeSolver, Singular> {
+        match self {
+            Self::Direct(tangent) => tangent.into_shifted(alpha).map(TubeSolver::Direct),
+            Self::Harmonic(tangent) => tangent.into_shifted(alpha).map(TubeSolver::Harmonic),
+        }
+    }
+}
+
+impl Solver for TubeSolver {
+    fn negative_pivots(&self) -> usize {
+        match self {
+            Self::Direct(factor) => Solver::negative_pivots(factor),
+            Self::Harmonic(system) => system.negative_pivots(),
+        }
+    }
+    fn solve(&self, b: &mut [f64], accuracy: f64) -> Result<usize, NegativeCurvature> {
+        match self {
+            Self::Direct(factor) => Solver::solve(factor, b, accuracy),
+            Self::Harmonic(system) => system.solve(b, accuracy),
+        }
     }
 }

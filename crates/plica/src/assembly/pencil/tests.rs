@@ -133,3 +133,30 @@ fn a_symmetric_state_stays_symmetric_to_the_last_bit() {
         assert!(rings.iter().all(|r| r == &rings[0]), "{rings:?}");
     }
 }
+
+#[test]
+fn the_drag_of_rings_is_the_drag_matrix() {
+    for (degree, elements, rings) in SECTORS {
+        let TubeAndLoad { tube, .. } = tube_and_load(degree, elements, rings);
+        let (drag, v) = (tube.ring_drag(), direction(&tube));
+        let assembled = multiplied(&tube.drag(), &v);
+        let mut product = vec![0.0; v.len()];
+        drag.multiply_add(1.0, &v, &mut product);
+        let scale = largest(&assembled);
+        for (a, b) in product.iter().zip(&assembled) {
+            assert!((a - b).abs() < 1e-14 * scale, "{degree} {elements:?} {rings}: {a} {b}");
+        }
+        // Harmonic by harmonic it is the same matrix.
+        let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
+        let solver = HarmonicSolver::new(rings, |n| {
+            let mut block = BlockBanded::zeros(one.axial.functions(), one.row_size(), degree);
+            drag.add_harmonic(1.0, n * (elements[2] / rings), &mut block);
+            block
+        })
+        .unwrap();
+        let solved = solver.solve(&assembled);
+        for (a, b) in solved.iter().zip(&v) {
+            assert!((a - b).abs() < 1e-8 * largest(&v), "{degree} {elements:?} {rings}: {a} {b}");
+        }
+    }
+}
