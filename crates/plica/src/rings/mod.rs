@@ -29,7 +29,7 @@ pub use circulant::Circulant;
 pub use harmonic_solver::HarmonicSolver;
 pub use transform::{Transform, Wave};
 
-use crate::spline::Basis;
+use crate::spline::{self, Basis};
 use std::f64::consts::TAU;
 
 /// Rings that repeat around the tube.
@@ -105,6 +105,12 @@ impl Sector {
     /// The angle at which ring `j` lies: the middle of element 0 is at angle zero.
     pub fn ring_angle(&self, j: usize) -> f64 {
         (j as f64 - 0.5 * self.basis.degree() as f64) * self.angle()
+    }
+
+    /// c_n: the height of the control values of a wave of unit height and n turns, see
+    /// [`spline::control_wave`].
+    pub fn control_wave(&self, n: usize) -> f64 {
+        spline::control_wave(self.basis.degree(), self.around, n)
     }
 
     /// The slots of an element at `s` in [0, 1] along it; slopes are per unit of `s`.

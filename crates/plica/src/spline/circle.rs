@@ -1,4 +1,4 @@
-//! The circle that a uniform periodic spline draws.
+//! The circle that a uniform periodic spline draws, and waves around it.
 
 use super::{Basis, gauss_legendre};
 use std::f64::consts::TAU;
@@ -19,30 +19,11 @@ pub struct Circle {
 impl Circle {
     /// Projects the unit circle on `rings` functions of a degree.
     pub fn new(degree: usize, rings: usize) -> Self {
-        let (basis, alpha) = (Basis::uniform_element(degree), TAU / rings as f64);
-        // c(s) = Σ N_b(s) exp(i φ_b), φ_b the angle of ring b from the middle of the element.
-        let drawn = |s: f64| {
-            let v = basis.evaluate_in(0, s);
-            v.value
-                .iter()
-                .enumerate()
-                .fold((0.0, 0.0), |(x, y), (b, n)| {
-                    let phi = (b as f64 - 0.5 * degree as f64) * alpha;
-                    (x + n * phi.cos(), y + n * phi.sin())
-                })
-        };
-        // Least squares: ∫ c · e / ∫ c · c, with e the unit vector at the same angle.
-        let (mut ce, mut cc) = (0.0, 0.0);
-        for (s, w) in gauss_legendre(degree + 3) {
-            let (x, y) = drawn(s);
-            let phi = (s - 0.5) * alpha;
-            ce += w * (x * phi.cos() + y * phi.sin());
-            cc += w * (x * x + y * y);
-        }
-        let control_radius = ce / cc;
+        let basis = Basis::uniform_element(degree);
+        let control_radius = control_wave(degree, rings, 1);
         let error = (0..=40)
             .map(|i| {
-                let (x, y) = drawn(f64::from(i) / 40.0);
+                let (x, y) = drawn(&basis, rings, 1, f64::from(i) / 40.0);
                 (control_radius * x.hypot(y) - 1.0).abs()
             })
             .fold(0.0, f64::max);
@@ -51,6 +32,33 @@ impl Circle {
             error,
         }
     }
+}
+
+/// The height of the control points of a wave exp(inφ) of unit height around the tube: that for
+/// which the wave that `rings` functions of a degree draw is right in the sense of least squares.
+/// It is one for n = 0, and the control radius of [`Circle`] for n = 1.
+pub fn control_wave(degree: usize, rings: usize, n: usize) -> f64 {
+    let basis = Basis::uniform_element(degree);
+    // Least squares: ∫ c · e / ∫ c · c, with c the wave that is drawn and e that which is meant.
+    let (mut ce, mut cc) = (0.0, 0.0);
+    for (s, w) in gauss_legendre(degree + 3) {
+        let (x, y) = drawn(&basis, rings, n, s);
+        let phi = n as f64 * (s - 0.5) * (TAU / rings as f64);
+        ce += w * (x * phi.cos() + y * phi.sin());
+        cc += w * (x * x + y * y);
+    }
+    ce / cc
+}
+
+/// c(s) = Σ N_b(s) exp(i n φ_b), φ_b the angle of ring b from the middle of the element.
+fn drawn(basis: &Basis, rings: usize, n: usize, s: f64) -> (f64, f64) {
+    let alpha = TAU / rings as f64;
+    let v = basis.evaluate_in(0, s);
+    let values = v.value.iter().enumerate();
+    values.fold((0.0, 0.0), |(x, y), (b, value)| {
+        let phi = n as f64 * ((b as f64 - 0.5 * basis.degree() as f64) * alpha);
+        (x + value * phi.cos(), y + value * phi.sin())
+    })
 }
 
 #[cfg(test)]
@@ -62,6 +70,23 @@ mod tests {
         let circle = Circle::new(3, 60);
         assert!(circle.error < 3.1e-7, "{}", circle.error);
         assert!(circle.control_radius > 1.0);
+    }
+
+    #[test]
+    fn a_wave_is_drawn_as_high_as_it_is_meant() {
+        for n in 0..=15 {
+            let (height, basis) = (control_wave(3, 60, n), Basis::uniform_element(3));
+            let worst = (0..=20).fold(0.0_f64, |worst, i| {
+                let s = f64::from(i) / 20.0;
+                let (x, y) = drawn(&basis, 60, n, s);
+                let phi = n as f64 * (s - 0.5) * TAU / 60.0;
+                worst.max((height * x - phi.cos()).hypot(height * y - phi.sin()))
+            });
+            // (n α)⁴ / 720 is the first term of the deviation of cubics.
+            let angle = n as f64 * TAU / 60.0;
+            assert!(worst < 1e-14 + 2.0 * angle.powi(4) / 720.0, "{n}: {worst}");
+        }
+        assert_eq!(control_wave(3, 60, 1), Circle::new(3, 60).control_radius);
     }
 
     #[test]

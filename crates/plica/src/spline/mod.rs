@@ -23,6 +23,6 @@ mod grading;
 mod quadrature;
 
 pub use basis::{Basis, Values};
-pub use circle::Circle;
+pub use circle::{Circle, control_wave};
 pub use grading::{Refinement, graded_breakpoints};
 pub use quadrature::gauss_legendre;
