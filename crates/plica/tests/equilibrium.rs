@@ -34,6 +34,7 @@ fn tube(length: f64, muscles: Vec<Muscle>, ends: Support) -> Tube {
         material: Material::NeoHookean(NeoHookean::new(1.0, 0.495)),
         muscles,
         ends: [ends; 2],
+        imperfections: vec![],
     }
 }
 

@@ -23,6 +23,7 @@
 
 mod drag;
 mod forces;
+mod imperfection;
 mod kinematics;
 mod linearised;
 mod pencil;

@@ -333,7 +333,8 @@ impl SplineTube {
         let at = |z: &Lanes| {
             let (mut along, mut around) = (Lanes::default(), Lanes::default());
             for l in 0..z.0.len() {
-                let (theta_z, theta_t) = self.tube.stretches(z.0[l], load);
+                // Angle zero stands for all: imperfections that vary around are not seen here.
+                let (theta_z, theta_t) = self.tube.stretches_at(z.0[l], 0.0, load);
                 along.0[l] = 1.0 / theta_z;
                 around.0[l] = 1.0 / theta_t;
             }

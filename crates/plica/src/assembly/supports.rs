@@ -1,7 +1,8 @@
 //! Which unknowns are given: held ends, and what keeps a loose tube from drifting.
 
+use super::imperfection::end_face;
 use crate::rings::Sector;
-use crate::tube::{Load, Support, Tube};
+use crate::tube::{End, Load, Support, Tube};
 
 /// The unknowns that are not free.
 #[derive(Clone, Debug)]
@@ -22,6 +23,8 @@ struct EndUnknown {
     component: usize,
     /// Radius of its control point.
     radius: f64,
+    /// Where imperfections put the control point: (axial, radial, circumferential).
+    shift: [f64; 3],
 }
 
 impl Supports {
@@ -30,7 +33,8 @@ impl Supports {
         let size = r.len() * 3 * sector.rings;
         let mut given = vec![false; z.len() * size];
         let mut ends = vec![];
-        for (end, row) in [(0, 0), (1, z.len() - 1)] {
+        for (end, row, name) in [(0, 0, End::Colon), (1, z.len() - 1, End::Ileum)] {
+            let face = end_face(tube, sector, name, r);
             let components = match tube.ends[end] {
                 Support::Fixed => 0..3,
                 Support::Sliding => 0..1,
@@ -46,6 +50,7 @@ impl Supports {
                             end,
                             component,
                             radius,
+                            shift: face[c * sector.rings + ring],
                         });
                     }
                 }
@@ -91,11 +96,13 @@ impl Supports {
     pub fn impose(&self, load: &Load, u: &mut [f64]) {
         for e in &self.ends {
             let motion = load.ends[e.end];
-            // A point at angle zero turned by ω: r (cos ω − 1) outwards, r sin ω around.
+            let ([axial, radial, around], (sin, cos)) = (e.shift, motion.twist.sin_cos());
+            // A point at angle zero turned by ω: r (cos ω − 1) outwards, r sin ω around. What an
+            // imperfection adds turns with the face.
             u[e.unknown] = match e.component {
-                0 => motion.displacement,
-                1 => e.radius * (motion.twist.cos() - 1.0),
-                _ => e.radius * motion.twist.sin(),
+                0 => motion.displacement + axial,
+                1 => e.radius * (cos - 1.0) + (radial * cos - around * sin),
+                _ => e.radius * sin + (radial * sin + around * cos),
             };
         }
     }

@@ -38,6 +38,8 @@ pub enum Kind {
     Points,
     /// A list of tables.
     Tables,
+    /// A table that stands for one of several choices.
+    Choice,
 }
 
 /// What holds if a key is not given.

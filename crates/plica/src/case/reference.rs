@@ -40,6 +40,11 @@ const SECTIONS: &[(&str, &str)] = &[
         "stages",
         "## `[[stages]]`\n\nTargets that a stage does not name stay as they are.",
     ),
+    (
+        "imperfections",
+        "## `[[imperfections]]`\n\nSmall deviations from the perfect tube, which decide where it goes where its path branches. \
+         They are there from\nrest on, and add up. A shape lies between −1 and 1 and is multiplied by the amplitude.",
+    ),
     ("solver.scheme", "## `[solver]`"),
     (
         "solver.pseudo_time.drag",
@@ -73,6 +78,10 @@ const CLOSING: &str = "
   a displacement needs a fixed or sliding end, a twist a fixed one.
 - There are at least p + 1 control points along the tube and through the wall, and 2 p + 2 around it;
   `fold` divides those around; at most 20 million are solved for.
+- An imperfection has harmonics that the symmetry of the run allows (0 if axisymmetric, multiples of m in a
+  fold) and that the mesh draws, at most a quarter of the control points around. Its amplitude is at most a quarter of the
+  wall's thickness, or half of a muscle's activity. An end is held, and displaced across only if it is fixed; an axisymmetric
+  run has no imperfection of its geometry.
 - A muscle's name has at most 40 letters, digits, - and _; names of stages differ.
 ";
 
@@ -89,6 +98,7 @@ fn row(key: &Key) -> String {
         Kind::Zone => "`[from, to]`".to_owned(),
         Kind::Points => "`[[x, s], …]`".to_owned(),
         Kind::Tables => "list of tables".to_owned(),
+        Kind::Choice => "one of the tables below".to_owned(),
     };
     let mut value = vec![kind];
     if !key.unit.is_empty() {

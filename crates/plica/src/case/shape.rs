@@ -51,8 +51,8 @@ fn table(pattern: &str, path: &str, table: &DeTable, problems: &mut Problems) {
 
 /// Whether a table stands for one of several choices.
 fn chooses(pattern: &str) -> bool {
-    let word = |key: &Key| matches!(key.kind, Kind::Word(_));
-    pattern == "material" || key(pattern).is_some_and(word)
+    let choice = |key: &Key| matches!(key.kind, Kind::Word(_) | Kind::Choice);
+    pattern == "material" || key(pattern).is_some_and(choice)
 }
 
 /// What was meant by a name that is no key.
@@ -174,6 +174,13 @@ fn wrong_type(key: &Key, path: &str, problems: &mut Problems) {
         Kind::Zone => "must be [from, to], two numbers".to_owned(),
         Kind::Points => "must be a list of points [x, s]".to_owned(),
         Kind::Tables => "must be a list of tables".to_owned(),
+        Kind::Choice => {
+            let choices: Vec<String> = children(key.path)
+                .iter()
+                .map(|name| format!("{{ {name} = ... }}"))
+                .collect();
+            format!("must be one of {}", choices.join(", "))
+        }
     };
     let cure = match key.kind {
         Kind::Tables => Some(format!("write [[{path}]]")),

@@ -25,6 +25,8 @@ pub(super) struct Spec {
     pub mesh: Mesh,
     pub stages: Vec<Stage>,
     #[serde(default)]
+    pub imperfections: Vec<Imperfection>,
+    #[serde(default)]
     pub solver: Solver,
     #[serde(default)]
     pub output: Output,
@@ -159,6 +161,64 @@ pub(super) struct Drive {
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Imperfection {
+    pub of: Part,
+    pub amplitude: f64,
+    pub direction: Option<Push>,
+    pub shape: Shape,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Part {
+    ColonEnd,
+    IleumEnd,
+    Geometry,
+    Muscle(String),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Push {
+    Across,
+    Axial,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Shape {
+    Wave(Wave),
+    Random(Random),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Wave {
+    pub harmonic: usize,
+    #[serde(default)]
+    pub phase_degrees: f64,
+    pub axial: Option<Axial>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Axial {
+    Uniform,
+    HalfSine,
+    Zone([f64; 2]),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Random {
+    pub seed: u64,
+    #[serde(default = "Random::usual_count")]
+    pub harmonics: usize,
+    pub half_waves: Option<usize>,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Solver {
     pub scheme: Scheme,
@@ -252,6 +312,12 @@ impl Refine {
 impl Stage {
     fn usual_steps() -> usize {
         20
+    }
+}
+
+impl Random {
+    pub fn usual_count() -> usize {
+        4
     }
 }
 

@@ -28,6 +28,18 @@ fn base(key: &Key) -> Table {
     if key.path.starts_with("mesh.refine[]") {
         text += "[[mesh.refine]]\nzone = [0.5, 1.0]\n";
     }
+    if key.path.starts_with("imperfections[]") {
+        let shape = match key.path.contains(".random") {
+            true => "random = { seed = 1 }",
+            false => "wave = { harmonic = 2 }",
+        };
+        let of = match key.path {
+            "imperfections[].direction" => "colon-end",
+            _ => "geometry",
+        };
+        text = format!("symmetry = 'none'\n{text}")
+            + &format!("[[imperfections]]\nof = '{of}'\namplitude = 1e-4\nshape = {{ {shape} }}\n");
+    }
     if key.path.ends_with(".length_ratio") {
         text = text.replace("\"circular\"", "\"longitudinal\"");
     }
@@ -56,6 +68,9 @@ fn put_mark(case: &mut Table, path: &str) {
             Some(n) => &mut next.as_array_mut().unwrap()[n - 1],
             None => next,
         };
+        if next.is_str() {
+            *next = empty(); // a table in place of a word
+        }
         at = next.as_table_mut().unwrap();
     }
     at.insert(last.to_owned(), Value::String(MARK.into()));
@@ -152,6 +167,38 @@ fn every_field_of_the_structs_is_in_the_table() {
             steps: 1,
             drive: BTreeMap::from([("a".into(), drive)]),
         }],
+        imperfections: vec![
+            Imperfection {
+                of: Part::Muscle("a".into()),
+                amplitude: 0.1,
+                direction: Some(Push::Axial),
+                shape: Shape::Wave(Wave {
+                    harmonic: 1,
+                    phase_degrees: 0.0,
+                    axial: Some(Axial::Zone([0.0, 1.0])),
+                }),
+            },
+            Imperfection {
+                of: Part::ColonEnd,
+                amplitude: 0.1,
+                direction: None,
+                shape: Shape::Wave(Wave {
+                    harmonic: 1,
+                    phase_degrees: 0.0,
+                    axial: Some(Axial::Uniform),
+                }),
+            },
+            Imperfection {
+                of: Part::Geometry,
+                amplitude: 0.1,
+                direction: None,
+                shape: Shape::Random(Random {
+                    seed: 1,
+                    harmonics: 2,
+                    half_waves: Some(3),
+                }),
+            },
+        ],
         solver: Solver {
             scheme: Scheme::Dragged,
             tolerance: 1e-8,
@@ -187,7 +234,7 @@ fn every_field_of_the_structs_is_in_the_table() {
         );
     }
     for key in KEYS {
-        let listed = key.kind == Kind::Tables || key.path == "symmetry";
+        let listed = matches!(key.kind, Kind::Tables | Kind::Choice) || key.path == "symmetry";
         assert!(
             listed || written.iter().any(|path| path == key.path),
             "{}",

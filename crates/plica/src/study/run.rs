@@ -7,7 +7,7 @@ use super::units::Scale;
 use super::{Observer, Plan, Row, RunDirectory, Snapshot, StudyError, TubeProblem, forecast};
 use crate::assembly::SplineTube;
 use crate::measure::{Face, Measures, Wall, even};
-use crate::solve::{Method, Path, Step, Watch};
+use crate::solve::{Failure, Method, Path, PathError, Step, Watch};
 use std::time::Instant;
 
 /// Runs a study from rest to the end of its last stage, or as far as the tube can be followed.
@@ -47,18 +47,39 @@ fn follow(
     record: &mut Record<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Ending, StudyError> {
-    let tube = &problem.tube;
-    let (rest, u) = (plan.tube.rest(), vec![0.0; tube.unknowns()]);
-    let mut path = match Path::begin(problem, rest, u, plan.solver.clone()) {
-        Ok(path) => path,
-        Err(broken) => unreachable!("a tube at rest is not inverted: {broken}"),
-    };
-    let begin = Step {
+    let (rest, u) = (plan.tube.rest(), problem.tube.start());
+    let mut begin = Step {
         method: Method::Rest,
         iterations: 1,
         inner_iterations: 0,
         drag_work: 0.0,
     };
+    let lost_at_rest = |error| Ending::Lost {
+        stage: "rest".into(),
+        error,
+    };
+    let mut path = match Path::begin(problem, rest.clone(), u, plan.solver.clone()) {
+        Ok(path) => path,
+        Err(broken) => {
+            let tried = vec![(Method::Rest, Failure::Broken(broken))];
+            return Ok(lost_at_rest(PathError { tried, step: begin }));
+        }
+    };
+    if !plan.tube.imperfections.is_empty() {
+        // The state of an imperfect tube at rest is to be found, too.
+        let mut watch = Relay {
+            observer: &mut *observer,
+            what: "rest".into(),
+            fraction: 0.0,
+            solves: 0,
+        };
+        path.set_out(rest);
+        match path.advance(1.0, &mut watch) {
+            Ok(found) => begin = found,
+            Err(error) if error.stopped() => return Ok(Ending::Stopped),
+            Err(error) => return Ok(lost_at_rest(error)),
+        }
+    }
     record.accept("rest", &path, &begin, true, observer)?;
 
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();

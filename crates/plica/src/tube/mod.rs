@@ -4,11 +4,15 @@
 //! Everything is dimensionless: lengths in the outer diameter D, stresses in Young's modulus E,
 //! energies in E·D³. z = 0 is the colon end, z = L the ileum end.
 
+mod imperfection;
 mod load;
 mod mesh;
+mod random;
 
+pub use imperfection::{Axial, Imperfection, Part, Push, Shape, Wave};
 pub use load::{EndMotion, Load};
 pub use mesh::{Mesh, Symmetry};
+pub use random::Random;
 
 use crate::activation::{Direction, Muscle};
 use crate::material::Material;
@@ -26,6 +30,8 @@ pub struct Tube {
     pub muscles: Vec<Muscle>,
     /// How the colon end (z = 0) and the ileum end (z = L) are held.
     pub ends: [Support; 2],
+    /// Where it is not quite as round or as even as meant; what they do adds up.
+    pub imperfections: Vec<Imperfection>,
 }
 
 /// One end of the tube.
@@ -65,11 +71,38 @@ impl Tube {
         }
     }
 
-    /// The grown stretches (θζ, θη) at z under a load (Okino et al. 2025, Eq. (3)).
+    /// The grown stretches (θζ, θη) at z under a load, of muscles without imperfections (Okino et
+    /// al. 2025, Eq. (3)).
     pub fn stretches(&self, z: f64, load: &Load) -> (f64, f64) {
+        self.grown(z, load, |_, theta| theta)
+    }
+
+    /// The grown stretches (θζ, θη) at z and at the angle `phi`, in radians, under a load:
+    /// imperfections of muscles make θ − 1 larger or smaller by [`Tube::strength`]. Without such
+    /// imperfections exactly [`Tube::stretches`].
+    pub fn stretches_at(&self, z: f64, phi: f64, load: &Load) -> (f64, f64) {
+        self.grown(z, load, |m, theta| match self.strength(m, z, phi) {
+            1.0 => theta,
+            strength => 1.0 + strength * (theta - 1.0),
+        })
+    }
+
+    /// How strong muscle `m` is at z and at the angle `phi`, in radians: 1 + Σ a f(φ, z) over its
+    /// imperfections, whose shapes span its zone. It does not depend on the load.
+    pub fn strength(&self, m: usize, z: f64, phi: f64) -> f64 {
+        let imperfections = self.imperfections.iter();
+        let of_it = imperfections.filter(|imperfection| imperfection.of == Part::Muscle(m));
+        of_it.fold(1.0, |sum, imperfection| {
+            let f = imperfection.shape.value(phi, z, self.muscles[m].zone);
+            sum + imperfection.amplitude * f
+        })
+    }
+
+    /// The product of what the muscles grow, each θ as `change` makes it.
+    fn grown(&self, z: f64, load: &Load, change: impl Fn(usize, f64) -> f64) -> (f64, f64) {
         let (mut along, mut around) = (1.0, 1.0);
-        for (muscle, &ratio) in self.muscles.iter().zip(&load.muscles) {
-            let theta = muscle.stretch(z, ratio, self.length);
+        for (m, (muscle, &ratio)) in self.muscles.iter().zip(&load.muscles).enumerate() {
+            let theta = change(m, muscle.stretch(z, ratio, self.length));
             match muscle.direction {
                 Direction::Longitudinal => along *= theta,
                 Direction::Circular => around *= theta,
@@ -103,5 +136,54 @@ impl Tube {
         pairs
             .filter(move |(muscle, _)| muscle.direction == direction)
             .map(|(_, &ratio)| ratio)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::activation::Profile;
+    use crate::material::NeoHookean;
+    use std::f64::consts::TAU;
+
+    fn tube(wave: Wave) -> Tube {
+        Tube {
+            length: 3.0,
+            thickness: 0.06,
+            material: Material::NeoHookean(NeoHookean::new(1.0, 0.495)),
+            muscles: vec![Muscle {
+                name: "m".into(),
+                direction: Direction::Circular,
+                zone: [0.5, 1.0],
+                profile: Profile::RaisedCosine,
+            }],
+            ends: [Support::Fixed; 2],
+            imperfections: vec![Imperfection {
+                of: Part::Muscle(0),
+                amplitude: 0.1,
+                shape: Shape::Wave(wave),
+            }],
+        }
+    }
+
+    #[test]
+    fn an_uneven_muscle_is_as_strong_on_the_average_around() {
+        for harmonic in 1..=3 {
+            let tube = tube(Wave::new(harmonic, 0.2, Axial::HalfWaves(1)));
+            let load = Load {
+                muscles: vec![0.25],
+                ..tube.rest()
+            };
+            for z in [0.4, 0.6, 0.75, 0.9] {
+                let around = (0..24).map(|i| TAU * f64::from(i) / 24.0);
+                let sum: f64 = around.map(|phi| tube.stretches_at(z, phi, &load).1).sum();
+                let mean = tube.stretches(z, &load).1;
+                assert!((sum / 24.0 - mean).abs() < 1e-15, "{z}: {}", sum / 24.0);
+            }
+            // In the middle of the zone and at the crest, θ − 1 = −0.75 is a tenth larger.
+            let (along, around) = tube.stretches_at(0.75, 0.2, &load);
+            assert!((around - (1.0 - 1.1 * 0.75)).abs() < 1e-14, "{around}");
+            assert_eq!(along, 1.0);
+        }
     }
 }

@@ -4,6 +4,7 @@
 //! Rules about several keys are looked at only where nothing is wrong with the single ones, so
 //! that one slip gives one message.
 
+mod imperfections;
 mod mesh;
 mod muscles;
 mod solver;
@@ -23,9 +24,11 @@ pub(super) fn plan(spec: &Spec, name: &str, problems: &mut Problems) -> Plan {
         diameter: spec.tube.diameter,
         youngs_modulus: law.youngs_modulus,
     });
-    let tube = tube::tube(spec, problems);
+    let mut tube = tube::tube(spec, problems);
     let stages = stages::stages(spec, &tube, problems);
     let (mesh, symmetry) = mesh::mesh(spec, &tube, problems);
+    tube.imperfections = imperfections::imperfections(spec, &tube, &mesh, symmetry, problems);
+    imperfections::check_stretches(&tube, &stages, problems);
     let solver = solver::settings(&spec.solver, problems);
     let title = spec.title.clone().unwrap_or_else(|| name.to_owned());
     Plan {

@@ -11,7 +11,7 @@ use crate::tube::{Load, Support, Tube};
 /// The names of the ends, in the order of the load.
 const ENDS: [&str; 2] = ["colon", "ileum"];
 /// Smallest stress-free stretch that a wall is asked to take.
-const SMALLEST_STRETCH: f64 = 0.02;
+pub(super) const SMALLEST_STRETCH: f64 = 0.02;
 /// Shortest and longest distance of the ends, over the length at rest.
 const ENDS_APART: std::ops::RangeInclusive<f64> = 0.05..=10.0;
 

@@ -39,6 +39,7 @@ pub(super) fn tube(spec: &Spec, problems: &mut Problems) -> Tube {
         material: Material::NeoHookean(NeoHookean::new(1.0, law.poisson_ratio)),
         muscles: muscles(spec, length, problems),
         ends: [spec.ends.colon, spec.ends.ileum].map(support),
+        imperfections: vec![], // checked against the mesh, later
     }
 }
 

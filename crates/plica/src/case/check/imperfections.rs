@@ -1,0 +1,296 @@
+//! The imperfections: of what, how large, and in harmonics that the run has.
+
+use super::super::problem::Problems;
+use super::super::spec::{self, Spec};
+use super::super::spelling::nearest;
+use super::stages::SMALLEST_STRETCH;
+use super::tube::tidy;
+use super::zone;
+use crate::study::Stage;
+use crate::tube::{
+    Axial, End, Imperfection, Mesh, Part, Push, Random, Shape, Support, Symmetry, Tube, Wave,
+};
+
+/// Largest displacement, over the thickness of the wall.
+const LARGEST_DISPLACEMENT: f64 = 0.25;
+/// Largest change of a muscle's activity.
+const LARGEST_CHANGE: f64 = 0.5;
+
+/// The imperfections of a tube.
+pub(super) fn imperfections(
+    spec: &Spec,
+    tube: &Tube,
+    mesh: &Mesh,
+    symmetry: Symmetry,
+    problems: &mut Problems,
+) -> Vec<Imperfection> {
+    let mut imperfections = vec![];
+    for (i, written) in spec.imperfections.iter().enumerate() {
+        let path = format!("imperfections[{}]", i + 1);
+        // Shapes of a part that does not exist cannot be told.
+        let Some(of) = part(&path, written, tube, symmetry, problems) else {
+            continue;
+        };
+        imperfections.push(Imperfection {
+            of,
+            amplitude: amplitude(&path, written, of, spec, tube, problems),
+            shape: shape(&path, written, of, spec, tube, (mesh, symmetry), problems),
+        });
+    }
+    imperfections
+}
+
+/// What is imperfect, if it can be.
+fn part(
+    path: &str,
+    written: &spec::Imperfection,
+    tube: &Tube,
+    symmetry: Symmetry,
+    problems: &mut Problems,
+) -> Option<Part> {
+    let key = format!("{path}.of");
+    if !matches!(written.of, spec::Part::ColonEnd | spec::Part::IleumEnd)
+        && written.direction.is_some()
+    {
+        let rule = "only an imperfect end has a direction";
+        let cure = Some("leave it out".into());
+        problems.key(&format!("{path}.direction"), rule, cure);
+    }
+    match &written.of {
+        spec::Part::ColonEnd => end(&key, written, End::Colon, tube.ends[0], problems),
+        spec::Part::IleumEnd => end(&key, written, End::Ileum, tube.ends[1], problems),
+        spec::Part::Geometry => {
+            if symmetry == Symmetry::Axisymmetric {
+                let rule = "an axisymmetric run has no imperfection of its geometry";
+                problems.value(&key, rule, Some(NO_SYMMETRY.into()));
+            }
+            Some(Part::Geometry)
+        }
+        spec::Part::Muscle(name) => {
+            let found = tube.muscles.iter().position(|muscle| muscle.name == *name);
+            if found.is_none() {
+                let names = || tube.muscles.iter().map(|muscle| muscle.name.as_str());
+                let cure = match nearest(name, names()) {
+                    Some(near) => format!("did you mean \"{near}\"?"),
+                    None => format!("add [muscles.{name}]"),
+                };
+                let rule = "there is no muscle of this name";
+                problems.value(&format!("{key}.muscle"), rule, Some(cure));
+            }
+            found.map(Part::Muscle)
+        }
+    }
+}
+
+/// An imperfect end, if it is held as that needs.
+fn end(
+    key: &str,
+    written: &spec::Imperfection,
+    end: End,
+    support: Support,
+    problems: &mut Problems,
+) -> Option<Part> {
+    let push = match written.direction {
+        Some(spec::Push::Axial) => Push::Axial,
+        Some(spec::Push::Across) | None => Push::Across,
+    };
+    let problem = match (support, push) {
+        (Support::Fixed, _) | (Support::Sliding, Push::Axial) => None,
+        (Support::Sliding, Push::Across) => Some((
+            "a sliding end is held along the axis only",
+            "write direction = \"axial\", or hold it with \"fixed\" in [ends]",
+        )),
+        (Support::Free, _) => Some((
+            "only where an end is held can be imperfect, and this one is free",
+            "hold it, with \"fixed\" in [ends]",
+        )),
+    };
+    if let Some((rule, cure)) = problem {
+        problems.value(key, rule, Some(cure.into()));
+    }
+    Some(Part::End(end, push))
+}
+
+/// The amplitude, in D if it is a length.
+fn amplitude(
+    path: &str,
+    written: &spec::Imperfection,
+    of: Part,
+    spec: &Spec,
+    tube: &Tube,
+    problems: &mut Problems,
+) -> f64 {
+    let key = format!("{path}.amplitude");
+    if matches!(of, Part::Muscle(_)) {
+        if written.amplitude.abs() > LARGEST_CHANGE && problems.none_about(&[&key]) {
+            let rule = format!(
+                "must be from -{LARGEST_CHANGE} to {LARGEST_CHANGE} (a fraction of the muscle's activity)"
+            );
+            problems.value(&key, rule, Some("try 0.01".into()));
+        }
+        return written.amplitude;
+    }
+    let diameter = spec.tube.diameter;
+    let largest = LARGEST_DISPLACEMENT * tube.thickness;
+    let amplitude = written.amplitude / diameter;
+    if amplitude.abs() > largest && problems.none_about(&[&key, "tube.thickness", "tube.diameter"])
+    {
+        let rule = format!(
+            "must be at most a quarter of the wall's thickness, {}",
+            tidy(largest * diameter)
+        );
+        let cure = format!("try {}", tidy(1e-4 * diameter));
+        problems.value(&key, rule, Some(cure));
+    }
+    amplitude
+}
+
+/// The shape, in harmonics that the run has.
+fn shape(
+    path: &str,
+    written: &spec::Imperfection,
+    of: Part,
+    spec: &Spec,
+    tube: &Tube,
+    run: (&Mesh, Symmetry),
+    problems: &mut Problems,
+) -> Shape {
+    let end = matches!(of, Part::End(..));
+    match written.shape {
+        spec::Shape::Wave(wave) => {
+            let path = format!("{path}.shape.wave");
+            check_harmonic(&format!("{path}.harmonic"), wave.harmonic, run, problems);
+            let key = format!("{path}.axial");
+            if end && wave.axial.is_some() {
+                nothing_along(&key, problems);
+            }
+            let axial = match wave.axial {
+                None if of == Part::Geometry => Axial::HalfWaves(1),
+                None | Some(spec::Axial::Uniform) => Axial::Uniform,
+                Some(spec::Axial::HalfSine) => Axial::HalfWaves(1),
+                Some(spec::Axial::Zone(written)) => {
+                    let key = format!("{key}.zone");
+                    Axial::Zone(zone(&key, spec, written, tube.length, problems))
+                }
+            };
+            let phase = wave.phase_degrees.to_radians();
+            Shape::Wave(Wave::new(wave.harmonic, phase, axial))
+        }
+        spec::Shape::Random(random) => {
+            let path = format!("{path}.shape.random");
+            let (mesh, symmetry) = run;
+            check_highest(
+                &format!("{path}.harmonics"),
+                random.harmonics,
+                run,
+                problems,
+            );
+            if end && random.half_waves.is_some() {
+                nothing_along(&format!("{path}.half_waves"), problems);
+            }
+            let half_waves = random.half_waves.unwrap_or(spec::Random::usual_count());
+            let half_waves = if end {
+                0
+            } else {
+                half_waves.min(LARGEST_COUNT)
+            };
+            // Any number does where something was found wrong.
+            let harmonics = random.harmonics.min(mesh.around / 4).min(LARGEST_COUNT);
+            let fold = match symmetry {
+                Symmetry::Fold(m) => m.max(1),
+                Symmetry::Axisymmetric | Symmetry::None => 1,
+            };
+            Shape::Random(Random::new(random.seed, harmonics, half_waves, fold))
+        }
+    }
+}
+
+/// As in the table of keys.
+const LARGEST_COUNT: usize = 50;
+const NO_SYMMETRY: &str = "use symmetry = \"none\"";
+
+fn nothing_along(key: &str, problems: &mut Problems) {
+    let rule = "an end is one cross-section, and nothing is spread along it";
+    problems.key(key, rule, Some("leave it out".into()));
+}
+
+/// Whether a harmonic keeps the symmetry of the run, and the mesh draws it.
+fn check_harmonic(key: &str, n: usize, run: (&Mesh, Symmetry), problems: &mut Problems) {
+    if let Symmetry::Fold(m) = run.1
+        && m > 0
+        && !n.is_multiple_of(m)
+    {
+        if problems.none_about(&[key, "symmetry.fold"]) {
+            let rule =
+                format!("must be a multiple of {m}, since the tube repeats {m} times around");
+            let cure = format!("try {m}, or use another symmetry");
+            problems.value(key, rule, Some(cure));
+        }
+        return;
+    }
+    check_highest(key, n, run, problems);
+}
+
+/// Whether a highest harmonic is one that the run has, and the mesh draws it.
+fn check_highest(
+    key: &str,
+    n: usize,
+    (mesh, symmetry): (&Mesh, Symmetry),
+    problems: &mut Problems,
+) {
+    const AROUND: &str = "mesh.control_points.around";
+    if !problems.none_about(&[key, AROUND]) {
+        return;
+    }
+    if symmetry == Symmetry::Axisymmetric && n > 0 {
+        let rule = "an axisymmetric run has harmonic 0 only";
+        problems.value(key, rule, Some(NO_SYMMETRY.into()));
+    } else if n > mesh.around / 4 {
+        let rule = format!(
+            "must be at most {}, a quarter of the {} control points around the tube",
+            mesh.around / 4,
+            mesh.around
+        );
+        let cure = format!("try {} points around", 4 * n);
+        problems.value(key, rule, Some(cure));
+    }
+}
+
+/// Whether the wall can take the targets of the stages where an imperfect muscle is strongest.
+pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
+    if !problems.is_empty() {
+        return;
+    }
+    for (m, muscle) in tube.muscles.iter().enumerate() {
+        let own = |i: &&Imperfection| i.of == Part::Muscle(m);
+        let strongest = 1.0
+            + tube
+                .imperfections
+                .iter()
+                .filter(own)
+                .map(|i| i.amplitude.abs())
+                .sum::<f64>();
+        let smallest = stages
+            .iter()
+            .map(|stage| muscle.smallest_stretch(stage.load.muscles[m], tube.length))
+            .fold(1.0, f64::min);
+        let smallest = 1.0 - strongest * (1.0 - smallest);
+        if strongest > 1.0 && smallest < SMALLEST_STRETCH {
+            let last = tube
+                .imperfections
+                .iter()
+                .rposition(|i| own(&i))
+                .unwrap_or_default();
+            let rule = format!(
+                "where it is strongest, {} shrinks the wall to {} of its size, {SMALLEST_STRETCH} at least",
+                muscle.name,
+                tidy(smallest)
+            );
+            problems.value(
+                &format!("imperfections[{}].amplitude", last + 1),
+                rule,
+                None,
+            );
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Imperfections: small deviations from the perfect tube, which decide where a tube goes whose
+//! perfect path branches.
+//!
+//! An imperfection is a shape f(φ, z), between −1 and 1, times an amplitude. A shape is a sum of
+//! waves around the tube, each with a factor along it:
+//!
+//! f(φ, z) = Σ c g(z) cos n(φ − φ₀)
+//!
+//! | letter | meaning | Rust |
+//! |---|---|---|
+//! | n | circumferential harmonic | [`Wave::harmonic`] |
+//! | φ₀ | angle of a crest | [`Wave::phase`] |
+//! | c | share of the wave in the shape | [`Wave::share`] |
+//! | g | factor along the tube | [`Axial::value`] |
+
+use super::{End, Random};
+use std::f64::consts::{PI, TAU};
+
+/// One imperfection of a tube.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imperfection {
+    /// What is imperfect.
+    pub of: Part,
+    /// Its size: of an end or the geometry a displacement in D, of a muscle a fraction of its
+    /// activity.
+    pub amplitude: f64,
+    /// How it is spread.
+    pub shape: Shape,
+}
+
+/// What is imperfect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Where an end is held. The end gives the displacement, constant along the whole path.
+    End(End, Push),
+    /// The stress-free shape of the wall.
+    Geometry,
+    /// How strong a muscle is, by its place in the tube: θ − 1 becomes (θ − 1)(1 + a f).
+    Muscle(usize),
+}
+
+/// In which direction the face of an end is displaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Push {
+    /// In its plane, normal to the wall; and around it so that rings keep their length. Harmonic 1
+    /// shifts the face sideways, 2 makes it oval.
+    Across,
+    /// Along the axis. Harmonic 1 tilts the face.
+    Axial,
+}
+
+/// A shape f(φ, z), between −1 and 1.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// One wave around the tube.
+    Wave(Wave),
+    /// Many, from the seed of a generator.
+    Random(Random),
+}
+
+/// One wave around the tube, c g(z) cos n(φ − φ₀).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// n; 0 is the same all around.
+    pub harmonic: usize,
+    /// φ₀, the angle of a crest, in radians.
+    pub phase: f64,
+    /// g, how it is spread along the tube.
+    pub axial: Axial,
+    /// c; 1 for a shape of one wave.
+    pub share: f64,
+}
+
+/// A factor along a span of the tube: all of it, or the zone of a muscle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Axial {
+    /// One.
+    Uniform,
+    /// sin kπx, x from 0 to 1 over the span.
+    HalfWaves(usize),
+    /// ½ (1 − cos 2πx), x from 0 to 1 over a zone in D; nothing elsewhere.
+    Zone([f64; 2]),
+}
+
+impl Shape {
+    /// The waves that it is the sum of.
+    pub fn waves(&self) -> &[Wave] {
+        match self {
+            Self::Wave(wave) => std::slice::from_ref(wave),
+            Self::Random(random) => random.waves(),
+        }
+    }
+
+    /// f(φ, z), φ in radians, for a span of the tube in D.
+    pub fn value(&self, phi: f64, z: f64, span: [f64; 2]) -> f64 {
+        let waves = self.waves().iter();
+        waves.map(|wave| wave.value(phi, z, span)).sum()
+    }
+}
+
+impl Wave {
+    /// A shape of this wave alone.
+    pub fn new(harmonic: usize, phase: f64, axial: Axial) -> Self {
+        Self {
+            harmonic,
+            phase,
+            axial,
+            share: 1.0,
+        }
+    }
+
+    /// c g(z) cos n(φ − φ₀).
+    pub fn value(&self, phi: f64, z: f64, span: [f64; 2]) -> f64 {
+        let around = (self.harmonic as f64 * (phi - self.phase)).cos();
+        self.share * self.axial.value(z, span) * around
+    }
+}
+
+impl Axial {
+    /// g(z), for a span in D.
+    pub fn value(&self, z: f64, span: [f64; 2]) -> f64 {
+        let fraction = |[a, b]: [f64; 2]| (z - a) / (b - a);
+        match *self {
+            Self::Uniform => 1.0,
+            Self::HalfWaves(k) => {
+                let x = fraction(span).clamp(0.0, 1.0);
+                // Exactly zero at both ends.
+                if x == 1.0 {
+                    0.0
+                } else {
+                    (k as f64 * PI * x).sin()
+                }
+            }
+            Self::Zone(zone) => {
+                let x = fraction(zone).clamp(0.0, 1.0);
+                0.5 * (1.0 - (TAU * x).cos())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wave_is_one_at_its_crest_and_nowhere_more() {
+        let span = [0.0, 3.0];
+        for axial in [
+            Axial::Uniform,
+            Axial::HalfWaves(1),
+            Axial::HalfWaves(5),
+            Axial::Zone([0.5, 1.0]),
+        ] {
+            for harmonic in [0, 1, 2, 5] {
+                let shape = Shape::Wave(Wave::new(harmonic, 0.7, axial));
+                let mut largest = 0.0_f64;
+                for i in 0..=600 {
+                    for j in 0..40 {
+                        let phi = 0.7 + TAU * f64::from(j) / 40.0;
+                        let f = shape.value(phi, 3.0 * f64::from(i) / 600.0, span);
+                        assert!(f.abs() <= 1.0);
+                        largest = largest.max(f);
+                    }
+                }
+                assert!((largest - 1.0).abs() < 1e-14, "{shape:?}: {largest}");
+            }
+        }
+    }
+
+    #[test]
+    fn factors_along_the_tube_end_at_zero() {
+        let span = [0.3, 2.9];
+        for axial in [Axial::HalfWaves(1), Axial::HalfWaves(4), Axial::Zone(span)] {
+            for z in [0.0, 0.3, 2.9, 3.0] {
+                assert_eq!(axial.value(z, span), 0.0, "{axial:?} at {z}");
+            }
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! A smooth random shape from a seed. The same seed gives the same shape for ever, on every machine
+//! and in every version of the program.
+//!
+//! For n = 0 … N around and k = 1 … K along, the shape is a sum of waves
+//!
+//! c_nk sin kπx cos n(φ − φ_nk),
+//!
+//! x from 0 to 1 over a span of the tube (for an end, without the factor along it). The numbers
+//! before cosine and sine are normal and all of one variance: c² is exponential and nφ uniform (Box
+//! and Muller 1958). The sum is scaled to 1 where it is largest on a grid of 32 points per shortest
+//! wave around and along; between these it may exceed that by half a percent.
+
+use super::{Axial, Wave};
+use std::f64::consts::{PI, TAU};
+
+/// A random shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Random {
+    seed: u64,
+    waves: Vec<Wave>,
+}
+
+impl Random {
+    /// Circumferential harmonics 0 to `harmonics`, 1 to `half_waves` half-waves along the tube (0: the
+    /// same all along), of those that repeat `fold` times around.
+    pub fn new(seed: u64, harmonics: usize, half_waves: usize, fold: usize) -> Self {
+        let mut numbers = Numbers::of(seed);
+        let mut waves = vec![];
+        for n in 0..=harmonics {
+            for k in half_waves.min(1)..=half_waves {
+                // Drawn for every wave, so that a fold leaves waves out and changes none.
+                let (size, angle) = numbers.normal_pair();
+                let (phase, share) = match n {
+                    0 => (0.0, size * angle.cos()),
+                    n => (angle / n as f64, size),
+                };
+                let axial = match k {
+                    0 => Axial::Uniform,
+                    k => Axial::HalfWaves(k),
+                };
+                if n.is_multiple_of(fold) {
+                    let wave = Wave::new(n, phase, axial);
+                    waves.push(Wave { share, ..wave });
+                }
+            }
+        }
+        let largest = largest(&waves, harmonics, half_waves);
+        for wave in &mut waves {
+            wave.share /= largest;
+        }
+        Self { seed, waves }
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The waves.
+    pub fn waves(&self) -> &[Wave] {
+        &self.waves
+    }
+}
+
+/// The largest |f| on the grid.
+fn largest(waves: &[Wave], harmonics: usize, half_waves: usize) -> f64 {
+    let (around, along) = (32 * harmonics.max(1), 16 * half_waves);
+    let turns: Vec<(f64, f64)> = (0..around)
+        .map(|i| (TAU * i as f64 / around as f64).sin_cos())
+        .collect();
+    let mut largest = 0.0_f64;
+    for i in 0..=along {
+        let x = i as f64 / along.max(1) as f64;
+        // Numbers before the cosine and the sine of each harmonic.
+        let mut sums = vec![(0.0, 0.0); harmonics + 1];
+        for wave in waves {
+            let (sin, cos) = (wave.harmonic as f64 * wave.phase).sin_cos();
+            let size = wave.share * wave.axial.value(x, [0.0, 1.0]);
+            sums[wave.harmonic].0 += size * cos;
+            sums[wave.harmonic].1 += size * sin;
+        }
+        for j in 0..around {
+            let terms = sums.iter().enumerate().map(|(n, (a, b))| {
+                let (sin, cos) = turns[n * j % around];
+                a * cos + b * sin
+            });
+            largest = largest.max(terms.sum::<f64>().abs());
+        }
+    }
+    largest
+}
+
+/// Random numbers: the output of BLAKE3 at any length, whose specification does not change.
+struct Numbers(blake3::OutputReader);
+
+impl Numbers {
+    fn of(seed: u64) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(b"plica random imperfection");
+        hasher.update(&seed.to_le_bytes());
+        Self(hasher.finalize_xof())
+    }
+
+    /// Uniform in [0, 1).
+    fn uniform(&mut self) -> f64 {
+        let mut bytes = [0; 8];
+        self.0.fill(&mut bytes);
+        (u64::from_le_bytes(bytes) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Radius and angle of a point whose two coordinates are normal, of variance one.
+    fn normal_pair(&mut self) -> (f64, f64) {
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        (radius, 2.0 * PI * self.uniform())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tube::Shape;
+
+    fn shape(seed: u64, fold: usize) -> Shape {
+        Shape::Random(Random::new(seed, 4, 3, fold))
+    }
+
+    /// Some values of a shape over a tube of length 3.
+    fn values(shape: &Shape) -> [f64; 4] {
+        let at = [(0.0, 0.5), (1.0, 1.0), (3.0, 1.7), (5.0, 2.6)];
+        at.map(|(phi, z)| shape.value(phi, z, [0.0, 3.0]))
+    }
+
+    #[test]
+    fn a_seed_gives_the_same_shape_for_ever() {
+        let seven = [
+            0.333142857804912,
+            0.066832243547265,
+            -0.629501754409571,
+            0.408537538873979,
+        ];
+        for (value, golden) in values(&shape(7, 1)).into_iter().zip(seven) {
+            assert!((value - golden).abs() < 1e-12, "{:?}", values(&shape(7, 1)));
+        }
+        assert_eq!(shape(7, 1), shape(7, 1));
+    }
+
+    #[test]
+    fn another_seed_gives_another_shape() {
+        for seed in 0..20 {
+            let (one, other) = (values(&shape(seed, 1)), values(&shape(seed + 1, 1)));
+            let apart = one.iter().zip(other).map(|(a, b)| (a - b).abs());
+            assert!(apart.sum::<f64>() > 0.05, "{seed}");
+        }
+    }
+
+    #[test]
+    fn a_random_shape_reaches_one_and_hardly_exceeds_it() {
+        for seed in 0..10 {
+            let shape = shape(seed, 1);
+            let mut largest = 0.0_f64;
+            for i in 0..=300 {
+                for j in 0..200 {
+                    let (z, phi) = (0.01 * f64::from(i), TAU * f64::from(j) / 200.0);
+                    largest = largest.max(shape.value(phi, z, [0.0, 3.0]).abs());
+                }
+            }
+            assert!((0.99..1.005).contains(&largest), "{seed}: {largest}");
+        }
+    }
+
+    #[test]
+    fn a_fold_keeps_the_harmonics_that_repeat() {
+        let Shape::Random(whole) = shape(7, 1) else {
+            unreachable!()
+        };
+        let Shape::Random(half) = shape(7, 2) else {
+            unreachable!()
+        };
+        let kept = whole.waves().iter().filter(|w| w.harmonic % 2 == 0);
+        assert_eq!(half.waves().len(), 9);
+        for (a, b) in kept.zip(half.waves()) {
+            assert_eq!(
+                (a.harmonic, a.phase, a.axial),
+                (b.harmonic, b.phase, b.axial)
+            );
+        }
+    }
+
+    #[test]
+    fn numbers_before_cosine_and_sine_are_normal() {
+        let mut numbers = Numbers::of(1);
+        let pairs: Vec<(f64, f64)> = (0..4000).map(|_| numbers.normal_pair()).collect();
+        let mean = |of: &dyn Fn(f64) -> f64| {
+            let sum: f64 = pairs.iter().map(|(r, a)| of(r * a.cos())).sum();
+            sum / pairs.len() as f64
+        };
+        // Moments of the normal distribution: 0, 1, 3.
+        assert!(mean(&|x| x).abs() < 0.05);
+        assert!((mean(&|x| x * x) - 1.0).abs() < 0.08);
+        assert!((mean(&|x| x.powi(4)) - 3.0).abs() < 0.5);
+    }
+}
