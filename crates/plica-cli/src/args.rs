@@ -76,6 +76,7 @@ What a run leaves behind:
   manifest.json   version, machine, begin and end, verdict
   history.csv     one row per accepted state: targets, energy, shape, stability
   profiles/       outer and inner wall of the states, as tables
+  states/         the states in full
   pictures        curves and walls (unless the case says otherwise)
 
 Ctrl-C or SIGTERM ends a run after the solve at hand, with everything written. A second Ctrl-C

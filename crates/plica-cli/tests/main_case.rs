@@ -178,6 +178,11 @@ fn its_directory_is_complete(run: &Path, states: usize) {
             assert!(number.parse::<f64>().unwrap().is_finite(), "{name}");
         }
     }
+    let saved = |state| format!("states/state-{state:04}.safetensors");
+    for state in (0..states).map(saved) {
+        let state = plica::study::SavedState::read(&run.join(state)).unwrap();
+        assert_eq!(state.u.len(), 100 * 5 * 3);
+    }
     for picture in ["energy.png", "walls.png", "tube.png"] {
         let bytes = std::fs::read(run.join(picture)).unwrap();
         assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"), "{picture}");

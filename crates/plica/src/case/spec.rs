@@ -254,6 +254,7 @@ pub(super) struct PseudoTime {
 pub(super) struct Output {
     pub pictures: bool,
     pub profiles_every: usize,
+    pub states_every: usize,
     pub harmonics: usize,
     pub wall_points: usize,
 }
@@ -355,6 +356,7 @@ impl Default for Output {
         Self {
             pictures: usual.pictures,
             profiles_every: usual.profiles_every,
+            states_every: usual.states_every,
             harmonics: usual.harmonics,
             wall_points: usual.wall_points,
         }

@@ -140,6 +140,8 @@ pub const KEYS: &[Key] = &[
         "Whether pictures are drawn."),
     key("output.profiles_every", Count, "", Or("1"), from(0.0).to(100000.0),
         "Wall profiles are written for every n-th state and for the last of a stage; 0 for none."),
+    key("output.states_every", Count, "", Or("1"), from(0.0).to(100000.0),
+        "Every n-th state and the last of a stage are saved in full; 0 for none. `plica stability` and cases that start from a state need them."),
     key("output.harmonics", Count, "", Or("4"), from(0.0).to(100.0),
         "Circumferential harmonics that each axisymmetric state is tested for stability against: 0 to this. 1 tilts or shifts sideways, 2 turns oval, and so on."),
     key("output.wall_points", Count, "", Or("601"), from(51.0).to(20001.0),

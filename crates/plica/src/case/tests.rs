@@ -217,6 +217,7 @@ fn every_field_of_the_structs_is_in_the_table() {
         output: Output {
             pictures: true,
             profiles_every: 1,
+            states_every: 3,
             harmonics: 1,
             wall_points: 1,
         },

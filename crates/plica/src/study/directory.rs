@@ -1,6 +1,6 @@
 //! What a run leaves on disk.
 
-use super::{Row, StudyError};
+use super::{Row, SavedState, StudyError};
 use serde::Serialize;
 use std::fs::{self, File};
 use std::io::Write;
@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 /// | `manifest.json` | version, hash of the case, machine, threads, start and end, verdict |
 /// | `history.csv` | one row per accepted state, see [`Row`] |
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
+/// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
 /// | `*.png` | pictures |
 #[derive(Debug)]
 pub struct RunDirectory {
@@ -27,6 +28,9 @@ pub const PROGRAM: &str = "plica";
 
 /// Name of the file by which a directory is known to be a run.
 const MANIFEST: &str = "manifest.json";
+
+/// Ending of the files of saved states.
+const STATE_ENDING: &str = "safetensors";
 
 impl RunDirectory {
     /// Makes the directory and writes the case into it. A directory that holds anything is left
@@ -118,6 +122,16 @@ impl RunDirectory {
         self.write(name, text.as_bytes())
     }
 
+    /// Saves a state in full, under the number of its row.
+    pub fn write_state(&self, state: &SavedState) -> Result<(), StudyError> {
+        let name = format!("states/state-{:04}.{STATE_ENDING}", state.row);
+        let bytes = state.to_bytes().map_err(|source| StudyError::State {
+            path: self.path.join(&name),
+            source,
+        })?;
+        self.write(&name, &bytes)
+    }
+
     /// Writes a file under a relative path: aside first, then renamed, so that a reader never
     /// sees half of it.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
@@ -158,13 +172,15 @@ fn clear(path: &Path) -> Result<(), StudyError> {
     .iter()
     .map(|name| path.join(name))
     .collect();
-    if let Ok(entries) = fs::read_dir(path.join("profiles")) {
-        old.extend(
-            entries
-                .flatten()
-                .map(|entry| entry.path())
-                .filter(|file| is_a_profile(file)),
-        );
+    for (folder, ending) in [("profiles", "csv"), ("states", STATE_ENDING)] {
+        if let Ok(entries) = fs::read_dir(path.join(folder)) {
+            let files = entries.flatten().map(|entry| entry.path());
+            old.extend(files.filter(|file| {
+                number_of_state(file, ending)
+                    .or(number_of_state(file, "part"))
+                    .is_some()
+            }));
+        }
     }
     old.push(path.join(MANIFEST));
     for file in old {
@@ -181,16 +197,13 @@ fn clear(path: &Path) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// Whether a file is called `state-NNNN.csv`.
-fn is_a_profile(file: &Path) -> bool {
-    let name = file
-        .file_name()
-        .and_then(|name| name.to_str())
-        .unwrap_or_default();
-    let number = name
-        .strip_prefix("state-")
-        .and_then(|rest| rest.strip_suffix(".csv"));
-    number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
+/// The number N of a file that is called `state-N` with an ending.
+fn number_of_state(file: &Path, ending: &str) -> Option<usize> {
+    let name = file.file_name()?.to_str()?;
+    let number = name.strip_prefix("state-")?.strip_suffix(ending)?;
+    let number = number.strip_suffix('.')?;
+    let digits = !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
+    digits.then(|| number.parse().ok())?
 }
 
 #[cfg(test)]
@@ -220,10 +233,15 @@ mod tests {
     fn a_former_run_is_replaced_when_asked_and_other_files_stay() {
         let path = scratch("former-run");
         RunDirectory::create(&path, "first", false).unwrap();
-        fs::create_dir_all(path.join("profiles")).unwrap();
+        for folder in ["profiles", "states"] {
+            fs::create_dir_all(path.join(folder)).unwrap();
+        }
         for name in [
             "profiles/state-0003.csv",
             "profiles/mine.csv",
+            "states/state-0003.safetensors",
+            "states/state-0004.part",
+            "states/mine.safetensors",
             "logo.png",
             "energy.png",
         ] {
@@ -235,7 +253,9 @@ mod tests {
         assert_eq!(fs::read(path.join("case.toml")).unwrap(), b"second");
         let stays = |name: &str| path.join(name).exists();
         assert!(stays("logo.png") && stays("profiles/mine.csv"));
+        assert!(stays("states/mine.safetensors") && !stays("states/state-0004.part"));
         assert!(!stays("energy.png") && !stays("profiles/state-0003.csv"));
+        assert!(!stays("states/state-0003.safetensors"));
         fs::remove_dir_all(path).unwrap();
     }
 }

@@ -1,5 +1,6 @@
 //! Why a study could not go on.
 
+use super::SavedStateError;
 use std::path::PathBuf;
 
 /// What can go wrong outside the physics. (A path that cannot be followed is a result, told in
@@ -13,6 +14,14 @@ pub enum StudyError {
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
+    },
+    /// A saved state cannot be used.
+    #[error("{}: {source}", path.display())]
+    State {
+        /// Its file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: SavedStateError,
     },
     /// The directory holds a run already.
     #[error("{} holds a run already; give another directory with --out, or --overwrite it", .0.display())]

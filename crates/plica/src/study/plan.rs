@@ -43,6 +43,8 @@ pub struct Output {
     /// Wall profiles are written for every n-th accepted state (and always for the last of a
     /// stage); 0 for none.
     pub profiles_every: usize,
+    /// Accepted states are saved in full likewise.
+    pub states_every: usize,
     /// Circumferential harmonics that an axisymmetric state is tested for: 0 to this.
     pub harmonics: usize,
     /// Points along the tube at which a wall is sampled for profiles and pictures.
@@ -67,6 +69,7 @@ impl Default for Output {
         Self {
             pictures: true,
             profiles_every: 1,
+            states_every: 1,
             harmonics: 4,
             wall_points: 601,
         }

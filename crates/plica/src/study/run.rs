@@ -4,10 +4,14 @@ use super::manifest::Manifest;
 use super::stability::unstable_harmonics;
 use super::summary::{Ending, Summary};
 use super::units::Scale;
-use super::{Observer, Plan, Row, RunDirectory, Snapshot, StudyError, TubeProblem, forecast};
+use super::{
+    Layout, Observer, Plan, Row, RunDirectory, SavedState, Snapshot, StudyError, TubeProblem,
+    forecast,
+};
 use crate::assembly::SplineTube;
 use crate::measure::{Face, Measures, Wall, even};
 use crate::solve::{Failure, Method, Path, PathError, Step, Watch};
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Runs a study from rest to the end of its last stage, or as far as the tube can be followed.
@@ -175,7 +179,7 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// Writes a state down: its row, and its walls if they are wanted.
+    /// Writes a state down: its row, and its walls and itself if they are wanted.
     fn accept(
         &mut self,
         stage: &str,
@@ -228,6 +232,10 @@ impl<'a> Record<'a> {
         if every > 0 && (last || row.step.is_multiple_of(every)) {
             self.write_profile(row.step, path)?;
         }
+        let every = self.plan.output.states_every;
+        if every > 0 && (last || row.step.is_multiple_of(every)) {
+            self.write_state(&row, path)?;
+        }
         if self.plan.output.pictures {
             self.snapshots.push(Snapshot {
                 load: state.load.clone(),
@@ -245,6 +253,20 @@ impl<'a> Record<'a> {
         let tube = &self.plan.tube;
         let rounding = 1e-15 * tube.material.longitudinal_modulus() * tube.thickness * tube.length;
         if energy.abs() < rounding { 0.0 } else { energy }
+    }
+
+    fn write_state(&self, row: &Row, path: &Path<'_, TubeProblem>) -> Result<(), StudyError> {
+        let muscles = self.plan.tube.muscles.iter();
+        self.directory.write_state(&SavedState {
+            stage: row.stage.clone(),
+            row: row.step,
+            along: path.reached(),
+            muscles: muscles.map(|m| (m.name.clone(), m.direction)).collect(),
+            load: path.state().load.clone(),
+            layout: Layout::of(self.plan),
+            u: path.state().u.clone(),
+            arrays: BTreeMap::new(),
+        })
     }
 
     fn write_profile(&self, step: usize, path: &Path<'_, TubeProblem>) -> Result<(), StudyError> {

@@ -41,6 +41,7 @@ pub(super) fn plan(spec: &Spec, name: &str, problems: &mut Problems) -> Plan {
         output: Output {
             pictures: spec.output.pictures,
             profiles_every: spec.output.profiles_every,
+            states_every: spec.output.states_every,
             harmonics: spec.output.harmonics,
             wall_points: spec.output.wall_points,
         },

@@ -1,0 +1,618 @@
+//! A state in a file: `states/state-NNNN.safetensors`.
+//!
+//! The format is [safetensors](https://github.com/huggingface/safetensors): the length of a header,
+//! the header (JSON), then raw arrays, little-endian. Our own words are one JSON object under
+//! `__metadata__.plica`; the arrays are `u` and whatever else goes with the state. The checksum is
+//! BLAKE3 of the whole file with its own 64 digits written as zeros. docs/run-directory.md
+//! describes the file for readers in other languages.
+
+use super::{Layout, Plan};
+use crate::activation::Direction;
+use crate::spline::Refinement;
+use crate::tube::{EndMotion, Load, Mesh};
+use safetensors::tensor::TensorView;
+use safetensors::{Dtype, SafeTensorError, SafeTensors};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{Error, ErrorKind, Read};
+use std::path::Path;
+
+/// Version of the format that is written, and the newest that is read.
+const FORMAT: u32 = 1;
+/// The checksum before it is known.
+const BLANK: &str = "0000000000000000000000000000000000000000000000000000000000000000";
+
+/// A state with all that it takes to go on from it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SavedState {
+    /// Name of its stage; `rest` for the tube at rest.
+    pub stage: String,
+    /// Number of its row in `history.csv`.
+    pub row: usize,
+    /// How far along its stage it is, 0 to 1.
+    pub along: f64,
+    /// Name and direction of each muscle, in the order of the load.
+    pub muscles: Vec<(String, Direction)>,
+    /// The load it is under.
+    pub load: Load,
+    /// What its unknowns belong to.
+    pub layout: Layout,
+    /// The unknowns of the sector, in D.
+    pub u: Vec<f64>,
+    /// Whatever else goes with it, by name; not `u`.
+    pub arrays: BTreeMap<String, Array>,
+}
+
+/// Numbers in rows and columns, the last index fastest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Array {
+    /// Length of each index; the product is the number of values.
+    pub shape: Vec<usize>,
+    /// The numbers.
+    pub values: Vec<f64>,
+}
+
+/// Why a saved state cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum SavedStateError {
+    /// It cannot be read or written.
+    #[error(transparent)]
+    File(#[from] Error),
+    /// It is something else.
+    #[error("this is not a saved state ({0})")]
+    Foreign(String),
+    /// It ends early, or late.
+    #[error("the file is cut short or has something added (it holds {bytes} bytes); save it again")]
+    Cut {
+        /// Bytes of the file.
+        bytes: usize,
+    },
+    /// A later version wrote it.
+    #[error(
+        "its format is {found}, and this program reads formats up to {FORMAT}; take a newer plica"
+    )]
+    Newer {
+        /// Its format.
+        found: u32,
+    },
+    /// It is not what was written.
+    #[error(
+        "the file is damaged: its checksum is {found}, and should be {expected}; save it again"
+    )]
+    Damaged {
+        /// The checksum it carries.
+        expected: String,
+        /// The checksum it has.
+        found: String,
+    },
+    /// An array is not as it must be.
+    #[error("its array `{name}` {what}")]
+    Array {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// Its tube or mesh is none.
+    #[error("its header makes no sense: {0}")]
+    Header(&'static str),
+    /// It belongs to another tube or mesh.
+    #[error("it belongs to another {what}: {found}, and not {expected}")]
+    Other {
+        /// Tube, mesh or symmetry.
+        what: &'static str,
+        /// Of the state.
+        found: String,
+        /// Of the case.
+        expected: String,
+    },
+}
+
+/// What is written about a state, as JSON. The checksum comes first, so that nothing that a user
+/// names can be taken for it.
+#[derive(Debug, Deserialize, Serialize)]
+struct Header {
+    format: u32,
+    blake3: String,
+    written_by: String,
+    stage: String,
+    row: usize,
+    along: f64,
+    load: LoadHeader,
+    tube: TubeHeader,
+    mesh: MeshHeader,
+    rings: usize,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct LoadHeader {
+    muscles: Vec<MuscleHeader>,
+    colon: EndHeader,
+    ileum: EndHeader,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct MuscleHeader {
+    name: String,
+    direction: DirectionHeader,
+    ratio: f64,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum DirectionHeader {
+    Circular,
+    Longitudinal,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+struct EndHeader {
+    displacement: f64,
+    twist_radians: f64,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct TubeHeader {
+    length: f64,
+    thickness: f64,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct MeshHeader {
+    axial: usize,
+    around: usize,
+    thickness: usize,
+    degree: usize,
+    refine: Vec<RefineHeader>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+struct RefineHeader {
+    from: f64,
+    to: f64,
+    factor: f64,
+}
+
+impl SavedState {
+    /// The content of its file.
+    ///
+    /// # Errors
+    /// [`SavedStateError::Array`] if an array does not have the length that its shape says.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, SavedStateError> {
+        let header = serde_json::to_string(&self.header()).map_err(Error::other)?;
+        let u = Array {
+            shape: self.layout.shape().to_vec(),
+            values: vec![],
+        };
+        let others = self
+            .arrays
+            .iter()
+            .map(|(name, a)| (name.as_str(), a, &a.values));
+        let arrays: Vec<(&str, &Array, Vec<u8>)> = std::iter::once(("u", &u, &self.u))
+            .chain(others)
+            .map(|(name, array, values)| {
+                let bytes = values.iter().flat_map(|x| x.to_le_bytes()).collect();
+                (name, array, bytes)
+            })
+            .collect();
+        let views = arrays.iter().map(|(name, array, bytes)| {
+            let view = TensorView::new(Dtype::F64, array.shape.clone(), bytes);
+            view.map(|view| (*name, view))
+                .map_err(|_| SavedStateError::Array {
+                    name: (*name).to_owned(),
+                    what: format!("has shape {:?} and {} bytes", array.shape, bytes.len()),
+                })
+        });
+        let views = views.collect::<Result<Vec<_>, _>>()?;
+        let metadata = [("plica".to_owned(), header)].into_iter().collect();
+        let mut bytes = safetensors::serialize(views, Some(metadata)).map_err(Error::other)?;
+        let checksum = blake3::hash(&bytes).to_string();
+        if let Some(at) = position(&bytes, BLANK.as_bytes()) {
+            bytes[at..at + BLANK.len()].copy_from_slice(checksum.as_bytes());
+        }
+        Ok(bytes)
+    }
+
+    /// A state from the content of its file.
+    ///
+    /// # Errors
+    /// Whatever is wrong with it; no content makes this panic, or take much more memory than the
+    /// content itself.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, SavedStateError> {
+        let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|e| unreadable(bytes, &e))?;
+        let file = SafeTensors::deserialize(bytes).map_err(|e| unreadable(bytes, &e))?;
+        let text = metadata.metadata().as_ref().and_then(|m| m.get("plica"));
+        let foreign = |what: &str| SavedStateError::Foreign(what.to_owned());
+        let text = text.ok_or_else(|| foreign("its header does not speak of plica"))?;
+        // A later format may look otherwise; its number must be found all the same.
+        let about: serde_json::Value =
+            serde_json::from_str(text).map_err(|e| foreign(&e.to_string()))?;
+        let format = about["format"].as_u64().unwrap_or(0);
+        if format > u64::from(FORMAT) {
+            let found = u32::try_from(format).unwrap_or(u32::MAX);
+            return Err(SavedStateError::Newer { found });
+        }
+        verify(bytes, about["blake3"].as_str().unwrap_or_default())?;
+        let header: Header = serde_json::from_value(about).map_err(|e| foreign(&e.to_string()))?;
+
+        let mut arrays = BTreeMap::new();
+        for (name, view) in file.tensors() {
+            let array = array(&name, &view)?;
+            arrays.insert(name, array);
+        }
+        let missing = || SavedStateError::Array {
+            name: "u".into(),
+            what: "is missing".into(),
+        };
+        let u = arrays.remove("u").ok_or_else(missing)?;
+        Self::new(header, u, arrays)
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// As [`SavedState::from_bytes`]; and if it cannot be read, or is no plain file.
+    pub fn read(path: &Path) -> Result<Self, SavedStateError> {
+        let file = File::open(path)?;
+        let about = file.metadata()?;
+        if !about.is_file() {
+            let what = "not a plain file";
+            return Err(Error::new(ErrorKind::InvalidInput, what).into());
+        }
+        let mut bytes = vec![];
+        file.take(about.len()).read_to_end(&mut bytes)?;
+        Self::from_bytes(&bytes)
+    }
+
+    /// Whether the state is one of a plan's tube on the plan's mesh.
+    ///
+    /// # Errors
+    /// [`SavedStateError::Other`] with what differs.
+    pub fn belongs_to(&self, plan: &Plan) -> Result<(), SavedStateError> {
+        let (mine, own) = (&self.layout, &Layout::of(plan));
+        let differ = |what, found: String, expected: String| {
+            if found == expected {
+                return Ok(());
+            }
+            Err(SavedStateError::Other {
+                what,
+                found,
+                expected,
+            })
+        };
+        let size = |l: &Layout| format!("{} D long, {} D thick", l.length, l.thickness);
+        let mesh = |l: &Layout| {
+            let Mesh {
+                axial,
+                around,
+                thickness,
+                degree,
+                ..
+            } = &l.mesh;
+            format!("{axial} x {around} x {thickness} of degree {degree}")
+        };
+        let refine = |l: &Layout| format!("refined as {:?}", l.mesh.refinements);
+        let muscles = plan.tube.muscles.iter();
+        let muscles: Vec<_> = muscles.map(|m| (m.name.clone(), m.direction)).collect();
+        differ("tube", size(mine), size(own))?;
+        differ("mesh", mesh(mine), mesh(own))?;
+        differ("mesh", refine(mine), refine(own))?;
+        differ(
+            "symmetry",
+            format!("{} rings", mine.rings),
+            format!("{} rings", own.rings),
+        )?;
+        differ(
+            "set of muscles",
+            format!("{:?}", self.muscles),
+            format!("{muscles:?}"),
+        )
+    }
+
+    fn header(&self) -> Header {
+        let muscle = |((name, direction), &ratio): (&(String, Direction), &f64)| MuscleHeader {
+            name: name.clone(),
+            direction: match direction {
+                Direction::Circular => DirectionHeader::Circular,
+                Direction::Longitudinal => DirectionHeader::Longitudinal,
+            },
+            ratio,
+        };
+        let end = |motion: EndMotion| EndHeader {
+            displacement: motion.displacement,
+            twist_radians: motion.twist,
+        };
+        let Layout {
+            length,
+            thickness,
+            ref mesh,
+            rings,
+        } = self.layout;
+        let refine = |r: &Refinement| RefineHeader {
+            from: r.from,
+            to: r.to,
+            factor: r.factor,
+        };
+        Header {
+            format: FORMAT,
+            blake3: BLANK.to_owned(),
+            written_by: concat!("plica ", env!("CARGO_PKG_VERSION")).to_owned(),
+            stage: self.stage.clone(),
+            row: self.row,
+            along: self.along,
+            load: LoadHeader {
+                muscles: self
+                    .muscles
+                    .iter()
+                    .zip(&self.load.muscles)
+                    .map(muscle)
+                    .collect(),
+                colon: end(self.load.ends[0]),
+                ileum: end(self.load.ends[1]),
+            },
+            tube: TubeHeader { length, thickness },
+            mesh: MeshHeader {
+                axial: mesh.axial,
+                around: mesh.around,
+                thickness: mesh.thickness,
+                degree: mesh.degree,
+                refine: mesh.refinements.iter().map(refine).collect(),
+            },
+            rings,
+        }
+    }
+
+    /// Of a header and the arrays beside it, if they go together.
+    fn new(
+        header: Header,
+        u: Array,
+        arrays: BTreeMap<String, Array>,
+    ) -> Result<Self, SavedStateError> {
+        let end = |end: EndHeader| EndMotion {
+            displacement: end.displacement,
+            twist: end.twist_radians,
+        };
+        let refinement = |r: &RefineHeader| Refinement {
+            from: r.from,
+            to: r.to,
+            factor: r.factor,
+        };
+        let layout = Layout {
+            length: header.tube.length,
+            thickness: header.tube.thickness,
+            mesh: Mesh {
+                axial: header.mesh.axial,
+                around: header.mesh.around,
+                thickness: header.mesh.thickness,
+                degree: header.mesh.degree,
+                refinements: header.mesh.refine.iter().map(refinement).collect(),
+            },
+            rings: header.rings,
+        };
+        if let Some(fault) = layout.fault() {
+            return Err(SavedStateError::Header(fault));
+        }
+        if u.shape != layout.shape() {
+            let what = format!(
+                "has shape {:?}, and its mesh needs {:?}",
+                u.shape,
+                layout.shape()
+            );
+            return Err(SavedStateError::Array {
+                name: "u".into(),
+                what,
+            });
+        }
+        let muscles = header.load.muscles;
+        let direction = |direction| match direction {
+            DirectionHeader::Circular => Direction::Circular,
+            DirectionHeader::Longitudinal => Direction::Longitudinal,
+        };
+        Ok(Self {
+            stage: header.stage,
+            row: header.row,
+            along: header.along,
+            load: Load {
+                muscles: muscles.iter().map(|m| m.ratio).collect(),
+                ends: [end(header.load.colon), end(header.load.ileum)],
+            },
+            muscles: muscles
+                .into_iter()
+                .map(|m| (m.name, direction(m.direction)))
+                .collect(),
+            layout,
+            u: u.values,
+            arrays,
+        })
+    }
+}
+
+/// An array of a file.
+fn array(name: &str, view: &TensorView<'_>) -> Result<Array, SavedStateError> {
+    let wrong = |what: String| SavedStateError::Array {
+        name: name.to_owned(),
+        what,
+    };
+    if view.dtype() != Dtype::F64 {
+        return Err(wrong(format!("is of type {:?}, and not F64", view.dtype())));
+    }
+    let (words, _) = view.data().as_chunks::<8>();
+    let values: Vec<f64> = words.iter().map(|&word| f64::from_le_bytes(word)).collect();
+    if let Some(at) = values.iter().position(|x| !x.is_finite()) {
+        return Err(wrong(format!("is {} at {at}, and not finite", values[at])));
+    }
+    Ok(Array {
+        shape: view.shape().to_vec(),
+        values,
+    })
+}
+
+/// Holds the checksum that a file carries against its content.
+fn verify(bytes: &[u8], expected: &str) -> Result<(), SavedStateError> {
+    let mut hasher = blake3::Hasher::new();
+    match position(bytes, expected.as_bytes()) {
+        Some(at) if expected.len() == BLANK.len() => {
+            hasher.update(&bytes[..at]);
+            hasher.update(BLANK.as_bytes());
+            hasher.update(&bytes[at + BLANK.len()..]);
+        }
+        _ => {
+            hasher.update(bytes);
+        }
+    }
+    let found = hasher.finalize().to_string();
+    if found == expected {
+        return Ok(());
+    }
+    Err(SavedStateError::Damaged {
+        expected: expected.to_owned(),
+        found,
+    })
+}
+
+/// Where a text first occurs.
+fn position(bytes: &[u8], text: &[u8]) -> Option<usize> {
+    (!text.is_empty()).then(|| bytes.windows(text.len()).position(|window| window == text))?
+}
+
+/// Why a file is not even in the format.
+fn unreadable(bytes: &[u8], error: &SafeTensorError) -> SavedStateError {
+    use SafeTensorError as E;
+    match error {
+        E::HeaderTooSmall | E::InvalidHeaderLength | E::MetadataIncompleteBuffer => {
+            SavedStateError::Cut { bytes: bytes.len() }
+        }
+        other => SavedStateError::Foreign(other.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A state whose numbers use all their bits.
+    fn state() -> SavedState {
+        let layout = Layout {
+            length: 3.0,
+            thickness: 0.06,
+            mesh: Mesh {
+                axial: 7,
+                around: 12,
+                thickness: 4,
+                degree: 3,
+                refinements: vec![Refinement {
+                    from: 1.0 / 3.0,
+                    to: 1.0,
+                    factor: 3.0,
+                }],
+            },
+            rings: 2,
+        };
+        let number = |i: usize| (i as f64 * 0.7).sin() / 3.0;
+        let velocity = Array {
+            shape: vec![2, 3],
+            values: (0..6).map(number).collect(),
+        };
+        SavedState {
+            // Nothing that a user writes is taken for the checksum.
+            stage: format!("a \"stage\" {BLANK}"),
+            row: 17,
+            along: 0.1 + 0.2,
+            muscles: vec![("ring".into(), Direction::Circular)],
+            load: Load {
+                muscles: vec![1.0 / 7.0],
+                ends: [
+                    EndMotion::default(),
+                    EndMotion {
+                        displacement: -0.1,
+                        twist: 1e-300,
+                    },
+                ],
+            },
+            u: (0..layout.unknowns()).map(number).collect(),
+            layout,
+            arrays: [("velocity".into(), velocity)].into(),
+        }
+    }
+
+    #[test]
+    fn a_saved_state_comes_back_to_the_last_bit() {
+        let bytes = state().to_bytes().unwrap();
+        assert_eq!(SavedState::from_bytes(&bytes).unwrap(), state());
+        assert_eq!(state().to_bytes().unwrap(), bytes);
+    }
+
+    #[test]
+    fn a_file_cut_short_is_told_from_one_that_is_whole() {
+        let bytes = state().to_bytes().unwrap();
+        for length in 0..bytes.len() {
+            let error = SavedState::from_bytes(&bytes[..length]).unwrap_err();
+            assert!(
+                matches!(error, SavedStateError::Cut { .. }),
+                "{length}: {error}"
+            );
+        }
+        let longer = [bytes.as_slice(), b"x"].concat();
+        assert!(matches!(
+            SavedState::from_bytes(&longer),
+            Err(SavedStateError::Cut { .. })
+        ));
+    }
+
+    #[test]
+    fn no_flipped_bit_goes_unnoticed() {
+        let bytes = state().to_bytes().unwrap();
+        for bit in 0..8 * bytes.len() {
+            let mut flipped = bytes.clone();
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            assert!(SavedState::from_bytes(&flipped).is_err(), "bit {bit}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_go_together_is_refused_though_its_checksum_is_right() {
+        let refused = |change: &dyn Fn(&mut SavedState)| {
+            let mut state = state();
+            change(&mut state);
+            let bytes = state.to_bytes().unwrap();
+            SavedState::from_bytes(&bytes).unwrap_err().to_string()
+        };
+        let told = refused(&|state| state.u[5] = f64::NAN);
+        assert!(told.contains("`u` is NaN at 5"), "{told}");
+        let told = refused(&|state| state.layout.mesh.around = 11);
+        assert!(told.contains("do not repeat"), "{told}");
+        let told = refused(&|state| state.layout.mesh.degree = 0);
+        assert!(told.contains("degree"), "{told}");
+        let told = refused(&|state| state.layout.length = -1.0);
+        assert!(told.contains("no length"), "{told}");
+    }
+
+    #[test]
+    fn an_array_of_another_length_is_not_written() {
+        let mut state = state();
+        state.u.pop();
+        assert!(matches!(
+            state.to_bytes(),
+            Err(SavedStateError::Array { .. })
+        ));
+    }
+
+    #[test]
+    fn a_later_format_and_a_foreign_file_are_named() {
+        let text = String::from_utf8_lossy(&state().to_bytes().unwrap()).into_owned();
+        assert!(text.contains(r#"\"format\":1,"#), "{text}");
+        let header = r#"{"__metadata__":{"plica":"{\"format\":9}"}}"#;
+        let file = |header: &str| {
+            let mut bytes = (header.len() as u64).to_le_bytes().to_vec();
+            bytes.extend(header.as_bytes());
+            SavedState::from_bytes(&bytes).unwrap_err()
+        };
+        assert!(matches!(file(header), SavedStateError::Newer { found: 9 }));
+        assert!(matches!(file("{}"), SavedStateError::Foreign(_)));
+        assert!(matches!(file("PK"), SavedStateError::Foreign(_)));
+        // A header that claims more than there is takes no memory.
+        let huge = [u64::MAX.to_le_bytes(), [0; 8]].concat();
+        assert!(SavedState::from_bytes(&huge).is_err());
+    }
+}
