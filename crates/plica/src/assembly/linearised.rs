@@ -7,12 +7,12 @@ use super::pencil::{
     slab_offsets,
 };
 use super::spline_tube::{with_degree, with_law_and_degree};
-use super::tables::Slab;
+use super::tables::{Around, Slab};
 use super::tangent::SlabTangent;
 use crate::material::Material;
 use crate::matrix::BlockBanded;
 use crate::rings::Circulant;
-use crate::tensor::Lanes;
+use crate::tensor::{LANES, Lanes};
 use crate::tube::Load;
 use rayon::prelude::*;
 
@@ -33,9 +33,11 @@ impl SplineTube {
     /// precision, for every quadrature point.
     pub fn linearised(&self, load: &Load, u: &[f64]) -> Linearised {
         let u = self.lanes.pad(u);
-        let stretch: Vec<_> = (0..self.axial.elements())
-            .map(|e| self.pencil_stretch(e, load))
-            .collect();
+        let lanes = |slab: &Slab| {
+            let of = |lane| self.pencil_stretch(slab, lane, &self.around, load);
+            (0..slab.elements).map(of).collect::<Vec<_>>()
+        };
+        let stretch: Vec<_> = self.slabs.iter().flat_map(lanes).collect();
         let functions = self.degree() + 1;
         let element = functions.pow(3) * self.layers.len() * AVERAGED;
         let parts: Vec<(Kept, Vec<f64>)> = self
@@ -105,7 +107,7 @@ impl SplineTube {
             ..SlabForces::default()
         };
         for lane in 0..slab.elements {
-            let stretch = self.pencil_stretch(slab.first + lane, load);
+            let stretch = self.pencil_stretch(slab, lane, &self.around, load);
             let input = self.pencil(slab, lane, &stretch, u);
             let residual = &mut residual[lane * row..][..(self.degree() + 1) * row];
             let part = with_law_and_degree!(self, pencil_forces, &input, residual);
@@ -195,14 +197,39 @@ impl SplineTube {
         }
     }
 
-    fn pencil_stretch(&self, element: usize, load: &Load) -> Vec<(Lanes, Lanes)> {
-        let slab = &self.slabs[element / crate::tensor::LANES];
-        let lane = element - slab.first;
-        let at = |z: &Lanes| {
-            let (along, around) = self.tube.stretches(z.0[lane], load);
-            let all = |x: f64| Lanes([x; crate::tensor::LANES]);
-            (all(1.0 / along), all(1.0 / around))
+    /// 1/θζ and 1/θη at the points of an element along the tube; where a muscle is not the same all
+    /// around, for every point around and every vector of elements too.
+    pub(super) fn pencil_stretch(
+        &self,
+        slab: &Slab,
+        lane: usize,
+        around: &[Around],
+        load: &Load,
+    ) -> Vec<(Lanes, Lanes)> {
+        let inverse = |at: &dyn Fn(usize) -> (f64, f64)| {
+            let stretches: [(f64, f64); LANES] = std::array::from_fn(at);
+            (
+                Lanes(stretches.map(|(along, _)| 1.0 / along)),
+                Lanes(stretches.map(|(_, around)| 1.0 / around)),
+            )
         };
-        slab.z.iter().map(at).collect()
+        let mut stretch = vec![];
+        for z in slab.z.iter().map(|z| z.0[lane]) {
+            if !self.tube.muscles_vary_around() {
+                stretch.push(inverse(&|_| self.tube.stretches(z, load)));
+                continue;
+            }
+            for point in around {
+                for v in 0..self.lanes.vectors() {
+                    stretch.push(inverse(&|lane| {
+                        let element = (v * LANES + lane) % self.sector.rings;
+                        // The middle of element 0 is at angle zero.
+                        let phi = (element as f64 + point.s - 0.5) * self.sector.angle();
+                        self.tube.stretches_at(z, phi, load)
+                    }));
+                }
+            }
+        }
+        stretch
     }
 }

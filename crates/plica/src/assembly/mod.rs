@@ -21,6 +21,7 @@
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
+mod coupling;
 mod drag;
 mod forces;
 mod imperfection;
@@ -39,6 +40,7 @@ mod tangent;
 #[cfg(test)]
 mod tests;
 
+pub use coupling::LowHarmonics;
 pub use linearised::Linearised;
 pub use ring_drag::RingDrag;
 pub use sample::{Point, Sample};

@@ -50,7 +50,10 @@ impl Band {
         let (p, size) = (self.rows[i].len() / 2, self.rows.len());
         let entries = self.rows[i].iter().enumerate();
         entries.filter_map(move |(k, &entry)| {
-            (i + k).checked_sub(p).filter(|&j| j < size).map(|j| (j, entry))
+            (i + k)
+                .checked_sub(p)
+                .filter(|&j| j < size)
+                .map(|j| (j, entry))
         })
     }
 }
@@ -87,7 +90,11 @@ impl RingDrag {
                 for c in 0..n {
                     for d in 0..n {
                         let weight = layer.weight[q] * layer.radius[q];
-                        wall.add(layer.first + c, layer.first + d, weight * value(c) * value(d));
+                        wall.add(
+                            layer.first + c,
+                            layer.first + d,
+                            weight * value(c) * value(d),
+                        );
                     }
                 }
             }
@@ -160,8 +167,16 @@ impl RingDrag {
             let shift = q.offset.rem_euclid(k.cast_signed()).cast_unsigned();
             // Ring j takes from ring j + shift: in two runs, so that none wraps.
             for (to, from, len) in [(0, shift, k - shift), (k - shift, 0, shift)] {
-                add(&mut axial[to..to + len], q.axial, &from_axial[from..from + len]);
-                add(&mut radial[to..to + len], re, &from_radial[from..from + len]);
+                add(
+                    &mut axial[to..to + len],
+                    q.axial,
+                    &from_axial[from..from + len],
+                );
+                add(
+                    &mut radial[to..to + len],
+                    re,
+                    &from_radial[from..from + len],
+                );
                 add(&mut radial[to..to + len], -im, &from_hoop[from..from + len]);
                 add(&mut hoop[to..to + len], im, &from_radial[from..from + len]);
                 add(&mut hoop[to..to + len], re, &from_hoop[from..from + len]);

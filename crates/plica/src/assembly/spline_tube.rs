@@ -1,9 +1,9 @@
 //! A tube laid out in splines: numbering, slabs over threads, sums in their order.
 
 use super::drag::drag;
-use super::ring_drag::RingDrag;
 use super::forces::{SlabForces, Worst, slab_forces};
 use super::pencil::RingLanes;
+use super::ring_drag::RingDrag;
 use super::slab::SlabInput;
 use super::supports::Supports;
 use super::tables::{Around, Layer, Slab};
@@ -363,8 +363,8 @@ impl SplineTube {
     }
 }
 
-/// Rings from which their elements fill vectors better than neighbours along the tube do.
-const FEW_RINGS: usize = 5;
+/// Rings from which their elements share enough to be worked on as pencils.
+const FEW_RINGS: usize = 2;
 
 /// Bytes of slab tangents that are held before they are summed.
 const SLAB_MEMORY: usize = 256 << 20;

@@ -25,14 +25,19 @@ pub struct Slab {
 impl Slab {
     /// All slabs of an axial basis.
     pub fn all(basis: &Basis) -> Vec<Self> {
+        Self::with_points(basis, basis.degree() + 1)
+    }
+
+    /// All slabs, with so many quadrature points to an element.
+    pub fn with_points(basis: &Basis, points: usize) -> Vec<Self> {
         (0..basis.elements())
             .step_by(LANES)
-            .map(|first| Self::new(basis, first))
+            .map(|first| Self::new(basis, first, points))
             .collect()
     }
 
-    fn new(basis: &Basis, first: usize) -> Self {
-        let (rule, functions) = (gauss_legendre(basis.degree() + 1), basis.degree() + 1);
+    fn new(basis: &Basis, first: usize, points: usize) -> Self {
+        let (rule, functions) = (gauss_legendre(points), basis.degree() + 1);
         let elements = (basis.elements() - first).min(LANES);
         let zero = |n: usize| vec![Lanes::default(); n];
         let mut slab = Self {
@@ -101,6 +106,23 @@ impl Layer {
             }
         };
         (0..basis.elements()).map(layer).collect()
+    }
+
+    /// So many Gauss points through the whole wall, each as a layer of its own.
+    pub fn points(basis: &Basis, count: usize) -> Vec<Self> {
+        let (inner, outer) = (basis.element(0).0, basis.element(basis.elements() - 1).1);
+        let point = |(x, w): (f64, f64)| {
+            let radius = inner + (outer - inner) * x;
+            let v = basis.evaluate(radius);
+            Self {
+                first: v.element,
+                value: v.value,
+                slope: v.slope,
+                weight: vec![w * (outer - inner)],
+                radius: vec![radius],
+            }
+        };
+        gauss_legendre(count).into_iter().map(point).collect()
     }
 }
 

@@ -53,6 +53,31 @@ impl BlockBanded {
         self.blocks * self.size
     }
 
+    /// Number of blocks along the diagonal.
+    pub fn blocks(&self) -> usize {
+        self.blocks
+    }
+
+    /// Unknowns of a block.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Half-bandwidth in blocks.
+    pub fn band(&self) -> usize {
+        self.band
+    }
+
+    /// The entry in row `row` and column `column` of the block `d` below the diagonal, of panel
+    /// `panel`. Diagonal blocks are read below their diagonal.
+    pub fn in_block(&self, panel: usize, d: usize, row: usize, column: usize) -> f64 {
+        let (row, column) = match d {
+            0 => (row.max(column), row.min(column)),
+            _ => (row, column),
+        };
+        self.panels[panel * self.panel_len() + self.place(d, row, column)]
+    }
+
     /// Rows of one panel: its leading dimension.
     fn height(&self) -> usize {
         (self.band + 1) * self.size

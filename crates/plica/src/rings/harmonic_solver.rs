@@ -1,7 +1,7 @@
 //! The inverse of a matrix that is the same at every ring, harmonic by harmonic.
 
-use super::{Transform, Wave};
-use crate::matrix::{BlockBanded, Factor, Singular};
+use super::{Coupling, Transform, Wave};
+use crate::matrix::Factor;
 use rayon::prelude::*;
 
 /// The factored blocks of all circumferential harmonics of a sector.
@@ -9,39 +9,24 @@ use rayon::prelude::*;
 pub struct HarmonicSolver {
     transform: Transform,
     factors: Vec<(Wave, Factor)>,
+    coupling: Option<Coupling>,
 }
 
 impl HarmonicSolver {
-    /// For k rings. `block` gives the block of a harmonic of the sector (0 to k/2), with its given
-    /// unknowns constrained; it is called once for each, by several threads.
-    pub fn new(
-        rings: usize,
-        block: impl Fn(usize) -> BlockBanded + Sync,
-    ) -> Result<Self, Singular> {
+    /// For k rings, of the factored blocks of the harmonics of the sector, 0 to k/2, their given
+    /// unknowns constrained.
+    pub fn new(rings: usize, factors: Vec<Factor>) -> Self {
         let transform = Transform::new(rings);
-        let waves: Vec<Wave> = transform.harmonics().collect();
-        let factors = waves
-            .into_par_iter()
-            .map(|wave| block(wave.harmonic).factor().map(|factor| (wave, factor)))
-            .collect::<Result<_, _>>()?;
-        Ok(Self { transform, factors })
-    }
-
-    /// Negative eigenvalues, harmonic by harmonic of the sector; a harmonic that comes as cosine
-    /// and sine has each twice and is counted once.
-    pub fn negative_pivots(&self) -> Vec<usize> {
-        self.factors
-            .iter()
-            .map(|(_, factor)| factor.negative_pivots())
-            .collect()
-    }
-
-    /// The same with the signs of all pivots made positive, so that it can stand for the inverse of
-    /// a positive definite matrix.
-    pub fn made_positive(mut self) -> Self {
-        for (_, factor) in &mut self.factors {
-            factor.make_positive();
+        Self {
+            factors: transform.harmonics().zip(factors).collect(),
+            transform,
+            coupling: None,
         }
+    }
+
+    /// Corrects it on low harmonics (see [`Coupling`]).
+    pub fn coupled(mut self, coupling: Coupling) -> Self {
+        self.coupling = Some(coupling);
         self
     }
 
@@ -49,37 +34,62 @@ impl HarmonicSolver {
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         let mut coefficients = self.transform.forward(b);
         let lines = b.len() / self.transform.rings();
-        let mut rest = &mut coefficients[..];
+        for pair in self.pairs(&mut coefficients, lines) {
+            // A wave is (z cos, r cos, −θ sin), and a quarter on (z sin, r sin, θ cos).
+            for (c, s) in circumferential(pair) {
+                (*c, *s) = (-*s, *c);
+            }
+        }
+        let low = self.coupling.as_ref().map(|coupling| {
+            let waves = self.transform.rings() as f64;
+            (coupling, coupling.restricted(&coefficients, lines), waves)
+        });
         let mut work = vec![];
+        let mut rest = &mut coefficients[..];
         for (wave, factor) in &self.factors {
             let columns = if wave.sine.is_some() { 2 } else { 1 };
             let (own, others) = rest.split_at_mut(columns * lines);
             work.push((factor, own));
             rest = others;
         }
-        work.into_par_iter().for_each(|(factor, own)| {
-            if own.len() == lines {
-                factor.solve(own);
-            } else {
-                let (cosine, sine) = own.split_at_mut(lines);
-                // A wave is (z cos, r cos, −θ sin), and a quarter on (z sin, r sin, θ cos).
-                for (c, s) in circumferential(cosine, sine) {
-                    (*c, *s) = (-*s, *c);
-                }
-                factor.solve_pair([cosine, sine]);
-                for (c, s) in circumferential(cosine, sine) {
-                    (*c, *s) = (*s, -*c);
-                }
+        let (correction, ()) = rayon::join(
+            || low.map(|(coupling, b, waves)| (coupling, coupling.correction(b, waves))),
+            || {
+                work.into_par_iter().for_each(|(factor, own)| {
+                    if own.len() == lines {
+                        factor.solve(own);
+                    } else {
+                        let (cosine, sine) = own.split_at_mut(lines);
+                        factor.solve_pair([cosine, sine]);
+                    }
+                });
+            },
+        );
+        if let Some((coupling, correction)) = correction {
+            coupling.add(&correction, &mut coefficients, lines);
+        }
+        for pair in self.pairs(&mut coefficients, lines) {
+            for (c, s) in circumferential(pair) {
+                (*c, *s) = (*s, -*c);
             }
-        });
+        }
         self.transform.back(&coefficients)
+    }
+
+    /// The cosine and the sine of every harmonic that has both.
+    fn pairs<'a>(&self, coefficients: &'a mut [f64], lines: usize) -> Vec<[&'a mut [f64]; 2]> {
+        let alone = self.factors.iter().filter(|(wave, _)| wave.sine.is_none());
+        let last = usize::from(alone.count() > 1);
+        let pairs = self.transform.rings() - 1 - last;
+        let columns = coefficients[lines..].chunks_exact_mut(2 * lines);
+        columns
+            .take(pairs / 2)
+            .map(|pair| pair.split_at_mut(lines).into())
+            .collect()
     }
 }
 
 /// The circumferential unknowns of two columns.
-fn circumferential<'a>(
-    a: &'a mut [f64],
-    b: &'a mut [f64],
-) -> impl Iterator<Item = (&'a mut f64, &'a mut f64)> {
+fn circumferential([a, b]: [&mut [f64]; 2]) -> impl Iterator<Item = (&mut f64, &mut f64)> {
     a.iter_mut().zip(b).skip(2).step_by(3)
 }

@@ -22,10 +22,12 @@
 //! | t, t' | Σ N_b exp(i φ_b), and its slope | [`SlotValues::turned`] |
 
 mod circulant;
+mod coupling;
 mod harmonic_solver;
 mod transform;
 
 pub use circulant::Circulant;
+pub use coupling::Coupling;
 pub use harmonic_solver::HarmonicSolver;
 pub use transform::{Transform, Wave};
 

@@ -74,6 +74,26 @@ impl Basis {
             .collect()
     }
 
+    /// Control values of 1, x and x²: function by function. Splines of degree 1 have no x²; theirs
+    /// goes through it at the knots.
+    pub fn quadratics(&self) -> Vec<[f64; 3]> {
+        let p = self.degree;
+        let of = |a: usize| {
+            let knots = &self.knots[a + 1..=a + p];
+            let mean = knots.iter().sum::<f64>() / p as f64;
+            // The mean of the products of two of the knots: the blossom of x².
+            let squares: f64 = knots.iter().map(|t| t * t).sum();
+            let pairs = (p * p) as f64 * mean * mean - squares;
+            let square = if p == 1 {
+                squares
+            } else {
+                pairs / (p * (p - 1)) as f64
+            };
+            [1.0, mean, square]
+        };
+        (0..self.functions()).map(of).collect()
+    }
+
     /// Values and slopes at a point.
     pub fn evaluate(&self, x: f64) -> Values {
         self.evaluate_in(self.find(x), x)
@@ -131,6 +151,22 @@ mod tests {
     }
 
     const POINTS: [f64; 7] = [0.0, 0.12, 0.3, 0.52, 1.0, 2.99, 3.0];
+
+    #[test]
+    fn control_values_of_quadratics_are_exact() {
+        for p in 2..=5 {
+            let basis = Basis::open(p, &[0.3, 0.5, 0.6, 1.0]);
+            let control = basis.quadratics();
+            for x in [0.3, 0.41, 0.55, 0.9] {
+                let at = basis.evaluate(x);
+                for (power, exact) in [1.0, x, x * x].into_iter().enumerate() {
+                    let values = at.value.iter().zip(&control[at.element..]);
+                    let value: f64 = values.map(|(n, c)| n * c[power]).sum();
+                    assert!((value - exact).abs() < 1e-14, "{p} {x}: {value} {exact}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn functions_sum_to_one_and_slopes_to_zero() {

@@ -1,13 +1,18 @@
 //! The tangent of a tube of many rings: conjugate gradients around the harmonic solver.
 
-use crate::assembly::{Linearised, RingDrag, SplineTube};
-use crate::matrix::Singular;
-use crate::rings::HarmonicSolver;
+use crate::assembly::{Linearised, LowHarmonics, RingDrag, SplineTube};
+use crate::matrix::{BlockBanded, Factor, Singular};
+use crate::rings::{Coupling, HarmonicSolver};
 use crate::solve::{NegativeCurvature, Solver, Tangent};
+use crate::tube::Load;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Displacement from ring to ring, in D, up to which a state counts as the same at every ring.
 const SYMMETRIC: f64 = 1e-9;
+
+/// The same from which low harmonics are coupled.
+const COUPLED: f64 = 1e-3;
 
 /// Iterations after which a solve is cut off; what there is still leads down.
 const ITERATIONS: usize = 400;
@@ -25,6 +30,8 @@ struct Shared {
     at: Linearised,
     /// Whether the state is the same at every ring.
     symmetric: bool,
+    /// Low harmonics and the tangent on them, where the state couples them.
+    low: Option<(LowHarmonics, BlockBanded)>,
 }
 
 /// K + α C on the free unknowns.
@@ -38,16 +45,25 @@ pub struct HarmonicSystem {
 
 impl HarmonicTangent {
     /// At a state of a tube.
-    pub fn new(tube: Arc<SplineTube>, drag: Arc<RingDrag>, at: Linearised, u: &[f64]) -> Self {
+    pub fn new(tube: Arc<SplineTube>, drag: Arc<RingDrag>, load: &Load, u: &[f64]) -> Self {
+        let at = tube.linearised(load, u);
         let rings = u.chunks_exact(tube.sector.rings);
-        let differ = |u: &[f64]| u.iter().any(|x| (x - u[0]).abs() > SYMMETRIC);
-        let symmetric = !rings.into_iter().any(differ);
+        let difference = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs()));
+        let differs = rings.map(difference).fold(0.0, f64::max);
+        let symmetric = differs <= SYMMETRIC;
+        let highest = std::env::var("HIGHEST").map_or(6, |h| h.parse().unwrap());
+        let low = (differs > COUPLED && highest > 0).then(|| {
+            let low = LowHarmonics::new(&tube, highest);
+            let coupled = tube.coupled_tangent(&low, load, u);
+            (low, coupled)
+        });
         Self {
             shared: Arc::new(Shared {
                 tube,
                 drag,
                 at,
                 symmetric,
+                low,
             }),
         }
     }
@@ -61,25 +77,117 @@ impl Tangent for HarmonicTangent {
     }
 
     fn shifted(&self, alpha: f64) -> Result<HarmonicSystem, Singular> {
-        let Shared { tube, drag, at, .. } = &*self.shared;
-        let repeats = tube.sector.around / tube.sector.rings;
-        let solver = HarmonicSolver::new(tube.sector.rings, |n| {
-            let n = n * repeats;
-            let mut block = at.average.harmonic(n);
+        let Shared {
+            tube,
+            at,
+            symmetric,
+            low,
+            ..
+        } = &*self.shared;
+        let rings = tube.sector.rings;
+        let blocks: Vec<Block> = (0..=rings / 2)
+            .into_par_iter()
+            .map(|n| self.block(n, alpha))
+            .collect::<Result<_, _>>()?;
+        let negative_pivots = if *symmetric {
+            blocks[0].negative_pivots
+        } else {
+            0
+        };
+        let averaged: Vec<Factor> = match low {
+            Some((low, _)) => blocks[..=low.highest]
+                .par_iter()
+                .enumerate()
+                .map(|(n, block)| self.averaged(low, n, alpha + block.shift))
+                .collect::<Result<_, _>>()?,
+            None => vec![],
+        };
+        let factors = blocks.into_iter().map(|block| block.factor).collect();
+        let mut preconditioner = HarmonicSolver::new(rings, factors);
+        if let Some((low, coupled)) = low {
+            let mut coupled = coupled.clone();
             if alpha != 0.0 {
-                drag.add_harmonic(alpha, n, &mut block);
+                low.add_drag(tube, &self.shared.drag, alpha, &mut coupled);
             }
-            block.constrain(&tube.given_in_harmonic(n));
-            block
-        })?;
-        let negative = solver.negative_pivots();
+            coupled.constrain(&low.given(tube));
+            let mut coupled = coupled.factor()?;
+            coupled.make_positive();
+            preconditioner = preconditioner.coupled(Coupling {
+                highest: low.highest,
+                through: low.through.clone(),
+                coupled,
+                averaged,
+            });
+        }
+        let _ = at;
         Ok(HarmonicSystem {
             shared: self.shared.clone(),
             alpha,
-            // Only where the blocks are the tangent itself do they tell.
-            negative_pivots: if self.shared.symmetric { negative[0] } else { 0 },
-            preconditioner: solver.made_positive(),
+            negative_pivots,
+            preconditioner,
         })
+    }
+}
+
+/// The factored block of a harmonic, made positive definite by more drag if need be.
+struct Block {
+    factor: Factor,
+    /// Drag that was added.
+    shift: f64,
+    /// Without it.
+    negative_pivots: usize,
+}
+
+/// The first drag that is tried to make a block positive definite, and what it grows by.
+const SHIFT: (f64, f64) = (1e-3, 4.0);
+
+impl HarmonicTangent {
+    /// K_n + α C_n of the average, of harmonic n of the sector; every unknown is free.
+    fn matrix(&self, n: usize, alpha: f64) -> BlockBanded {
+        let Shared { tube, drag, at, .. } = &*self.shared;
+        let n = n * (tube.sector.around / tube.sector.rings);
+        let mut block = at.average.harmonic(n);
+        if alpha != 0.0 {
+            drag.add_harmonic(alpha, n, &mut block);
+        }
+        block
+    }
+
+    fn block(&self, n: usize, alpha: f64) -> Result<Block, Singular> {
+        let tube = &self.shared.tube;
+        let given = tube.given_in_harmonic(n * (tube.sector.around / tube.sector.rings));
+        let factored = |alpha: f64| {
+            let mut block = self.matrix(n, alpha);
+            block.constrain(&given);
+            block.factor()
+        };
+        let first = factored(alpha);
+        let negative_pivots = first.as_ref().map_or(1, Factor::negative_pivots);
+        let mut block = (first, 0.0);
+        while block.0.as_ref().map_or(1, Factor::negative_pivots) > 0 && block.1 < 1e6 {
+            let shift = (block.1 * SHIFT.1).max(SHIFT.0);
+            block = (factored(alpha + shift), shift);
+        }
+        Ok(Block {
+            factor: block.0?,
+            shift: block.1,
+            negative_pivots,
+        })
+    }
+
+    /// The same on the functions through the wall that low harmonics have.
+    fn averaged(&self, low: &LowHarmonics, n: usize, alpha: f64) -> Result<Factor, Singular> {
+        let tube = &self.shared.tube;
+        let block = self.matrix(n, alpha);
+        let mut matrix = BlockBanded::zeros(block.blocks(), 3 * low.functions(), block.band());
+        let place = |(c, i): (usize, usize)| 3 * c + i;
+        low.project(
+            &block,
+            |row, column| (place(row), place(column)),
+            &mut matrix,
+        );
+        matrix.constrain(&low.given_in_harmonic(tube, n));
+        matrix.factor()
     }
 }
 

@@ -104,9 +104,8 @@ impl Equilibrium for TubeProblem {
                 TubeTangent::Direct(Direct::new(stiffness, drag.clone(), self.given.clone()))
             }
             Drag::Rings(drag) => {
-                let at = self.tube.linearised(load, u);
                 let (tube, drag) = (self.tube.clone(), drag.clone());
-                TubeTangent::Harmonic(HarmonicTangent::new(tube, drag, at, u))
+                TubeTangent::Harmonic(HarmonicTangent::new(tube, drag, load, u))
             }
         }
     }

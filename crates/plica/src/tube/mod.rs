@@ -87,6 +87,16 @@ impl Tube {
         })
     }
 
+    /// Whether a muscle has an imperfection, so that it may be stronger at one angle than at
+    /// another.
+    pub fn muscles_vary_around(&self) -> bool {
+        let mut parts = self
+            .imperfections
+            .iter()
+            .map(|imperfection| imperfection.of);
+        parts.any(|part| matches!(part, Part::Muscle(_)))
+    }
+
     /// How strong muscle `m` is at z and at the angle `phi`, in radians: 1 + Σ a f(φ, z) over its
     /// imperfections, whose shapes span its zone. It does not depend on the load.
     pub fn strength(&self, m: usize, z: f64, phi: f64) -> f64 {

@@ -54,8 +54,7 @@ fn keep<S: Simd, L: Law, const N: usize>(
                     let mask = input.rings.mask[v].load(simd);
                     for qs in 0..N {
                         let point = &input.around[qs];
-                        let (inverse_along, inverse_around) =
-                            input.stretch::<S, N>(simd, qz, qs, v);
+                        let (inverse_along, inverse_around) = input.stretch(simd, qz, qs, v);
                         let columns = Columns::new(point, radius, inverse_along, inverse_around);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let Fe = columns.elastic(point, radius, g);
@@ -141,8 +140,7 @@ fn product<S: Simd, L: Law, const N: usize>(
                     let mut pulled = [[[nil; 3]; 3]; N];
                     for qs in 0..N {
                         let point = &input.around[qs];
-                        let (inverse_along, inverse_around) =
-                            input.stretch::<S, N>(simd, qz, qs, v);
+                        let (inverse_along, inverse_around) = input.stretch(simd, qz, qs, v);
                         let columns = Columns::new(point, radius, inverse_along, inverse_around);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let mut state: material::Kept<f64x8<S>> = [nil; 10];

@@ -16,12 +16,14 @@
 //! | W | R and a vector more: rings once around and on |
 
 mod average;
+mod coupling;
 mod forces;
 mod linear;
 #[cfg(test)]
 mod tests;
 
 pub use average::{AVERAGED, Averaged, slab_offsets};
+pub use coupling::pencil_moduli;
 pub use forces::pencil_forces;
 pub use linear::{Kept, kept_len, pencil_keep, pencil_product};
 
@@ -71,17 +73,11 @@ impl PencilInput<'_> {
 
     /// 1/θζ and 1/θη at a point along, a point around and a vector of elements.
     #[inline(always)]
-    fn stretch<S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        qz: usize,
-        qs: usize,
-        v: usize,
-    ) -> (f64x8<S>, f64x8<S>) {
-        let at = if self.inverse_stretch.len() == N {
+    fn stretch<S: Simd>(&self, simd: S, qz: usize, qs: usize, v: usize) -> (f64x8<S>, f64x8<S>) {
+        let at = if self.inverse_stretch.len() == self.slab.z.len() {
             qz
         } else {
-            (qz * N + qs) * self.rings.vectors() + v
+            (qz * self.around.len() + qs) * self.rings.vectors() + v
         };
         let (along, around) = &self.inverse_stretch[at];
         (along.load(simd), around.load(simd))
