@@ -6,7 +6,7 @@ use plica::case::advice;
 use plica::solve::{Integrator, Scheme};
 use plica::spline::Circle;
 use plica::study::{Plan, fits, forecast};
-use plica::tube::Symmetry;
+use plica::tube::{End, Part, Symmetry, Tube};
 use std::path::Path;
 
 /// Says that a case is sound, and what it takes.
@@ -98,12 +98,30 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
             ),
         ),
     ];
+    if !tube.imperfections.is_empty() {
+        let parts: Vec<String> = tube
+            .imperfections
+            .iter()
+            .map(|i| part(tube, i.of))
+            .collect();
+        rows.insert(2, ("imperfect", parts.join(", ")));
+    }
     if let Some(units) = &plan.units {
         let (d, e) = (units.diameter, units.youngs_modulus);
         let units = format!("D = {d} {}, E = {e} {}", units.length, units.stress);
         rows.insert(1, ("units", units));
     }
     rows
+}
+
+/// What is imperfect.
+fn part(tube: &Tube, of: Part) -> String {
+    match of {
+        Part::End(End::Colon, _) => "colon end".into(),
+        Part::End(End::Ileum, _) => "ileum end".into(),
+        Part::Geometry => "geometry".into(),
+        Part::Muscle(m) => tube.muscles[m].name.clone(),
+    }
 }
 
 /// 439200 as 439,200.
