@@ -12,7 +12,7 @@ use std::sync::Arc;
 const SYMMETRIC: f64 = 1e-9;
 
 /// The same from which low harmonics are coupled.
-const COUPLED: f64 = 1e-3;
+const COUPLED: f64 = 1e-2;
 
 /// Iterations after which a solve is cut off; what there is still leads down.
 const ITERATIONS: usize = 400;
