@@ -20,6 +20,9 @@ pub enum Command {
     /// Run a case and write its states, curves and pictures to a directory
     #[command(after_long_help = RUN_EPILOGUE)]
     Run(RunArguments),
+    /// Tell which modes a run's path becomes unstable to, where, and in what shape
+    #[command(after_long_help = STABILITY_EPILOGUE)]
+    Stability(StabilityArguments),
     /// Say whether a case is sound, and what running it would take
     Check {
         /// The case file
@@ -54,12 +57,38 @@ pub struct RunArguments {
     pub threads: Option<u16>,
 }
 
+/// What `plica stability` takes.
+#[derive(Args, Debug)]
+pub struct StabilityArguments {
+    /// The directory of an axisymmetric run
+    #[arg(value_name = "RUN_DIR")]
+    pub run: PathBuf,
+    /// Circumferential harmonics to test: 0 to N [default: as in the case, 4 there]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=100))]
+    pub harmonics: Option<u8>,
+    /// Width to which a critical value is bracketed, in what is driven (Lmax/L, Dmin/D, or D)
+    #[arg(long, value_name = "X", default_value = "1e-4", value_parser = tolerance)]
+    pub tolerance: f64,
+    /// Threads to use [default: all cores]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// A tolerance that can be reached.
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if (1e-9..=1.0).contains(&x) => Ok(x),
+        _ => Err("must be a number from 1e-9 to 1".into()),
+    }
+}
+
 const EPILOGUE: &str = "\
 Examples:
   plica new tube.toml            write a case to start from
   plica check tube.toml          is it sound, how large, how long?
   plica run tube.toml            run it; results go to runs/tube
   plica run tube.toml -o again -t 4
+  plica stability runs/tube      where does its path become unstable, and how?
 
 A case file is described, key by key, in docs/case-file.md.
 
@@ -81,3 +110,17 @@ What a run leaves behind:
 
 Ctrl-C or SIGTERM ends a run after the solve at hand, with everything written. A second Ctrl-C
 ends it at once.";
+
+const STABILITY_EPILOGUE: &str = "\
+Every saved state of the run is tested against circumferential harmonics: 0 keeps the tube round,
+1 tilts it sideways, 2 turns it oval, n folds it into n lobes. Where a harmonic is lost or regained
+between two states, the path is followed again between them, halving the interval.
+
+What it leaves in the directory of the run:
+  stability.csv    critical values: stage, harmonic, lost or regained, where, how
+  eigenvalues.csv  lowest eigenvalue of every harmonic at every state
+  modes/           the shapes in which the tube leaves its path, with the state they belong to
+  stability.png    lowest eigenvalues along the path, critical values marked
+  mode.png         the first mode to go
+
+Ctrl-C or SIGTERM ends it after the solve at hand, with nothing written.";

@@ -26,8 +26,8 @@ pub enum Failure {
     Files(String),
     /// The library could not go on.
     Study(StudyError),
-    /// Someone pressed Ctrl-C.
-    Interrupted,
+    /// Someone pressed Ctrl-C; what is left of the work.
+    Interrupted(&'static str),
 }
 
 impl Failure {
@@ -51,8 +51,8 @@ impl Failure {
                 console::tell(&format!("error: {error}"));
                 if error.is_file_trouble() { 3 } else { 1 }
             }
-            Self::Interrupted => {
-                console::tell("interrupted; everything up to the last accepted state is written");
+            Self::Interrupted(what) => {
+                console::tell(what);
                 130
             }
         };

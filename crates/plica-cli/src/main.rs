@@ -11,6 +11,9 @@ mod message;
 mod new;
 mod progress;
 mod run;
+mod stability;
+mod threads;
+mod ticker;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -27,6 +30,7 @@ fn main() -> ExitCode {
     };
     let done = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Stability(arguments) => stability::stability(&arguments),
         Command::Check { case } => check::check(&case),
         Command::New { file } => new::new(&file),
         Command::Completions { shell } => new::completions(shell),

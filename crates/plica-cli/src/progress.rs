@@ -1,24 +1,14 @@
-//! A run as it goes on: a line per accepted state, and a bar under them on a terminal.
+//! A run as it goes on: a line per accepted state.
 
-use crate::console;
 use crate::interrupt::Interrupt;
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::ticker::Ticker;
 use plica::study::{Observer, Plan, Row};
-use std::time::{Duration, Instant};
-
-/// Ticks of a full bar.
-const FULL: u64 = 1000;
-/// Without a bar, a sign of life is given this often.
-const QUIET: Duration = Duration::from_secs(30);
 
 /// Shows a run, and stops it when someone asks.
 pub struct Progress {
-    bar: Option<ProgressBar>,
-    interrupt: Interrupt,
-    stopping: bool,
+    ticker: Ticker,
     stage_width: usize,
     begun: bool,
-    last_sign: Instant,
 }
 
 impl Progress {
@@ -26,28 +16,15 @@ impl Progress {
     pub fn new(plan: &Plan, interrupt: Interrupt) -> Self {
         let names = plan.stages.iter().map(|stage| stage.name.chars().count());
         Self {
-            bar: console::is_watched().then(bar),
-            interrupt,
-            stopping: false,
+            ticker: Ticker::new(interrupt),
             stage_width: names.max().unwrap_or(0).clamp(5, 24),
             begun: false,
-            last_sign: Instant::now(),
         }
     }
 
     /// After the last state: the bar goes, the lines stay.
     pub fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
-
-    fn line(&mut self, line: &str) {
-        match &self.bar {
-            Some(bar) => bar.println(line),
-            None => console::tell(line),
-        }
-        self.last_sign = Instant::now();
+        self.ticker.finish();
     }
 }
 
@@ -56,7 +33,7 @@ impl Observer for Progress {
         let width = self.stage_width;
         if !self.begun {
             self.begun = true;
-            self.line(&format!(
+            self.ticker.line(&format!(
                 "{:>5}  {:<width$}  {:>7} {:>7} {:>11}  {:<11} {:>6}  {:<11} {:>5} {:>8}",
                 "state",
                 "stage",
@@ -70,7 +47,7 @@ impl Observer for Progress {
                 "seconds"
             ));
         }
-        self.line(&format!(
+        self.ticker.line(&format!(
             "{:>5}  {:<width$}  {:>7.4} {:>7.4} {:>11.4e}  {:<11} {:>5.1}°  {:<11} {:>5} {:>8.1}",
             row.step,
             row.stage,
@@ -86,31 +63,10 @@ impl Observer for Progress {
     }
 
     fn working(&mut self, what: &str, fraction: f64) {
-        match &self.bar {
-            Some(bar) => {
-                bar.set_position((fraction.clamp(0.0, 1.0) * FULL as f64) as u64);
-                bar.set_message(what.to_owned());
-            }
-            None if self.last_sign.elapsed() > QUIET => {
-                self.line(&format!("{:>4.0} %  {what}", 100.0 * fraction));
-            }
-            None => {}
-        }
+        self.ticker.working(what, fraction);
     }
 
     fn stop(&mut self) -> bool {
-        if self.interrupt.asked() && !self.stopping {
-            self.stopping = true;
-            self.line("stopping; once more ends it at once");
-        }
-        self.stopping
+        self.ticker.stop()
     }
-}
-
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::new(FULL);
-    let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {elapsed}  {wide_msg}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.enable_steady_tick(Duration::from_millis(500));
-    bar
 }

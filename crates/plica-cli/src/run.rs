@@ -4,7 +4,7 @@ use crate::args::RunArguments;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
-use crate::{case_file, console};
+use crate::{case_file, console, threads};
 use plica::case::advice;
 use plica::report::pictures;
 use plica::study::{self, Plan, RunDirectory, Summary};
@@ -36,12 +36,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         Some(out) => out.clone(),
         None => PathBuf::from("runs").join(case_file::stem(&arguments.case)),
     };
-    if let Some(threads) = arguments.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.into())
-            .build_global()
-            .map_err(|error| Failure::Usage(format!("{threads} threads: {error}")))?;
-    }
+    threads::limit(arguments.threads)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     study::fits(&plan).map_err(Failure::Study)?;
@@ -64,7 +59,9 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if summary.finished() {
         Ok(())
     } else if interrupt.asked() {
-        Err(Failure::Interrupted)
+        Err(Failure::Interrupted(
+            "interrupted; everything up to the last accepted state is written",
+        ))
     } else {
         Err(Failure::Unfinished)
     }

@@ -45,6 +45,7 @@ fn help_is_worth_reading() {
     for arguments in [
         &["--help"][..],
         &["run", "--help"],
+        &["stability", "--help"],
         &["check", "--help"],
         &["new", "--help"],
     ] {

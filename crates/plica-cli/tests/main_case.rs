@@ -81,6 +81,7 @@ fn the_small_case_invaginates_as_the_paper_says() {
     it_is_in_equilibrium_and_tilts_before_it_snaps(&history_of_two);
     it_takes_the_same_way_as_before(&history_of_two);
     its_directory_is_complete(&run, history_of_two.rows.len());
+    its_path_tilts_sideways_and_back(&run);
     let history_of_one = history("cases/small.toml", "1", &alone);
     they_are_equal_but_for_their_times(&history_of_two, &history_of_one);
 }
@@ -186,6 +187,28 @@ fn its_directory_is_complete(run: &Path, states: usize) {
     for picture in ["energy.png", "walls.png", "tube.png"] {
         let bytes = std::fs::read(run.join(picture)).unwrap();
         assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"), "{picture}");
+    }
+}
+
+/// As on the paper's mesh: lost between 1.17 and 1.18, regained near 1.20.
+fn its_path_tilts_sideways_and_back(run: &Path) {
+    let said = plica(
+        &root(),
+        &["stability", run.to_str().unwrap(), "--tolerance", "1e-3"],
+    );
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    let table = std::fs::read_to_string(run.join("stability.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    assert_eq!(rows.len(), 1 + 2, "{table}");
+    for (row, change, between) in [(1, "lost", 1.17..1.18), (2, "regained", 1.19..1.21)] {
+        assert_eq!([rows[row][2], rows[row][4]], ["1", change], "{table}");
+        assert!(
+            between.contains(&rows[row][6].parse::<f64>().unwrap()),
+            "{table}"
+        );
     }
 }
 

@@ -14,6 +14,7 @@
 //! - [`solve`]: Newton, relaxation, pseudo-time, the way through a snap.
 //! - [`measure`]: walls, angles, overhang, shape of a deformed tube.
 //! - [`study`]: stages, accepted states, the run directory.
+//! - [`stability`]: which harmonics a run loses, where, and in what shape.
 //! - [`case`]: the case file as written, and what it means.
 //! - [`draw`]: charts and shaded cut-aways from plain data.
 //! - [`report`]: the pictures of a run.
@@ -29,6 +30,7 @@ pub mod report;
 pub mod rings;
 pub mod solve;
 pub mod spline;
+pub mod stability;
 pub mod study;
 pub mod tensor;
 pub mod tube;

@@ -75,6 +75,8 @@ pub struct Chart {
     pub rules: Vec<Rule>,
     /// One unit of x as long as one unit of y.
     pub equal_aspect: bool,
+    /// Height of the frame over its width, where the two axes need no equal units.
+    pub proportion: f64,
     /// Ends of the horizontal axis; chosen from the data if absent.
     pub x_range: Option<(f64, f64)>,
     /// Ends of the vertical axis; chosen from the data if absent.
@@ -93,6 +95,7 @@ impl Default for Chart {
             markers: Vec::new(),
             rules: Vec::new(),
             equal_aspect: false,
+            proportion: 0.66,
             x_range: None,
             y_range: None,
             width_pt: 300.0,

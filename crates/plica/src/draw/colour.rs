@@ -28,7 +28,8 @@ const LINES: [u32; 7] = [
 /// What is drawn where a field is not a number.
 pub const MISSING: [u8; 3] = [150, 150, 150];
 
-/// A colour map that is even to the eye and rises or falls in lightness all the way.
+/// A colour map that is even to the eye. All but the one for two signs rise or fall in lightness all
+/// the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Map {
     /// Pale cream through red to purple: magma backwards, without its black end. Shading shows best on pale surfaces,
@@ -37,6 +38,8 @@ pub enum Map {
     Pale,
     /// Dark violet through green to yellow: viridis.
     Viridis,
+    /// Blue through near white to vermilion, for fields of two signs.
+    Signed,
 }
 
 impl Map {
@@ -50,6 +53,10 @@ impl Map {
         let (table, place) = match self {
             Map::Pale => (&MAGMA, 0.02 + 0.76 * t),
             Map::Viridis => (&VIRIDIS, t),
+            Map::Signed => {
+                let end = rgb(if t < 0.5 { LINES[1] } else { LINES[2] });
+                return mix([244; 3], end, (2.0 * t - 1.0).abs());
+            }
         };
         let place = place * (table.len() - 1) as f64;
         let below = (place as usize).min(table.len() - 2);

@@ -73,7 +73,7 @@ impl Chart {
         let guess = if self.equal_aspect {
             aspect * (self.width_pt - 60.0)
         } else {
-            0.62 * self.width_pt
+            0.94 * self.proportion * self.width_pt
         };
         let y_ticks = ticks(y.0, y.1, ((guess / 24.0) as usize).clamp(2, 7));
         let widest = y_ticks
@@ -88,7 +88,7 @@ impl Chart {
         let mut height = if self.equal_aspect {
             aspect * width
         } else {
-            0.66 * width
+            self.proportion * width
         };
         let tallest = 1.2 * self.width_pt;
         if height > tallest {

@@ -34,6 +34,22 @@ impl Image {
         })
     }
 
+    /// Pictures one below the other, flush left, on white.
+    ///
+    /// # Errors
+    /// [`DrawError::Size`] if they are too tall together, or none.
+    pub fn stacked(images: &[Self]) -> Result<Self, DrawError> {
+        let width = images.iter().map(|image| image.width).max().unwrap_or(0);
+        let height: usize = images.iter().map(|image| image.height).sum();
+        let mut page = Self::white(width as f64, height as f64)?;
+        let mut below = 0;
+        for image in images {
+            page.stamp(image, 0, below);
+            below += image.height as i64;
+        }
+        Ok(page)
+    }
+
     /// Multiplies `stamp` into the picture with its top left corner at (x, y): white leaves the ground as it is.
     pub fn stamp(&mut self, stamp: &Image, x: i64, y: i64) {
         for (row, line) in stamp.pixels.chunks_exact(stamp.width.max(1)).enumerate() {
@@ -167,6 +183,22 @@ mod tests {
         let back = Image::from_png(&image.to_png(100.0).unwrap()).unwrap();
         assert_eq!(back, image);
         assert_eq!(image.turned_left().pixels[0], [10, 20, 30]);
+    }
+
+    #[test]
+    fn pictures_are_stacked_in_their_order() {
+        let dark = |width| {
+            let mut image = Image::white(width, 20.0).unwrap();
+            image.pixels[0] = [1, 2, 3];
+            image
+        };
+        let page = Image::stacked(&[dark(30.0), dark(20.0)]).unwrap();
+        assert_eq!((page.width, page.height), (30, 40));
+        assert_eq!(
+            (page.pixels[0], page.pixels[30 * 20]),
+            ([1, 2, 3], [1, 2, 3])
+        );
+        assert!(matches!(Image::stacked(&[]), Err(DrawError::Size { .. })));
     }
 
     #[test]

@@ -91,9 +91,19 @@ impl Chart {
         for (rule, row) in names {
             let (across, _) = frame.place((rule.at, frame.y.0));
             let foot = frame.top - ROW * *row as f64;
-            canvas.line((across, frame.bottom()), (across, foot), pen);
-            let half = canvas.text_width(&rule.label, TEXT) / 2.0;
-            let middle = across.min(canvas.width - half - 2.0).max(half + 2.0);
+            canvas.line((across, frame.bottom()), (across, frame.top), pen);
+            // On to its name, but not through those of others.
+            for below in 0..*row {
+                let through = |(other, at): &(&Rule, usize)| {
+                    let (middle, half) = span(canvas, &other.label, frame.place((other.at, 0.0)).0);
+                    *at == below && (across - middle).abs() < half + 2.0
+                };
+                if !names.iter().any(through) {
+                    let [start, end] = [below, below + 1].map(|r| frame.top - ROW * r as f64);
+                    canvas.line((across, start), (across, end), pen);
+                }
+            }
+            let (middle, _) = span(canvas, &rule.label, across);
             canvas.text(
                 (middle, foot - 3.0),
                 &rule.label,
@@ -171,4 +181,10 @@ impl Chart {
         }
         inked
     }
+}
+
+/// Where the name of a rule is centred, so that it stays on the page, and half its width.
+fn span(canvas: &Canvas, label: &str, across: f64) -> (f64, f64) {
+    let half = canvas.text_width(label, TEXT) / 2.0;
+    (across.min(canvas.width - half - 2.0).max(half + 2.0), half)
 }

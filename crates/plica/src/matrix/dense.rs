@@ -1,10 +1,25 @@
-//! The dense kernels under the block-banded factorisation, from faer; no other file names it.
+//! The dense kernels under the block-banded factorisation and its eigenpairs, from faer; no other file names it.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor;
 use faer::linalg::{matmul, triangular_solve};
 use faer::reborrow::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+
+/// Eigenvalues, rising, and eigenvectors of a small symmetric matrix; none if it is not finite.
+pub fn symmetric_eigen(
+    size: usize,
+    entry: impl Fn(usize, usize) -> f64,
+) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+    let matrix = Mat::from_fn(size, size, entry);
+    let eigen = matrix.self_adjoint_eigen(Side::Lower).ok()?;
+    let (values, vectors) = (eigen.S(), eigen.U());
+    let column = |j: usize| (0..size).map(|i| vectors[(i, j)]).collect();
+    Some((
+        (0..size).map(|i| values[i]).collect(),
+        (0..size).map(column).collect(),
+    ))
+}
 
 /// Kernels with their working memory.
 pub struct Kernels {

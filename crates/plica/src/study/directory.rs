@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
 /// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
 /// | `*.png` | pictures |
+/// | `stability.csv`, `eigenvalues.csv`, `modes/` | what a test of stability found |
 #[derive(Debug)]
 pub struct RunDirectory {
     path: PathBuf,
@@ -28,6 +29,9 @@ pub const PROGRAM: &str = "plica";
 
 /// Name of the file by which a directory is known to be a run.
 const MANIFEST: &str = "manifest.json";
+
+/// Name of the case as it was run.
+const CASE: &str = "case.toml";
 
 /// Ending of the files of saved states.
 const STATE_ENDING: &str = "safetensors";
@@ -62,10 +66,77 @@ impl RunDirectory {
             case_hash: blake3::hash(case_text.as_bytes()).to_string(),
             history: None,
         };
-        directory.write("case.toml", case_text.as_bytes())?;
+        directory.write(CASE, case_text.as_bytes())?;
         let begun = format!("{{ \"program\": \"{PROGRAM}\" }}\n");
         directory.write(MANIFEST, begun.as_bytes())?;
         Ok(directory)
+    }
+
+    /// Opens the directory of a former run, finished or not.
+    ///
+    /// # Errors
+    /// [`StudyError::File`] if it is not there, [`StudyError::NoRun`] if it holds none, and
+    /// [`StudyError::CaseChanged`] if its case is not the one that was run.
+    pub fn open(path: &Path) -> Result<Self, StudyError> {
+        let read = |name: &str| {
+            fs::read(path.join(name)).map_err(|source| StudyError::File {
+                path: path.join(name),
+                source,
+            })
+        };
+        fs::read_dir(path).map_err(|source| StudyError::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        if !is_a_run(path) {
+            return Err(StudyError::NoRun(path.to_owned()));
+        }
+        let manifest: serde_json::Value =
+            serde_json::from_slice(&read(MANIFEST)?).unwrap_or_default();
+        let case_hash = blake3::hash(&read(CASE)?).to_string();
+        if manifest["case_hash"]
+            .as_str()
+            .is_some_and(|hash| hash != case_hash)
+        {
+            return Err(StudyError::CaseChanged(path.join(CASE)));
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            case_hash,
+            history: None,
+        })
+    }
+
+    /// How the run ended, as its manifest says: `complete`, `stopped`, `lost`, or `running` if it
+    /// has not, or was killed.
+    pub fn verdict(&self) -> String {
+        let manifest = fs::read(self.path.join(MANIFEST)).unwrap_or_default();
+        let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
+        manifest["verdict"].as_str().unwrap_or("running").to_owned()
+    }
+
+    /// The files of the saved states, in the order of their numbers.
+    ///
+    /// # Errors
+    /// [`StudyError::File`] if they cannot be listed; none are no error.
+    pub fn states(&self) -> Result<Vec<PathBuf>, StudyError> {
+        let folder = self.path.join("states");
+        let entries = match fs::read_dir(&folder) {
+            Ok(entries) => entries,
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(vec![]),
+            Err(source) => {
+                return Err(StudyError::File {
+                    path: folder,
+                    source,
+                });
+            }
+        };
+        let files = entries.flatten().map(|entry| entry.path());
+        let mut numbered: Vec<(usize, PathBuf)> = files
+            .filter_map(|file| Some((number_of_state(&file, STATE_ENDING)?, file)))
+            .collect();
+        numbered.sort();
+        Ok(numbered.into_iter().map(|(_, file)| file).collect())
     }
 
     /// Where it is.
@@ -132,6 +203,38 @@ impl RunDirectory {
         self.write(&name, &bytes)
     }
 
+    /// Saves a mode, under a name without an ending; gives its relative path.
+    pub fn write_mode(&self, name: &str, mode: &SavedState) -> Result<String, StudyError> {
+        let name = format!("modes/{name}.{STATE_ENDING}");
+        let bytes = mode.to_bytes().map_err(|source| StudyError::State {
+            path: self.path.join(&name),
+            source,
+        })?;
+        self.write(&name, &bytes)?;
+        Ok(name)
+    }
+
+    /// Writes a table of texts under a relative path, its first row the names of the columns.
+    pub fn write_records(&self, name: &str, rows: Vec<Vec<String>>) -> Result<(), StudyError> {
+        let trouble = |source| StudyError::File {
+            path: self.path.join(name),
+            source,
+        };
+        let mut table = csv::Writer::from_writer(vec![]);
+        for row in rows {
+            table
+                .write_record(row)
+                .map_err(|e| trouble(std::io::Error::other(e)))?;
+        }
+        let bytes = table.into_inner().map_err(|e| trouble(e.into_error()))?;
+        self.write(name, &bytes)
+    }
+
+    /// Takes out what a test of stability wrote before.
+    pub fn clear_stability(&self) -> Result<(), StudyError> {
+        remove(stability_files(&self.path))
+    }
+
     /// Writes a file under a relative path: aside first, then renamed, so that a reader never
     /// sees half of it.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
@@ -162,28 +265,53 @@ fn is_a_run(path: &Path) -> bool {
 /// Takes what a former run wrote out of its directory, known by name; every other file stays. The
 /// manifest goes last, so that what is left of a broken attempt is still known as a run.
 fn clear(path: &Path) -> Result<(), StudyError> {
-    let mut old: Vec<PathBuf> = [
-        "case.toml",
-        "history.csv",
-        "energy.png",
-        "walls.png",
-        "tube.png",
-    ]
-    .iter()
-    .map(|name| path.join(name))
-    .collect();
+    let mut old = stability_files(path);
+    let pictures = ["energy.png", "walls.png", "tube.png"];
+    old.extend(
+        [CASE, "history.csv"]
+            .iter()
+            .chain(&pictures)
+            .map(|name| path.join(name)),
+    );
     for (folder, ending) in [("profiles", "csv"), ("states", STATE_ENDING)] {
-        if let Ok(entries) = fs::read_dir(path.join(folder)) {
-            let files = entries.flatten().map(|entry| entry.path());
-            old.extend(files.filter(|file| {
-                number_of_state(file, ending)
-                    .or(number_of_state(file, "part"))
-                    .is_some()
-            }));
-        }
+        let mine = |file: &Path, ending| number_of_state(file, ending).is_some();
+        old.extend(files(&path.join(folder)).filter(|f| mine(f, ending) || mine(f, "part")));
     }
     old.push(path.join(MANIFEST));
-    for file in old {
+    remove(old)
+}
+
+/// What a test of stability writes.
+fn stability_files(path: &Path) -> Vec<PathBuf> {
+    let names = [
+        "stability.csv",
+        "eigenvalues.csv",
+        "stability.png",
+        "mode.png",
+    ];
+    let modes = files(&path.join("modes")).filter(|file| {
+        let name = file
+            .file_name()
+            .and_then(|name| name.to_str())
+            .unwrap_or_default();
+        name.starts_with("mode-") && name.ends_with(STATE_ENDING)
+    });
+    names
+        .iter()
+        .map(|name| path.join(name))
+        .chain(modes)
+        .collect()
+}
+
+/// The files in a folder, if it is there.
+fn files(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+    let entries = fs::read_dir(folder).into_iter().flatten();
+    entries.flatten().map(|entry| entry.path())
+}
+
+/// Removes files that may be there.
+fn remove(files: Vec<PathBuf>) -> Result<(), StudyError> {
+    for file in files {
         match fs::remove_file(&file) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
                 return Err(StudyError::File {

@@ -33,6 +33,16 @@ pub enum StudyError {
         .0.display()
     )]
     NotARun(PathBuf),
+    /// The directory holds no run.
+    #[error("{} holds no run of plica (no manifest.json that says so)", .0.display())]
+    NoRun(PathBuf),
+    /// The case in a run's directory is not the one that was run.
+    #[error(
+        "{} was changed after the run, so that the states beside it are not its own; run the case \
+         again",
+        .0.display()
+    )]
+    CaseChanged(PathBuf),
     /// The case needs more memory than the machine has.
     #[error(
         "the case needs about {needed_gib:.1} GiB of memory and the machine has {available_gib:.1} \

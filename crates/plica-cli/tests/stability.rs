@@ -1,0 +1,202 @@
+//! `plica stability`: what it finds, and what it says where it finds nothing.
+
+mod common;
+
+use common::{compare, plica, text};
+use plica::study::SavedState;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// An empty directory of one test.
+fn scratch(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// The relaxing tube on a coarse mesh.
+const RELAXING: &str = "\
+[mesh]
+control_points = { axial = 60, around = 48, thickness = 4 }
+
+[muscles.long]
+direction = \"longitudinal\"
+zone = [0.5, 1.0]
+
+[[stages]]
+name = \"relax\"
+steps = 6
+drive.long.length_ratio = 1.07
+
+[output]
+pictures = false
+";
+
+/// Runs a case and tests its stability: exit code, standard output, standard error.
+fn tested(directory: &Path, case: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
+    fs::write(directory.join("case.toml"), case).unwrap();
+    let run = ["run", "case.toml", "--out", "run", "--overwrite"];
+    let said = plica(directory, &run);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    stability(directory, arguments)
+}
+
+fn stability(directory: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let said = plica(directory, &[&["stability", "run"], arguments].concat());
+    (said.status.code(), text(&said.stdout), text(&said.stderr))
+}
+
+#[test]
+fn a_relaxing_tube_turns_oval_first() {
+    let directory = scratch("stability");
+    let (code, told, errors) = tested(&directory, RELAXING, &["--threads", "2"]);
+    assert_eq!(code, Some(0), "{errors}");
+    let lost = told.lines().find(|line| line.contains("lost")).unwrap();
+    let cells: Vec<&str> = lost.split_whitespace().collect();
+    assert_eq!(
+        cells[..8],
+        ["relax", "2", "turns", "oval", "lost", "0", ">", "1"],
+        "{told}"
+    );
+    let [critical, from, to] = [9, 10, 11].map(|i| cells[i].parse::<f64>().unwrap());
+    // 1.0681 on finer meshes.
+    assert!((critical - 1.0681).abs() < 2e-3, "{told}");
+    assert!(
+        from <= critical && critical <= to && to - from <= 1.01e-4,
+        "{told}"
+    );
+    assert!(
+        told.contains("first to go            harmonic 2 (turns oval), at Lmax/L"),
+        "{told}"
+    );
+    // A line a state, under three of heading.
+    assert_eq!(errors.lines().count(), 3 + 7, "{errors}");
+
+    let run = directory.join("run");
+    let mode = SavedState::read(&run.join("modes/mode-01-harmonic-2.safetensors")).unwrap();
+    let (shape, harmonic) = (&mode.arrays["mode"], &mode.arrays["harmonic"]);
+    assert_eq!(
+        (shape.shape.as_slice(), harmonic.values.as_slice()),
+        (&[60, 4, 3][..], &[2.0][..])
+    );
+    assert!((-1e-2..0.0).contains(&mode.arrays["eigenvalue"].values[0]));
+    let largest = shape.values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+    assert_eq!(largest, 1.0);
+    assert!((mode.load.muscles[0] - to).abs() < 1e-5, "{told}");
+    for picture in ["stability.png", "mode.png"] {
+        let bytes = fs::read(run.join(picture)).unwrap();
+        assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"), "{picture}");
+    }
+    let table = |name: &str| fs::read_to_string(run.join(name)).unwrap();
+    let (critical_values, eigenvalues) = (table("stability.csv"), table("eigenvalues.csv"));
+    assert_eq!(critical_values.lines().count(), 2, "{critical_values}");
+    // Seven states and the two ends of the bracket.
+    assert_eq!(eigenvalues.lines().count(), 1 + 7 + 2, "{eigenvalues}");
+
+    // Another number of threads changes nothing, fewer harmonics leave nothing of the former test.
+    let (_, alone, _) = stability(&directory, &["--threads", "1"]);
+    assert_eq!((alone, table("eigenvalues.csv")), (told, eigenvalues));
+    let (code, told, _) = stability(&directory, &["--harmonics", "1"]);
+    assert_eq!(code, Some(0));
+    assert!(
+        told.starts_with("  all 7 states are stable, to harmonics 0 to 1\n"),
+        "{told}"
+    );
+    assert!(!run.join("modes/mode-01-harmonic-2.safetensors").exists());
+    assert!(!run.join("mode.png").exists() && run.join("stability.png").exists());
+}
+
+#[test]
+fn runs_that_cannot_be_tested_are_told_apart() {
+    let directory = scratch("stability-refused");
+    let mut page = String::new();
+    let mut note =
+        |what: &str, expected: i32, (code, told, errors): (Option<i32>, String, String)| {
+            assert_eq!(
+                (code, told.as_str()),
+                (Some(expected), ""),
+                "{what}: {errors}"
+            );
+            // The heading and its states aside.
+            let error = errors
+                .find("error: ")
+                .map_or(errors.as_str(), |at| &errors[at..]);
+            page += &format!("==== {what}\n{error}\n");
+        };
+    let short = RELAXING
+        .replace("steps = 6", "steps = 1")
+        .replace("1.07", "1.01");
+    note("no directory", 3, stability(&directory, &[]));
+    fs::create_dir(directory.join("run")).unwrap();
+    note("an empty directory", 3, stability(&directory, &[]));
+    let none = format!("{short}states_every = 0\n");
+    note("no states", 2, tested(&directory, &none, &[]));
+    let fold = format!("symmetry = {{ fold = 24 }}\n{short}");
+    note("several rings", 2, tested(&directory, &fold, &[]));
+    let twisted = short.replace("[output]", "drive.ileum.twist_degrees = 5.0\n[output]");
+    note("twisted", 2, tested(&directory, &twisted, &[]));
+
+    let state = directory.join("run/states/state-0001.safetensors");
+    let case = directory.join("run/case.toml");
+    assert_eq!(tested(&directory, &short, &[]).0, Some(0));
+    let whole = fs::read(&state).unwrap();
+    fs::write(&state, &whole[..whole.len() - 8]).unwrap();
+    note("a state cut short", 3, stability(&directory, &[]));
+    let rest = fs::read(directory.join("run/states/state-0000.safetensors")).unwrap();
+    let mut other = SavedState::from_bytes(&rest).unwrap();
+    (other.row, other.load.muscles[0]) = (1, 1.01);
+    fs::write(&state, other.to_bytes().unwrap()).unwrap();
+    let (code, told, errors) = stability(&directory, &[]);
+    // Its digits are those of the machine.
+    let (about, rule) = errors.rsplit_once("residual ").unwrap();
+    let rule = &rule[rule.find(" of the").unwrap()..];
+    note(
+        "no equilibrium",
+        3,
+        (code, told, format!("{about}residual ...{rule}")),
+    );
+    other.layout.mesh.axial = 61;
+    other.u.extend([0.0; 12]);
+    fs::write(&state, other.to_bytes().unwrap()).unwrap();
+    note("another mesh", 3, stability(&directory, &[]));
+    fs::write(&case, fs::read_to_string(&case).unwrap() + "# mine\n").unwrap();
+    note("another case", 3, stability(&directory, &[]));
+    note(
+        "a tolerance of nothing",
+        2,
+        stability(&directory, &["--tolerance", "0"]),
+    );
+    compare("stability.txt", &page);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_test_writes_nothing() {
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+
+    let directory = scratch("stability-interrupt");
+    let case = RELAXING.replace("steps = 6", "steps = 60");
+    fs::write(directory.join("case.toml"), case).unwrap();
+    assert!(
+        plica(&directory, &["run", "case.toml", "--out", "run"])
+            .status
+            .success()
+    );
+    let mut test = Command::new(env!("CARGO_BIN_EXE_plica"))
+        .args(["stability", "run", "--tolerance", "1e-9"])
+        .current_dir(&directory)
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut told = BufReader::new(test.stderr.take().unwrap()).lines();
+    assert!(told.any(|line| line.unwrap().contains("lowest eigenvalue")));
+    let pid = test.id().to_string();
+    Command::new("kill").args(["-INT", &pid]).status().unwrap();
+    let rest: Vec<String> = told.map(Result::unwrap).collect();
+    assert_eq!(test.wait().unwrap().code(), Some(130), "{rest:?}");
+    assert_eq!(rest.last().unwrap(), "interrupted; nothing was written");
+    assert!(!directory.join("run/stability.csv").exists());
+}

@@ -1,0 +1,83 @@
+//! Why the stability of a run cannot be told.
+
+use crate::matrix::NoEigenpairs;
+use crate::study::{SavedStateError, StudyError};
+use std::path::PathBuf;
+
+/// What can go wrong.
+#[derive(Debug, thiserror::Error)]
+pub enum StabilityError {
+    /// The run is not axisymmetric.
+    #[error(
+        "the run is not axisymmetric: its states do not part into harmonics. Its history.csv says in \
+         the column unstable_harmonics how many eigenvalues of its own tangent are negative \
+         (any:count); for harmonics, run the case with symmetry = \"axisymmetric\""
+    )]
+    Symmetry,
+    /// The run twists.
+    #[error(
+        "the tube is twisted in state {row}: its waves turn around it, and are no harmonics of one \
+         meridian. Run the case without twist_degrees, or with symmetry = \"none\", where \
+         history.csv says whether its own tangent is stable"
+    )]
+    Twisted {
+        /// Number of the state.
+        row: usize,
+    },
+    /// There are not two states to go between.
+    #[error(
+        "{} holds {found} saved state(s), and two at least are needed; run the case again with \
+         output.states_every = 1",
+        directory.display()
+    )]
+    NoStates {
+        /// Of the run.
+        directory: PathBuf,
+        /// How many there are.
+        found: usize,
+    },
+    /// A saved state cannot be used.
+    #[error("{}: {source}", path.display())]
+    State {
+        /// Its file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: SavedStateError,
+    },
+    /// A saved state is no equilibrium of the case.
+    #[error(
+        "{} is not in equilibrium in this case (residual {imbalance:.1e} of the forces in play). \
+         If the run was made with solver.pseudo_time.settle = false, run it again without",
+        path.display()
+    )]
+    OutOfEquilibrium {
+        /// Its file.
+        path: PathBuf,
+        /// Its residual over the forces in play; infinite if an element is inverted.
+        imbalance: f64,
+    },
+    /// A lowest eigenvalue was not found.
+    #[error("{}: {source}", path.display())]
+    Eigenvalues {
+        /// The file of the state.
+        path: PathBuf,
+        /// What was looked for.
+        source: NoEigenpairs,
+    },
+    /// Something about the run directory.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// Someone asked to stop.
+    #[error("stopped on request; nothing was written")]
+    Stopped,
+}
+
+impl StabilityError {
+    /// Whether something was asked for that is not offered, rather than files being broken.
+    pub fn is_misuse(&self) -> bool {
+        matches!(
+            self,
+            Self::Symmetry | Self::Twisted { .. } | Self::NoStates { .. }
+        )
+    }
+}

@@ -1,0 +1,106 @@
+//! The tangent of an axisymmetric state, harmonic by harmonic.
+
+use super::mass::harmonic_mass;
+use crate::assembly::SplineTube;
+use crate::matrix::{BlockBanded, Eigenpair, NoEigenpairs, lowest_eigenpairs};
+use crate::tube::Load;
+use rayon::prelude::*;
+
+/// An axisymmetric tube and what its harmonics 0 to N weigh and where they are held.
+#[derive(Clone, Debug)]
+pub struct Harmonics<'a> {
+    tube: &'a SplineTube,
+    harmonics: Vec<Harmonic>,
+}
+
+#[derive(Clone, Debug)]
+struct Harmonic {
+    mass: BlockBanded,
+    given: Vec<bool>,
+}
+
+/// What is known of one harmonic at a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tested {
+    /// Negative eigenvalues: 0 where the state is stable to it. A singular block counts as one.
+    pub negative: usize,
+    /// The lowest eigenvalue of the tangent over the mass of unit density, in E/D².
+    pub lowest: f64,
+}
+
+impl<'a> Harmonics<'a> {
+    /// Of a tube that is solved for as one ring; harmonics beyond those that its rings can tell
+    /// apart are left out.
+    pub fn new(tube: &'a SplineTube, highest: usize) -> Self {
+        let highest = highest.min((tube.sector.around - 1) / 2);
+        let harmonic = |n| Harmonic {
+            mass: harmonic_mass(tube, n),
+            given: tube.given_in_harmonic(n),
+        };
+        Self {
+            tube,
+            harmonics: (0..=highest).into_par_iter().map(harmonic).collect(),
+        }
+    }
+
+    /// How many there are, 0 included.
+    pub fn count(&self) -> usize {
+        self.harmonics.len()
+    }
+
+    /// Negative eigenvalues of every harmonic at a state without twist.
+    pub fn negative(&self, load: &Load, u: &[f64]) -> Vec<usize> {
+        let harmonics = self.harmonics.par_iter().enumerate();
+        harmonics
+            .map(|(n, harmonic)| harmonic.negative(self.block(n, load, u)))
+            .collect()
+    }
+
+    /// Every harmonic at a state without twist.
+    ///
+    /// # Errors
+    /// [`NoEigenpairs`] where a lowest eigenvalue cannot be found.
+    pub fn test(&self, load: &Load, u: &[f64]) -> Result<Vec<Tested>, NoEigenpairs> {
+        let test = |(n, harmonic): (usize, &Harmonic)| {
+            let block = self.block(n, load, u);
+            let pairs = lowest_eigenpairs(&block, &harmonic.mass, &harmonic.given, 1)?;
+            Ok(Tested {
+                negative: harmonic.negative(block),
+                lowest: pairs.first().map_or(f64::INFINITY, |pair| pair.value),
+            })
+        };
+        self.harmonics.par_iter().enumerate().map(test).collect()
+    }
+
+    /// The lowest eigenpairs of harmonic n at a state without twist. A vector holds, for every
+    /// control point, the amplitudes (z, r, θ) of a displacement (z cos nφ, r cos nφ, −θ sin nφ);
+    /// for n = 0 the displacement (z, r, θ) itself.
+    ///
+    /// # Errors
+    /// [`NoEigenpairs`] if they cannot be found.
+    pub fn lowest(
+        &self,
+        n: usize,
+        load: &Load,
+        u: &[f64],
+        count: usize,
+    ) -> Result<Vec<Eigenpair>, NoEigenpairs> {
+        let Harmonic { mass, given } = &self.harmonics[n];
+        lowest_eigenpairs(&self.block(n, load, u), mass, given, count)
+    }
+
+    fn block(&self, n: usize, load: &Load, u: &[f64]) -> BlockBanded {
+        match n {
+            0 => self.tube.tangent(load, u),
+            n => self.tube.harmonic_tangent(load, u, n),
+        }
+    }
+}
+
+impl Harmonic {
+    /// Negative eigenvalues of its block of the tangent.
+    fn negative(&self, mut block: BlockBanded) -> usize {
+        block.constrain(&self.given);
+        block.factor().map_or(1, |factor| factor.negative_pivots())
+    }
+}

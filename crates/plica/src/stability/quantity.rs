@@ -1,0 +1,111 @@
+//! What is driven along a stage: against what critical values are told.
+
+use crate::tube::{Load, Tube};
+
+/// What adding up the targets of several muscles may leave of nothing.
+const ROUNDING: f64 = 1e-12;
+
+/// A number that tells where along a path a load lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Lmax/L.
+    LengthRatio,
+    /// Dmin/D.
+    DiameterRatio,
+    /// Displacement of the colon end, in D.
+    ColonDisplacement,
+    /// Displacement of the ileum end, in D.
+    IleumDisplacement,
+    /// The target of one muscle, where several change and their sum does not.
+    Muscle(usize),
+}
+
+impl Quantity {
+    /// The quantity that changes most between two loads.
+    pub fn between(tube: &Tube, from: &Load, to: &Load) -> Self {
+        let most = |quantities: &mut dyn Iterator<Item = Self>| {
+            let change = |q: Self| (q.of(tube, to) - q.of(tube, from)).abs();
+            quantities
+                .map(|q| (q, change(q)))
+                .reduce(|a, b| if b.1 > a.1 { b } else { a })
+        };
+        let named = [
+            Self::LengthRatio,
+            Self::DiameterRatio,
+            Self::IleumDisplacement,
+            Self::ColonDisplacement,
+        ];
+        match most(&mut named.into_iter()) {
+            Some((quantity, change)) if change > ROUNDING => quantity,
+            _ => most(&mut (0..tube.muscles.len()).map(Self::Muscle))
+                .map_or(Self::LengthRatio, |(quantity, _)| quantity),
+        }
+    }
+
+    /// Its value under a load.
+    pub fn of(self, tube: &Tube, load: &Load) -> f64 {
+        match self {
+            Self::LengthRatio => tube.length_ratio(load),
+            Self::DiameterRatio => tube.diameter_ratio(load),
+            Self::ColonDisplacement => load.ends[0].displacement,
+            Self::IleumDisplacement => load.ends[1].displacement,
+            Self::Muscle(m) => load.muscles[m],
+        }
+    }
+
+    /// Its name in tables.
+    pub fn name(self, tube: &Tube) -> String {
+        match self {
+            Self::LengthRatio => "Lmax/L".into(),
+            Self::DiameterRatio => "Dmin/D".into(),
+            Self::ColonDisplacement => "colon displacement/D".into(),
+            Self::IleumDisplacement => "ileum displacement/D".into(),
+            Self::Muscle(m) => format!("ratio of {}", tube.muscles[m].name),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::activation::{Direction, Muscle, Profile};
+    use crate::material::{Material, NeoHookean};
+    use crate::tube::Support;
+
+    #[test]
+    fn the_quantity_of_a_stage_is_the_one_that_changes() {
+        let muscle = |name: &str, direction| Muscle {
+            name: name.into(),
+            direction,
+            zone: [0.5, 1.0],
+            profile: Profile::RaisedCosine,
+        };
+        let tube = Tube {
+            length: 3.0,
+            thickness: 0.06,
+            material: Material::NeoHookean(NeoHookean::new(1.0, 0.495)),
+            muscles: vec![
+                muscle("ring", Direction::Circular),
+                muscle("a", Direction::Longitudinal),
+                muscle("b", Direction::Longitudinal),
+            ],
+            ends: [Support::Fixed; 2],
+        };
+        let to = |muscles: [f64; 3], moved: f64| {
+            let mut load = tube.rest();
+            (load.muscles, load.ends[1].displacement) = (muscles.to_vec(), moved);
+            Quantity::between(&tube, &tube.rest(), &load)
+        };
+        assert_eq!(to([0.5, 1.0, 1.0], 0.0), Quantity::DiameterRatio);
+        assert_eq!(to([1.0, 1.1, 1.2], 0.0), Quantity::LengthRatio);
+        assert_eq!(to([1.0, 1.0, 1.0], -0.2), Quantity::IleumDisplacement);
+        // What one muscle takes the other gives.
+        assert_eq!(to([1.0, 1.5, 0.5], 0.0), Quantity::Muscle(1));
+        let load = Load {
+            muscles: vec![1.0, 1.5, 0.5],
+            ..tube.rest()
+        };
+        assert_eq!(Quantity::Muscle(1).of(&tube, &load), 1.5);
+        assert_eq!(Quantity::Muscle(1).name(&tube), "ratio of a");
+    }
+}

@@ -1,0 +1,64 @@
+//! The stability of whole tubes against closed forms.
+
+use plica::assembly::SplineTube;
+use plica::material::{Material, NeoHookean};
+use plica::solve::{Path, Settings};
+use plica::stability::{Harmonics, Tested};
+use plica::study::TubeProblem;
+use plica::tube::{Mesh, Support, Tube};
+use std::f64::consts::PI;
+
+/// A long tube, pressed together between its fixed ends, bends at Euler's load: at the strain
+/// ε = 4π² I/(A L²), less what shear adds, ε/(1 + ε E/(κG)) with κ = ½ for a thin ring (Timoshenko and
+/// Gere 1961).
+#[test]
+fn a_pressed_tube_bends_sideways_at_euler_s_load() {
+    let (length, thickness, poisson_ratio) = (30.0, 0.06, 0.3);
+    let tube = Tube {
+        length,
+        thickness,
+        material: Material::NeoHookean(NeoHookean::new(1.0, poisson_ratio)),
+        muscles: vec![],
+        ends: [Support::Fixed; 2],
+    };
+    let mesh = Mesh {
+        axial: 63,
+        around: 12,
+        thickness: 4,
+        degree: 3,
+        refinements: vec![],
+    };
+    let inner = 0.5 - thickness;
+    let gyration = (0.25 + inner * inner) / 4.0; // I/A
+    let euler = 4.0 * PI * PI * gyration / (length * length);
+    let shear = 2.0 * (1.0 + poisson_ratio) / 0.5; // E/(κG)
+    let expected = euler / (1.0 + euler * shear);
+
+    let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 1));
+    let harmonics = Harmonics::new(&problem.tube, 3);
+    let (rest, u) = (tube.rest(), vec![0.0; problem.tube.unknowns()]);
+    let mut path = Path::begin(&problem, rest.clone(), u, Settings::default()).unwrap();
+    let mut pressed = rest;
+    pressed.ends[1].displacement = -1.2 * expected * length;
+    path.set_out(pressed);
+    let mut tested = |factor: f64| -> Vec<Tested> {
+        path.advance(factor / 1.2, &mut ()).unwrap();
+        harmonics.test(&path.state().load, &path.state().u).unwrap()
+    };
+    let (below, above) = (tested(0.9), tested(1.1));
+    assert!(
+        below
+            .iter()
+            .all(|tested| tested.negative == 0 && tested.lowest > 0.0)
+    );
+    let lost: Vec<usize> = above.iter().map(|tested| tested.negative).collect();
+    assert_eq!(lost, [0, 1, 0, 0]);
+    // A straight line between the two.
+    let (a, b) = (below[1].lowest, above[1].lowest);
+    let critical = 0.9 + 0.2 * a / (a - b);
+    println!(
+        "critical strain {:.6}, expected {expected:.6}",
+        critical * expected
+    );
+    assert!((critical - 1.0).abs() < 0.02, "off by {:e}", critical - 1.0);
+}
