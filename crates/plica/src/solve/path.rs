@@ -21,7 +21,8 @@ pub struct Path<'a, P: Equilibrium> {
     problem: &'a P,
     settings: Settings,
     state: State<P::Load>,
-    /// Solves with the tangent stiffness of the state, unless that is singular.
+    /// Solves with the tangent stiffness of the state, unless that is singular. It may be as large as
+    /// everything else, so it is let go once du/dt is known, and made again if another is asked for.
     solver: Option<SolverOf<P>>,
     /// du/dt at the state, or that there is none, once it has been asked for.
     tangent: Option<Option<Vec<f64>>>,
@@ -333,7 +334,12 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     /// known to be unstable.
     fn tangent(&mut self, watch: &mut dyn Watch) -> Option<Vec<f64>> {
         if self.tangent.is_none() {
+            if self.solver.is_none() {
+                let State { load, u, .. } = &self.state;
+                self.solver = self.problem.tangent(load, u).into_shifted(0.0).ok();
+            }
             self.tangent = Some(self.solve_for_tangent(watch));
+            self.solver = None;
         }
         self.tangent.clone().flatten()
     }

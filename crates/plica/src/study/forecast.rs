@@ -1,8 +1,9 @@
 //! What a study will take, without running it.
 
-use super::Plan;
+use super::harmonic_tangent::HarmonicTangent;
+use super::{Plan, TubeProblem};
 use crate::assembly::SplineTube;
-use crate::solve::Scheme;
+use crate::solve::{Equilibrium, Scheme, Solver, Tangent};
 use crate::tube::Mesh;
 use std::time::Instant;
 
@@ -29,10 +30,8 @@ const PROGRAM_BYTES: u64 = 80 << 20;
 /// Elements along the piece of tube on which the speed is measured.
 const PIECE: usize = 16;
 
-/// Memory of a matrix above which its factorisation is not timed but counted.
-const TIMED_BYTES: f64 = 2e8;
-/// What the dense kernels then are taken to do.
-const FLOPS_PER_SECOND: f64 = 2e10;
+/// Iterations of conjugate gradients in a linear solve of many rings, on average.
+const ITERATIONS_PER_SOLVE: f64 = 10.0;
 
 /// Forecasts a study.
 pub fn forecast(plan: &Plan) -> Forecast {
@@ -58,52 +57,60 @@ pub fn forecast(plan: &Plan) -> Forecast {
 /// Forecasts the peak memory of a study.
 pub fn memory_bytes(plan: &Plan) -> u64 {
     let mesh = &plan.mesh;
-    let row = (3 * mesh.thickness * mesh.rings(plan.symmetry)) as u64;
-    let matrix = 8 * mesh.axial as u64 * (mesh.degree as u64 + 1) * row * row;
+    let rings = mesh.rings(plan.symmetry) as u64;
+    let row = 3 * mesh.thickness as u64 * rings;
+    let banded = |row: u64| 8 * mesh.axial as u64 * (mesh.degree as u64 + 1) * row * row;
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
-    let kept = 8 * (1 + states as u64) * mesh.axial as u64 * row;
+    let kept = if plan.output.pictures {
+        1 + states as u64
+    } else {
+        1
+    };
+    let kept = 8 * kept * mesh.axial as u64 * row;
+    if rings > 1 {
+        // What the product keeps at quadrature points, the blocks of all harmonics (and those they
+        // are made of), the low harmonics coupled, and vectors.
+        let [along, _, through] = mesh.elements();
+        let points = along * through * (mesh.degree + 1).pow(3) * mesh.rings(plan.symmetry);
+        let points = (points as f64 * 1.1) as u64;
+        let harmonics = (rings / 2 + 2 * (mesh.degree as u64 + 1)) * banded(row / rings);
+        let low = 3 * banded(HarmonicTangent::low_row(rings as usize) as u64);
+        let vectors = 40 * 8 * mesh.axial as u64 * row;
+        return PROGRAM_BYTES + kept + 40 * points + harmonics + low + vectors;
+    }
+    let matrix = banded(row);
     // Tangent, its factor, the factor of the state, the drag matrix, the slabs before their sum.
     PROGRAM_BYTES + kept + 5 * matrix + (512 << 20).min(matrix)
 }
 
-/// Times one assembly and factorisation of a short piece of the tube with the same cross-section.
+/// Times one linear solve on a short piece of the tube with the same cross-section.
 fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
     let (mesh, p) = (&plan.mesh, plan.mesh.degree);
     let whole = mesh.axial - p;
     let piece = PIECE.min(whole);
-    // A cross-section of many rings is timed by fewer: assembly grows with the rings, a
-    // factorisation with their cube.
-    let timed = if rings > 4 * (p + 1) { p + 1 } else { rings };
-    let around = if timed == rings {
-        mesh.around
-    } else {
-        timed * mesh.around.div_ceil(timed)
-    };
-    let more = rings as f64 / timed as f64;
-    // Not worth timing, or not worth the memory: a round number of flops a second.
-    let row = (3 * mesh.thickness * timed) as f64;
-    if 8.0 * (piece + p) as f64 * (p + 1) as f64 * row * row > TIMED_BYTES {
-        let row = (3 * mesh.thickness * rings) as f64;
-        return mesh.axial as f64 * row.powi(3) * (p * (p + 2)) as f64 / FLOPS_PER_SECOND;
-    }
     let short = Mesh {
         axial: piece + p,
-        around,
         refinements: vec![],
         ..mesh.clone()
     };
-    let tube = SplineTube::new(&plan.tube, &short, timed);
-    let (load, u) = (plan.tube.rest(), vec![0.0; tube.unknowns()]);
+    let problem = TubeProblem::new(SplineTube::new(&plan.tube, &short, rings));
+    let (load, u) = (plan.tube.rest(), vec![0.0; problem.tube.unknowns()]);
     let mut seconds = f64::INFINITY;
     for _ in 0..3 {
         let start = Instant::now();
-        let mut tangent = tube.tangent(&load, &u);
-        let assembly = start.elapsed().as_secs_f64();
-        tangent.constrain(tube.given());
+        let solver = problem.tangent(&load, &u).into_shifted(0.0);
+        let tangent = start.elapsed().as_secs_f64();
+        let Ok(solver) = solver else { continue };
+        let mut b = u.clone();
+        b[problem.tube.unknowns() / 2] = 1.0;
         let start = Instant::now();
-        let _ = tangent.factor();
-        let factor = start.elapsed().as_secs_f64();
-        seconds = seconds.min(assembly * more * more.min(2.0) + factor * more.powi(3));
+        let iterations = solver.solve(&mut b, 1e-3);
+        let solve = start.elapsed().as_secs_f64();
+        let more = match iterations {
+            Ok(iterations) if iterations > 0 => ITERATIONS_PER_SOLVE / iterations as f64,
+            _ => 1.0,
+        };
+        seconds = seconds.min(tangent + more * solve);
     }
     seconds * whole as f64 / piece as f64
 }
