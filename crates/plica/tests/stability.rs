@@ -19,6 +19,7 @@ fn a_pressed_tube_bends_sideways_at_euler_s_load() {
         thickness,
         material: Material::NeoHookean(NeoHookean::new(1.0, poisson_ratio)),
         muscles: vec![],
+        imperfections: vec![],
         ends: [Support::Fixed; 2],
     };
     let mesh = Mesh {

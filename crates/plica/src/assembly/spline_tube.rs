@@ -137,6 +137,18 @@ impl SplineTube {
         }
     }
 
+    /// The same tube with one ring to solve for: axisymmetric.
+    pub fn of_one_ring(&self) -> Self {
+        let sector = Sector::new(self.degree(), self.sector.around, 1);
+        Self {
+            around: Around::all(self.degree(), &sector, &self.circle),
+            lanes: RingLanes::new(1),
+            supports: self.ring_supports.clone(),
+            sector,
+            ..self.clone()
+        }
+    }
+
     /// The degree p.
     pub fn degree(&self) -> usize {
         self.axial.degree()

@@ -101,6 +101,7 @@ mod tests {
             thickness: 0.1,
             material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
             muscles: vec![],
+            imperfections: vec![],
             ends: [Support::Fixed; 2],
         };
         let mesh = Mesh {

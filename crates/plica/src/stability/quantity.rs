@@ -89,6 +89,7 @@ mod tests {
                 muscle("a", Direction::Longitudinal),
                 muscle("b", Direction::Longitudinal),
             ],
+            imperfections: vec![],
             ends: [Support::Fixed; 2],
         };
         let to = |muscles: [f64; 3], moved: f64| {
