@@ -1,8 +1,10 @@
-//! The dense kernels under the block-banded factorisation and its eigenpairs, from faer; no other file names it.
+//! The dense kernels under the block-banded factorisation and the tall columns, from faer; no other
+//! file names it. All run on the thread that calls them, so sums have one order.
 
+use faer::diag::DiagMut;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor;
-use faer::linalg::{matmul, triangular_solve};
+use faer::linalg::{evd, matmul, triangular_solve};
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
@@ -133,4 +135,52 @@ fn view((numbers, [rows, columns], [down, right]): Strided<'_>) -> MatRef<'_, f6
     } else {
         MatRef::from_column_major_slice_with_stride(numbers, rows, columns, right)
     }
+}
+
+/// `out` = Aᵀ B for column-major A and B of `rows` rows.
+pub fn transposed_times(out: &mut [f64], a: &[f64], b: &[f64], rows: usize) {
+    let (m, n) = (a.len() / rows, b.len() / rows);
+    matmul::matmul(
+        MatMut::from_column_major_slice_mut(out, m, n),
+        Accum::Replace,
+        MatRef::from_column_major_slice(a, rows, m).transpose(),
+        MatRef::from_column_major_slice(b, rows, n),
+        1.0,
+        Par::Seq,
+    );
+}
+
+/// `out` += factor · A B for column-major A of `rows` rows.
+pub fn add_times(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows: usize) {
+    let (m, n) = (a.len() / rows, out.len() / rows);
+    matmul::matmul(
+        MatMut::from_column_major_slice_mut(out, rows, n),
+        Accum::Add,
+        MatRef::from_column_major_slice(a, rows, m),
+        MatRef::from_column_major_slice(b, m, n),
+        factor,
+        Par::Seq,
+    );
+}
+
+/// Eigenvalues, the lowest first, of a symmetric n × n matrix whose lower half is read; writes
+/// orthonormal eigenvectors into `vectors`. None if that does not converge.
+pub fn eigen(matrix: &[f64], vectors: &mut [f64], n: usize) -> Option<Vec<f64>> {
+    let mut values = vec![0.0; n];
+    let need = evd::self_adjoint_evd_scratch::<f64>(
+        n,
+        evd::ComputeEigenvectors::Yes,
+        Par::Seq,
+        Default::default(),
+    );
+    evd::self_adjoint_evd(
+        MatRef::from_column_major_slice(matrix, n, n),
+        DiagMut::from_slice_mut(&mut values),
+        Some(MatMut::from_column_major_slice_mut(vectors, n, n)),
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(need)),
+        Default::default(),
+    )
+    .ok()?;
+    Some(values)
 }
