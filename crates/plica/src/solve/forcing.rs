@@ -39,3 +39,23 @@ impl Forcing {
         eta
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn accuracy_follows_the_residual_and_stops_at_the_tolerance() {
+        let mut forcing = Forcing::new(1e-8);
+        assert_eq!(forcing.accuracy(1.0), LOOSEST);
+        // Little progress, little accuracy.
+        assert_eq!(forcing.accuracy(0.8), LOOSEST);
+        assert!((forcing.accuracy(0.08) - GAMMA * 0.01).abs() < 1e-15);
+        // A lucky step: no more than squared.
+        let before = GAMMA * 0.01;
+        assert!((forcing.accuracy(1e-4) - GAMMA * before * before).abs() < 1e-15);
+        // No more than the last step needs.
+        assert_eq!(forcing.accuracy(1e-7), LAST * 1e-8 / 1e-7);
+        assert_eq!(forcing.accuracy(1.1e-8), LOOSEST);
+    }
+}

@@ -11,6 +11,8 @@
 //!   as the residual does; every step lowers the energy, so it leaves every unstable state but
 //!   one that its symmetry keeps it on.
 //! - [`pseudo_time`]: the same with a drag that stays, and the paper's Newmark recurrence.
+//! - [`conjugate_gradients`] and [`lowest`]: linear systems and lowest eigenpairs of an [`Operator`]
+//!   that is never assembled.
 //! - [`Path`]: from state to state along a load; predicts with the path's tangent, then takes the
 //!   first of these that arrives, and halves the step when none does.
 //!
@@ -24,10 +26,15 @@
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
+mod conjugate_gradients;
 mod forcing;
+mod lowest;
 mod newton;
+mod operator;
 mod path;
 mod pseudo_time;
+#[cfg(test)]
+mod reflected;
 mod relaxation;
 mod settings;
 mod state;
@@ -35,7 +42,10 @@ mod tangent;
 #[cfg(test)]
 mod tests;
 
+pub use conjugate_gradients::conjugate_gradients;
+pub use lowest::{Lowest, Search, lowest};
 pub use newton::newton;
+pub use operator::Operator;
 pub use path::{Path, PathError, Step};
 pub use pseudo_time::pseudo_time;
 pub use relaxation::relaxation;

@@ -11,8 +11,9 @@ pub const EQUILIBRIUM: f64 = 1e-6;
 const SUFFICIENT: f64 = 1e-4;
 
 /// From `u`, which satisfies the supports: K Δu = −R (Okino et al. 2025, Eq. (14)) until the
-/// residual is within the tolerance. The tangent must be positive definite all the way and every
-/// step must lower the energy, so what is found is a minimum.
+/// residual is within the tolerance. The tangent must be positive definite all the way, as far as
+/// the solver tells, and every step must lower the energy, so what is found is a minimum. A solver
+/// that iterates is asked for no more accuracy than each step is worth.
 pub fn newton<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
@@ -78,7 +79,6 @@ pub fn newton<P: Equilibrium>(
         forces,
         drag_work: 0.0,
         iterations,
-        negative_curvature: false,
     })
 }
 

@@ -276,9 +276,6 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         step.iterations += found.iterations + 1;
         step.drag_work += found.drag_work;
         (self.state, self.solver) = accepted(self.problem, load, found.u, &found.forces);
-        if found.negative_curvature {
-            self.state.negative_pivots = self.state.negative_pivots.max(1);
-        }
         (self.tangent, self.t) = (None, t);
     }
 

@@ -52,7 +52,6 @@ pub fn pseudo_time<P: Equilibrium>(
                 forces,
                 drag_work,
                 iterations,
-                negative_curvature: false,
             });
         }
     }

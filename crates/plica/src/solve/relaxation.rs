@@ -2,6 +2,7 @@
 
 use super::forcing::Forcing;
 use super::newton::{EQUILIBRIUM, free_part};
+use super::operator::dot;
 use super::{Balance, Equilibrium, Failure, Found, Method, Settings, Solver, Tangent, Watch};
 
 /// Drag after a rejected step, over the drag before.
@@ -37,7 +38,7 @@ pub fn relaxation<P: Equilibrium>(
     let (mut iterations, mut drag_work) = (0, 0.0);
     let mut tangent = None;
     let (mut refused, mut rejected) = (None, 0);
-    // Of the last tangent.
+    // Whether it was met at u.
     let mut negative_curvature = false;
     while imbalance > settings.tolerance || imbalance.is_nan() {
         if alpha > LARGEST_DRAG {
@@ -116,7 +117,6 @@ pub fn relaxation<P: Equilibrium>(
         forces,
         drag_work,
         iterations,
-        negative_curvature,
     })
 }
 
@@ -139,10 +139,6 @@ fn lengthen<P: Equilibrium>(
             _ => return (next, balance),
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Whether the energy falls, or, where rounding hides that, the residual.

@@ -63,8 +63,8 @@ pub struct State<L> {
     /// Its residual without drag, relative to the forces in play.
     pub imbalance: f64,
     /// Negative eigenvalues of its tangent that the solver knows of. A direct solver knows all: 0
-    /// if the state is stable. An iterative one counts a direction of negative curvature that it
-    /// met as one. A singular tangent, at the edge of stability, counts as one too.
+    /// if the state is stable. One that iterates may learn of one when the path goes on from here.
+    /// A singular tangent, at the edge of stability, counts as one.
     pub negative_pivots: usize,
 }
 
@@ -79,8 +79,6 @@ pub struct Found {
     pub drag_work: f64,
     /// Linear solves.
     pub iterations: usize,
-    /// Whether the iteration of the last of them met a direction of negative curvature.
-    pub negative_curvature: bool,
 }
 
 /// How a state was found.

@@ -48,7 +48,7 @@ pub trait Solver {
     ///
     /// # Errors
     ///
-    /// If it meets a direction of negative curvature. What is in `b` then means nothing.
+    /// If it meets a direction of negative curvature. What is in `b` then is the iterate so far.
     fn solve(&self, b: &mut [f64], accuracy: f64) -> Result<usize, NegativeCurvature>;
 }
 

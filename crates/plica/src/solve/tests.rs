@@ -1,10 +1,10 @@
 //! The solver on energies of one or two unknowns, whose equilibria are known.
 
 use super::{
-    Balance, Direct, Equilibrium, Failure, Method, Path, Scheme, Settings, State, Watch, newton,
-    relaxation,
+    Balance, Direct, Equilibrium, Failure, Method, NegativeCurvature, Operator, Path, Scheme,
+    Settings, Solver, State, Tangent, Watch, conjugate_gradients, newton, relaxation,
 };
-use crate::matrix::BlockBanded;
+use crate::matrix::{BlockBanded, Singular};
 use std::sync::Arc;
 
 /// An energy with its slopes and curvatures.
@@ -122,12 +122,15 @@ fn stiffening_spring() -> Toy<1> {
     }
 }
 
-fn set_out<const N: usize>(problem: &Toy<N>, from: f64, u: [f64; N], to: f64) -> Path<'_, Toy<N>> {
+fn set_out<P>(problem: &P, from: f64, u: impl Into<Vec<f64>>, to: f64) -> Path<'_, P>
+where
+    P: Equilibrium<Load = f64, Broken = PastTheWall>,
+{
     let settings = Settings {
         scheme: Scheme::Static,
         ..Settings::default()
     };
-    let mut path = Path::begin(problem, from, u.to_vec(), settings).unwrap();
+    let mut path = Path::begin(problem, from, u.into(), settings).unwrap();
     path.set_out(to);
     path
 }
@@ -181,7 +184,7 @@ fn a_state_that_symmetry_keeps_on_a_saddle_is_never_called_stable() {
     // The least push off it leads to the bent branch.
     let pushed = vec![2.0, 1e-3];
     let found = relaxation(&strut, &2.0, pushed, &Settings::default(), &mut ()).unwrap();
-    let mut path = set_out(&strut, 2.0, found.u.try_into().unwrap(), 2.1);
+    let mut path = set_out(&strut, 2.0, found.u, 2.1);
     assert_at(path.state(), [3.0, 2.0_f64.sqrt()]);
     assert_eq!(path.state().negative_pivots, 0);
     let step = path.advance(1.0, &mut ()).unwrap();
@@ -267,4 +270,138 @@ fn on_a_smooth_branch_no_step_costs_more_than_the_first() {
     assert!(costs.iter().all(|&cost| cost <= costs[0]), "{costs:?}");
     // The cubic through two states comes closer and closer.
     assert!(costs[9] < costs[0], "{costs:?}");
+}
+
+/// The same energies with tangents that are solved with by conjugate gradients.
+struct Iterated<const N: usize>(Toy<N>);
+
+struct IteratedTangent {
+    stiffness: Direct,
+    drag: Arc<BlockBanded>,
+    given: Vec<bool>,
+    alpha: f64,
+}
+
+impl<const N: usize> Equilibrium for Iterated<N> {
+    type Load = f64;
+    type Broken = PastTheWall;
+    type Tangent = IteratedTangent;
+
+    fn given(&self) -> &[bool] {
+        self.0.given()
+    }
+    fn impose(&self, load: &f64, u: &mut [f64]) {
+        self.0.impose(load, u);
+    }
+    fn between(&self, from: &f64, to: &f64, t: f64) -> f64 {
+        self.0.between(from, to, t)
+    }
+    fn forces(&self, load: &f64, u: &[f64]) -> Result<Balance, PastTheWall> {
+        self.0.forces(load, u)
+    }
+    fn tangent(&self, load: &f64, u: &[f64]) -> IteratedTangent {
+        IteratedTangent {
+            stiffness: self.0.tangent(load, u),
+            drag: self.0.drag.clone(),
+            given: self.given().to_vec(),
+            alpha: 0.0,
+        }
+    }
+    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.0.drag(factor, v, y);
+    }
+}
+
+impl Tangent for IteratedTangent {
+    type Solver = Self;
+
+    fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.stiffness.multiply_add(factor, v, y);
+    }
+    fn shifted(&self, alpha: f64) -> Result<Self, Singular> {
+        Ok(Self {
+            stiffness: self.stiffness.clone(),
+            drag: self.drag.clone(),
+            given: self.given.clone(),
+            alpha,
+        })
+    }
+}
+
+impl Solver for IteratedTangent {
+    fn negative_pivots(&self) -> usize {
+        0
+    }
+    fn solve(&self, b: &mut [f64], accuracy: f64) -> Result<usize, NegativeCurvature> {
+        conjugate_gradients(self, b, accuracy, 100)
+    }
+}
+
+impl Operator for IteratedTangent {
+    fn given(&self) -> &[bool] {
+        &self.given
+    }
+    fn apply(&self, v: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.stiffness.multiply_add(1.0, v, out);
+        self.drag.multiply_add(self.alpha, v, out);
+    }
+    fn precondition(&self, r: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(r);
+    }
+    fn metric(&self, v: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.drag.multiply_add(1.0, v, out);
+    }
+}
+
+#[test]
+fn a_path_by_iteration_leads_through_the_same_states() {
+    let (direct, iterated) = (truss(), Iterated(truss()));
+    let mut one = set_out(&direct, 0.0, [-1.0], 0.5);
+    let mut other = set_out(&iterated, 0.0, [-1.0], 0.5);
+    for t in [0.2, 0.4, 0.6, 0.8, 1.0] {
+        let exact = one.advance(t, &mut ()).unwrap();
+        let step = other.advance(t, &mut ()).unwrap();
+        assert_eq!(step.method, exact.method);
+        // One for each linear solve at least, whether it led anywhere or not.
+        assert_eq!(exact.inner_iterations, 0);
+        assert!(step.inner_iterations >= step.iterations, "{step:?}");
+        assert_at(other.state(), [one.state().u[0]]);
+    }
+}
+
+#[test]
+fn negative_curvature_refuses_newton() {
+    let (load, u) = (1.5, vec![1.5, 0.1]);
+    let found = newton(&Iterated(strut()), &load, u, &Settings::default(), &mut ());
+    let failure = found.unwrap_err();
+    assert_eq!(failure, Failure::Indefinite { negative_pivots: 1 });
+}
+
+#[test]
+fn a_saddle_is_left_along_the_motion_off_it_in_a_few_solves() {
+    let leave = |push: f64| {
+        let start = vec![2.5, push];
+        relaxation(
+            &Iterated(strut()),
+            &2.5,
+            start,
+            &Settings::default(),
+            &mut (),
+        )
+        .unwrap()
+    };
+    let mut iterations = vec![];
+    for push in [1e-2, 1e-4, -1e-6] {
+        let found = leave(push);
+        let [x, y] = [4.0, 3.0_f64.sqrt() * push.signum()];
+        assert!((found.u[0] - x).abs() < 1e-7 && (found.u[1] - y).abs() < 1e-7);
+        iterations.push(found.iterations);
+    }
+    // However near the saddle it was.
+    assert!(iterations[2] <= iterations[0] + 2, "{iterations:?}");
+    // Exactly on it, nothing leads off.
+    let found = leave(0.0);
+    assert_eq!(found.u, [2.5, 0.0]);
 }

@@ -1,0 +1,422 @@
+//! The lowest eigenpairs of A x = ν C x, by LOBPCG: locally optimal, block, preconditioned
+//! conjugate gradients (Knyazev 2001).
+//!
+//! Each iteration finds the best block X within the span of three: X itself, the preconditioned
+//! residuals W = M⁻¹ (A X − C X ν), and P, what the last iteration changed X by. What makes it
+//! robust follows Hetmaniuk and Lehoucq (2006) and Duersch et al. (2018): W is made orthogonal to X
+//! beforehand, P to X by way of the coefficients, and the basis is orthonormalised by the
+//! eigenvectors of its Gram matrix, without those that rounding has made up.
+//!
+//! | letter | meaning |
+//! |---|---|
+//! | ν | eigenvalues, the lowest first |
+//! | X, W, P | blocks of vectors, orthonormal in C where it matters |
+//! | S | the basis (X, W, P) |
+//! | δ | error bound of an eigenvalue |
+
+use super::operator::{Operator, add, dot, hold};
+use crate::matrix::Columns;
+
+/// Eigenvalues of a basis's Gram matrix, scaled to a unit diagonal and relative to the largest,
+/// below which what they stand for is rounding.
+const DEPENDENT: f64 = 1e-10;
+/// Iterations after which A X and C X are not combined but applied anew.
+const REFRESH: usize = 25;
+/// How far above a value, in error bounds, the lowest Ritz value must be for its side to be certain.
+/// The bound is exact for M = A only, and an eigenvector that is hardly there yet does not show in
+/// it: with 2, and M from the tube at rest, tubes that had just become unstable passed for stable.
+const CERTAIN: f64 = 10.0;
+
+/// What is looked for, and when it is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Search {
+    /// How many of the lowest eigenvalues; at most as many as there are seeds.
+    pub wanted: usize,
+    /// They are found when their error bounds, relative to themselves, are at most this. (The
+    /// error of an eigenvalue is about the square of its relative bound.)
+    pub accuracy: f64,
+    /// The iterations, at most.
+    pub iterations: usize,
+    /// If only the side of this value matters, on which the lowest eigenvalue lies, the search ends
+    /// once it is certain.
+    pub side_of: Option<f64>,
+}
+
+/// The lowest eigenpairs, as far as they were found.
+#[derive(Clone, Debug)]
+pub struct Lowest {
+    /// Eigenvalues ν, the lowest first, as many as there were independent seeds. Each is a Rayleigh
+    /// quotient: the lowest of all is no higher than the first.
+    pub values: Vec<f64>,
+    /// Eigenvectors x, for every unknown; x · C x = 1.
+    pub vectors: Vec<Vec<f64>>,
+    /// Error bounds δ: an eigenvalue lies that near.
+    pub errors: Vec<f64>,
+    /// Iterations it took; each applies A, M⁻¹ and C once to every vector not found yet.
+    pub iterations: usize,
+}
+
+impl Lowest {
+    /// The side of a value on which the lowest eigenvalue lies, as far as that is certain: whether
+    /// it is below. A Rayleigh quotient below proves that; that none is, is as certain as that the
+    /// seeds have a part of every eigenvector.
+    pub fn is_below(&self, value: f64) -> Option<bool> {
+        let (lowest, error) = (*self.values.first()?, *self.errors.first()?);
+        if lowest < value {
+            Some(true)
+        } else if lowest - value > CERTAIN * error {
+            Some(false)
+        } else {
+            None
+        }
+    }
+}
+
+/// Finds the lowest eigenpairs of A x = ν C x on the free unknowns, from seeds: vectors that have a
+/// part, however small, of each eigenvector that is looked for. More seeds than wanted eigenvalues
+/// help where the lowest lie close together.
+///
+/// The error bound of a pair is δ² = |ν| r · M⁻¹ r with r = A x − ν C x: with x = Σ c v over
+/// eigenvectors and Σ c² = 1, r · A⁻¹ r = Σ c² (νᵢ − ν)²/νᵢ, so some νᵢ has |νᵢ − ν| ≤ (νᵢ r · A⁻¹ r)^½.
+/// It costs nothing, and does not depend on the mesh.
+pub fn lowest<O: Operator>(operator: &O, seeds: &[Vec<f64>], search: &Search) -> Lowest {
+    let mut found = Lowest {
+        values: vec![],
+        vectors: vec![],
+        errors: vec![],
+        iterations: 0,
+    };
+    let Some(start) = Basis::of_seeds(operator, seeds) else {
+        return found;
+    };
+    let Some(ritz) = Ritz::of(&start, seeds.len()) else {
+        return found;
+    };
+    let mut x = start.times(&ritz.coefficients);
+    found.values = ritz.values;
+    // What the last iteration changed every vector by.
+    let mut p: Option<Basis> = None;
+    loop {
+        let (errors, corrections) = corrections(operator, &x, &found.values);
+        found.errors = errors;
+        let open: Vec<usize> = (0..found.values.len())
+            .filter(|&j| found.errors[j] > search.accuracy * found.values[j].abs())
+            .collect();
+        let all = open.iter().all(|&j| j >= search.wanted);
+        let decided = |value| found.is_below(value).is_some();
+        if all || search.side_of.is_some_and(decided) || found.iterations == search.iterations {
+            break;
+        }
+        let mut basis = x.clone();
+        basis.append(&Basis::of(operator, x.without(corrections.chosen(&open))));
+        if let Some(p) = &p {
+            basis.append(&p.chosen(&open));
+        }
+        let Some(ritz) = Ritz::of(&basis, found.values.len()) else {
+            break; // not a number
+        };
+        found.iterations += 1;
+        x = basis.times(&ritz.coefficients);
+        p = Some(basis.times(&ritz.changes));
+        // The basis holds the vectors before: only rounding lets a value rise.
+        let risen = ritz.values[0] > found.values[0] + DEPENDENT * found.values[0].abs();
+        found.values = ritz.values;
+        if risen || found.iterations.is_multiple_of(REFRESH) {
+            x = Basis::of(operator, x.vectors);
+            p = p.filter(|_| !risen);
+        }
+    }
+    found.vectors = (0..found.values.len())
+        .map(|j| x.vectors.column(j).to_vec())
+        .collect();
+    found
+}
+
+/// Error bounds of eigenpairs, and M⁻¹ of their residuals.
+fn corrections<O: Operator>(operator: &O, x: &Basis, values: &[f64]) -> (Vec<f64>, Columns) {
+    let (mut errors, mut corrections) = (vec![], Columns::new(x.vectors.rows()));
+    let mut z = vec![0.0; x.vectors.rows()];
+    for (j, &value) in values.iter().enumerate() {
+        let mut r = x.applied.column(j).to_vec();
+        add(-value, x.measured.column(j), &mut r);
+        operator.precondition(&r, &mut z);
+        hold(operator.given(), &mut z);
+        errors.push((value.abs() * dot(&r, &z).max(0.0)).sqrt());
+        corrections.push(&z);
+    }
+    (errors, corrections)
+}
+
+/// Vectors S with their images A S and C S.
+#[derive(Clone, Debug)]
+struct Basis {
+    vectors: Columns,
+    applied: Columns,
+    measured: Columns,
+}
+
+impl Basis {
+    fn of<O: Operator>(operator: &O, vectors: Columns) -> Self {
+        let image = |apply: &dyn Fn(&[f64], &mut [f64])| {
+            let mut images = vectors.clone();
+            for j in 0..vectors.count() {
+                apply(vectors.column(j), images.column_mut(j));
+                hold(operator.given(), images.column_mut(j));
+            }
+            images
+        };
+        Self {
+            applied: image(&|v, out| operator.apply(v, out)),
+            measured: image(&|v, out| operator.metric(v, out)),
+            vectors,
+        }
+    }
+
+    fn of_seeds<O: Operator>(operator: &O, seeds: &[Vec<f64>]) -> Option<Self> {
+        let mut vectors = Columns::new(seeds.first()?.len());
+        for seed in seeds {
+            let mut seed = seed.clone();
+            hold(operator.given(), &mut seed);
+            vectors.push(&seed);
+        }
+        Some(Self::of(operator, vectors))
+    }
+
+    fn times(&self, coefficients: &Columns) -> Self {
+        Self {
+            vectors: self.vectors.times(coefficients),
+            applied: self.applied.times(coefficients),
+            measured: self.measured.times(coefficients),
+        }
+    }
+
+    fn chosen(&self, which: &[usize]) -> Self {
+        Self {
+            vectors: self.vectors.chosen(which),
+            applied: self.applied.chosen(which),
+            measured: self.measured.chosen(which),
+        }
+    }
+
+    fn append(&mut self, other: &Self) {
+        self.vectors.append(&other.vectors);
+        self.applied.append(&other.applied);
+        self.measured.append(&other.measured);
+    }
+
+    /// Other vectors without their part in the span of these, which are orthonormal: w − X Xᵀ C w,
+    /// twice, since the first time leaves rounding.
+    fn without(&self, mut others: Columns) -> Columns {
+        for _ in 0..2 {
+            let part = self.measured.gram(&others);
+            self.vectors.times_onto(-1.0, &part, &mut others);
+        }
+        others
+    }
+}
+
+/// The lowest eigenpairs within the span of a basis (Rayleigh and Ritz).
+struct Ritz {
+    values: Vec<f64>,
+    /// X = S · coefficients, orthonormal in C.
+    coefficients: Columns,
+    /// P = S · changes: what the first columns of the basis have no part in, orthogonal to X.
+    changes: Columns,
+}
+
+impl Ritz {
+    /// Of as many as `wanted` or the independent vectors of the basis. None if there are none, or
+    /// they are no numbers.
+    fn of(basis: &Basis, wanted: usize) -> Option<Self> {
+        let A = basis.vectors.gram(&basis.applied);
+        let C = basis.vectors.gram(&basis.measured);
+        let independent = orthonormal(&C)?;
+        let inside = independent.gram(&A.times(&independent));
+        let (mut values, vectors) = inside.eigen()?;
+        let count = wanted.min(values.len());
+        values.truncate(count);
+        let chosen: Vec<usize> = (0..count).collect();
+        let coefficients = independent.times(&vectors.chosen(&chosen));
+        let mut changes = Columns::from_fn(C.rows(), count, |i, j| {
+            if i < count {
+                0.0
+            } else {
+                coefficients.entry(i, j)
+            }
+        });
+        let part = coefficients.gram(&C.times(&changes));
+        coefficients.times_onto(-1.0, &part, &mut changes);
+        Some(Self {
+            values,
+            coefficients,
+            changes,
+        })
+    }
+}
+
+/// Coefficients T with Tᵀ C T = 1, of all directions that are not rounding (Stathopoulos and Wu
+/// 2002). None if there are none.
+fn orthonormal(C: &Columns) -> Option<Columns> {
+    let n = C.rows();
+    let scale: Vec<f64> = (0..n)
+        .map(|i| C.entry(i, i).sqrt().recip())
+        .map(|scale| if scale.is_finite() { scale } else { 0.0 })
+        .collect();
+    let scaled = Columns::from_fn(n, n, |i, j| scale[i] * C.entry(i, j) * scale[j]);
+    let (sizes, directions) = scaled.eigen()?;
+    let least = DEPENDENT * sizes[n - 1];
+    let kept: Vec<usize> = (0..n).filter(|&j| sizes[j] > least).collect();
+    (!kept.is_empty()).then(|| {
+        Columns::from_fn(n, kept.len(), |i, k| {
+            scale[i] * directions.entry(i, kept[k]) / sizes[kept[k]].sqrt()
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::reflected::Reflected;
+    use super::*;
+
+    fn seeds(n: usize, count: usize) -> Vec<Vec<f64>> {
+        let seed = |k: usize| {
+            (1..=n)
+                .map(|i| ((i * i * (k + 1)) as f64 * 0.7).sin())
+                .collect()
+        };
+        (0..count).map(seed).collect()
+    }
+
+    fn search(wanted: usize) -> Search {
+        Search {
+            wanted,
+            accuracy: 1e-5,
+            iterations: 300,
+            side_of: None,
+        }
+    }
+
+    /// Pairs are held against the spectrum and against their own equation.
+    fn assert_lowest(operator: &Reflected, found: &Lowest, exact: &[f64]) {
+        for (j, &exact) in exact.iter().enumerate() {
+            let (value, error) = (found.values[j], found.errors[j]);
+            assert!(
+                (value - exact).abs() <= error.max(1e-13),
+                "{value}, not {exact}"
+            );
+            assert!(
+                (value - exact).abs() < 1e-8 * exact.abs(),
+                "{value}, not {exact}"
+            );
+            let x = &found.vectors[j];
+            let [mut Ax, mut Cx] = [vec![0.0; x.len()], vec![0.0; x.len()]];
+            operator.apply(x, &mut Ax);
+            operator.metric(x, &mut Cx);
+            assert!((dot(x, &Ax) - value).abs() < 1e-8 * exact.abs());
+            for (k, other) in found.vectors.iter().enumerate() {
+                let one = f64::from(u8::from(k == j));
+                assert!((dot(other, &Cx) - one).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn a_cluster_at_the_bottom_is_told_apart() {
+        let mut spectrum: Vec<f64> = (0..300).map(|i| 1.0 + (i * i) as f64).collect();
+        (spectrum[100], spectrum[7], spectrum[200]) = (1e-3, 1.01e-3, 1.02e-3);
+        let operator = Reflected::new(&spectrum, 3.0);
+        let found = lowest(&operator, &seeds(300, 4), &search(3));
+        assert!(found.iterations < 60, "{}", found.iterations);
+        assert_lowest(&operator, &found, &[1e-3, 1.01e-3, 1.02e-3]);
+    }
+
+    #[test]
+    fn negative_eigenvalues_are_found() {
+        let mut spectrum: Vec<f64> = (0..300).map(|i| 0.5 * (1 + i) as f64).collect();
+        (spectrum[250], spectrum[3]) = (-0.2, -0.05);
+        let operator = Reflected::new(&spectrum, 3.0);
+        let found = lowest(&operator, &seeds(300, 3), &search(2));
+        assert!(found.iterations < 60, "{}", found.iterations);
+        assert_lowest(&operator, &found, &[-0.2, -0.05]);
+    }
+
+    #[test]
+    fn one_vector_is_enough_for_a_single_lowest_eigenvalue() {
+        let spectrum: Vec<f64> = (0..200).map(|i| 0.01 + i as f64).collect();
+        let operator = Reflected::new(&spectrum, 10.0);
+        let found = lowest(&operator, &seeds(200, 1), &search(1));
+        assert!(found.iterations < 100, "{}", found.iterations);
+        assert_lowest(&operator, &found, &[0.01]);
+    }
+
+    #[test]
+    fn it_goes_on_to_rounding_and_stays_there() {
+        let mut spectrum: Vec<f64> = (0..100).map(|i| 1.0 + (i * i) as f64).collect();
+        spectrum[50] = 0.9;
+        let operator = Reflected::new(&spectrum, 3.0);
+        let exact = Search {
+            accuracy: 0.0,
+            ..search(2)
+        };
+        let found = lowest(&operator, &seeds(100, 3), &exact);
+        assert_eq!(found.iterations, 300);
+        assert_lowest(&operator, &found, &[0.9, 1.0]);
+        assert!(
+            found.errors[0] < 1e-6 && found.errors[1] < 1e-6,
+            "{:?}",
+            found.errors
+        );
+    }
+
+    #[test]
+    fn the_side_of_a_value_takes_fewer_iterations() {
+        let mut spectrum: Vec<f64> = (0..300).map(|i| 1.0 + (i * i) as f64).collect();
+        for (lowest_value, below) in [(0.4, true), (0.6, false)] {
+            spectrum[100] = lowest_value;
+            let operator = Reflected::new(&spectrum, 3.0);
+            let side = Search {
+                side_of: Some(0.5),
+                ..search(1)
+            };
+            let quick = lowest(&operator, &seeds(300, 3), &side);
+            assert_eq!(quick.is_below(0.5), Some(below));
+            let whole = lowest(&operator, &seeds(300, 3), &search(1));
+            assert!(quick.iterations < whole.iterations);
+        }
+    }
+
+    #[test]
+    fn seeds_that_depend_on_each_other_count_once() {
+        let spectrum: Vec<f64> = (0..60).map(|i| 1.0 + i as f64).collect();
+        let operator = Reflected::new(&spectrum, 3.0);
+        let mut seeds = seeds(60, 2);
+        seeds.push(seeds[0].iter().map(|x| -3.0 * x).collect());
+        seeds.push(vec![0.0; 60]);
+        let found = lowest(&operator, &seeds, &search(2));
+        assert_eq!(found.values.len(), 2);
+        assert_lowest(&operator, &found, &[1.0, 2.0]);
+    }
+
+    #[test]
+    fn a_block_as_large_as_the_problem_is_solved_at_once() {
+        let operator = Reflected::new(&[3.0, -1.0, 2.0], 2.0);
+        let found = lowest(&operator, &seeds(3, 3), &search(3));
+        assert!(found.iterations <= 1, "{}", found.iterations);
+        assert_lowest(&operator, &found, &[-1.0, 2.0, 3.0]);
+        assert!(lowest(&operator, &[], &search(1)).values.is_empty());
+    }
+
+    #[test]
+    fn given_unknowns_take_no_part() {
+        let spectrum: Vec<f64> = (0..40).map(|i| 1.0 + i as f64).collect();
+        let mut operator = Reflected::new(&spectrum, 3.0);
+        for i in [0, 11, 39] {
+            operator.given[i] = true;
+        }
+        let found = lowest(&operator, &seeds(40, 2), &search(1));
+        let x = &found.vectors[0];
+        assert_eq!([x[0], x[11], x[39]], [0.0; 3]);
+        // Fewer directions: no lower.
+        assert!(found.values[0] > 1.0);
+    }
+}

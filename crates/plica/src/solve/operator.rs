@@ -1,0 +1,35 @@
+//! What the iterations see of a matrix that is never assembled.
+
+/// A symmetric operator A on the free unknowns, with a preconditioner and a metric.
+///
+/// Vectors hold every unknown; they come in with zeros where a support gives one, and what is
+/// written there does not count.
+pub trait Operator {
+    /// For every unknown, whether a support gives it.
+    fn given(&self) -> &[bool];
+    /// `out` = A v.
+    fn apply(&self, v: &[f64], out: &mut [f64]);
+    /// `out` = M⁻¹ r with a symmetric, positive definite M that is near A.
+    fn precondition(&self, r: &[f64], out: &mut [f64]);
+    /// `out` = C v with a symmetric, positive definite C.
+    fn metric(&self, v: &[f64], out: &mut [f64]);
+}
+
+/// Sets the entries of unknowns that supports give to zero.
+pub(super) fn hold(given: &[bool], v: &mut [f64]) {
+    for (x, _) in v.iter_mut().zip(given).filter(|(_, given)| **given) {
+        *x = 0.0;
+    }
+}
+
+/// a · b, summed in order, so that it does not depend on threads.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// y += factor · x.
+pub(super) fn add(factor: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += factor * x;
+    }
+}
