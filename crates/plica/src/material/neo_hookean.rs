@@ -106,7 +106,7 @@ impl Law for NeoHookean {
         let mut P = G.times(middle);
         for i in 0..3 {
             for j in 0..3 {
-                P.0[i][j] = P.0[i][j] + dF.0[i][j].times(self.mu);
+                P.0[i][j] += dF.0[i][j].times(self.mu);
             }
         }
         P

@@ -3,7 +3,7 @@
 use crate::assembly::{Linearised, LowHarmonics, RingDrag, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::rings::{Coupling, HarmonicSolver};
-use crate::solve::{NegativeCurvature, Solver, Tangent};
+use crate::solve::{NegativeCurvature, Operator, Solver, Tangent, conjugate_gradients};
 use crate::tube::Load;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -87,7 +87,6 @@ impl Tangent for HarmonicTangent {
     fn shifted(&self, alpha: f64) -> Result<HarmonicSystem, Singular> {
         let Shared {
             tube,
-            at,
             symmetric,
             low,
             ..
@@ -127,7 +126,6 @@ impl Tangent for HarmonicTangent {
                 averaged,
             });
         }
-        let _ = at;
         Ok(HarmonicSystem {
             shared: self.shared.clone(),
             alpha,
@@ -199,29 +197,25 @@ impl HarmonicTangent {
     }
 }
 
-impl HarmonicSystem {
-    fn apply(&self, v: &[f64]) -> Vec<f64> {
+impl Operator for HarmonicSystem {
+    fn given(&self) -> &[bool] {
+        self.shared.tube.given()
+    }
+    fn apply(&self, v: &[f64], out: &mut [f64]) {
         let Shared { tube, drag, at, .. } = &*self.shared;
-        let mut y = vec![0.0; v.len()];
-        tube.product(at, 1.0, v, &mut y);
+        out.fill(0.0);
+        tube.product(at, 1.0, v, out);
         if self.alpha != 0.0 {
-            drag.multiply_add(self.alpha, v, &mut y);
-        }
-        self.free(&mut y);
-        y
-    }
-
-    fn free(&self, v: &mut [f64]) {
-        for (v, &given) in v.iter_mut().zip(self.shared.tube.given()) {
-            if given {
-                *v = 0.0;
-            }
+            drag.multiply_add(self.alpha, v, out);
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    fn precondition(&self, r: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(&self.preconditioner.solve(r));
+    }
+    fn metric(&self, v: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.shared.drag.multiply_add(1.0, v, out);
+    }
 }
 
 impl Solver for HarmonicSystem {
@@ -230,50 +224,6 @@ impl Solver for HarmonicSystem {
     }
 
     fn solve(&self, b: &mut [f64], accuracy: f64) -> Result<usize, NegativeCurvature> {
-        let mut r = b.to_vec();
-        self.free(&mut r);
-        let target = accuracy * dot(&r, &r).sqrt();
-        let mut x = vec![0.0; b.len()];
-        let mut d: Vec<f64> = vec![];
-        let mut rz_before = 0.0;
-        let mut iterations = 0;
-        while dot(&r, &r).sqrt() > target && iterations < ITERATIONS {
-            let mut z = self.preconditioner.solve(&r);
-            self.free(&mut z);
-            let rz = dot(&r, &z);
-            let beta = if iterations == 0 { 0.0 } else { rz / rz_before };
-            if iterations == 0 {
-                d = z;
-            } else {
-                for (d, z) in d.iter_mut().zip(&z) {
-                    *d = z + beta * *d;
-                }
-            }
-            rz_before = rz;
-            let q = self.apply(&d);
-            let curvature = dot(&d, &q);
-            iterations += 1;
-            if curvature <= 0.0 || curvature.is_nan() {
-                let mut metric = vec![0.0; d.len()];
-                self.shared.drag.multiply_add(1.0, &d, &mut metric);
-                let size = dot(&d, &metric);
-                return Err(NegativeCurvature {
-                    curvature: (curvature / size).min(0.0),
-                    direction: d,
-                    iterations,
-                });
-            }
-            let step = rz / curvature;
-            for i in 0..x.len() {
-                x[i] += step * d[i];
-                r[i] -= step * q[i];
-            }
-        }
-        for ((b, x), &given) in b.iter_mut().zip(&x).zip(self.shared.tube.given()) {
-            if !given {
-                *b = *x;
-            }
-        }
-        Ok(iterations)
+        conjugate_gradients(self, b, accuracy, ITERATIONS)
     }
 }

@@ -55,8 +55,8 @@ pub struct Row {
     /// Smallest det Fe.
     pub min_det_fe: f64,
     /// Circumferential harmonics with negative eigenvalues of the tangent, as `harmonic:count`
-    /// separated by spaces, or none. An axisymmetric run looks at harmonics 0 to
-    /// `output.harmonics` (only at 0 if the tube twists); any other only at its own tangent, as
-    /// `any:count`.
+    /// separated by spaces, or none. An axisymmetric state is looked at for harmonics 0 to
+    /// `output.harmonics` (only 0 if it twists). Any other only at the lowest eigenvalue of the
+    /// run's own tangent: `any:1` if it is negative, unknown if its sign does not show.
     pub unstable_harmonics: String,
 }

@@ -1,9 +1,12 @@
 //! Which circumferential harmonics an axisymmetric state is unstable to.
 
 use super::TubeProblem;
-use crate::solve::State;
+use super::problem::TubeSolver;
+use crate::assembly::SplineTube;
+use crate::solve::{Equilibrium, Search, State, Tangent, lowest};
 use crate::tube::Load;
 use rayon::prelude::*;
+use std::f64::consts::PI;
 
 /// Circumferential displacement, in D, from which a tube counts as twisted.
 const TWISTED: f64 = 1e-9;
@@ -11,13 +14,61 @@ const TWISTED: f64 = 1e-9;
 /// Displacement from ring to ring, in D, up to which a tube counts as axisymmetric.
 const ROUND: f64 = 1e-9;
 
+/// Iterations in which the sign of the lowest eigenvalue should show.
+const ITERATIONS: usize = 60;
+
+/// Whether the lowest eigenvalue of the tangent of a state that is not round is negative, as far as
+/// that can be told.
+fn lowest_is_negative(problem: &TubeProblem, state: &State<Load>) -> Option<bool> {
+    let system = problem.tangent(&state.load, &state.u).into_shifted(0.0);
+    let Ok(TubeSolver::Harmonic(system)) = system else {
+        return None;
+    };
+    let search = Search {
+        wanted: 1,
+        accuracy: 1e-3,
+        iterations: ITERATIONS,
+        side_of: Some(0.0),
+    };
+    lowest(&system, &seeds(&problem.tube), &search).is_below(0.0)
+}
+
+/// Two displacements with a part of every low harmonic, not alike on any two sides of the tube.
+fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
+    let (k, length) = (tube.sector.rings, tube.tube.length);
+    let repeats = tube.sector.around / k;
+    let seed = |quarter: f64| {
+        let mut u = Vec::with_capacity(tube.unknowns());
+        for z in tube.axial.greville() {
+            let along = (PI * z / length).sin() + 0.5 * (2.0 * PI * z / length + quarter).sin();
+            for _ in tube.wall.greville() {
+                let wave = |n: usize, j: usize| {
+                    let n = (n * repeats) as f64;
+                    (n, n * tube.sector.ring_angle(j) + quarter * (1.0 + 0.3 * n))
+                };
+                let sum = |j: usize, of: &dyn Fn(f64, f64) -> f64| {
+                    let highest = 4.min((k - 1) / 2);
+                    let parts = (1..=highest).map(|n| wave(n, j));
+                    parts.map(|(n, phi)| along * of(n, phi)).sum::<f64>()
+                };
+                u.extend((0..k).map(|j| 0.1 * sum(j, &|_, phi| phi.cos())));
+                u.extend((0..k).map(|j| along + sum(j, &|_, phi| phi.cos())));
+                u.extend((0..k).map(|j| sum(j, &|n, phi| -phi.sin() / n)));
+            }
+        }
+        u
+    };
+    vec![seed(0.0), seed(0.5 * PI)]
+}
+
 /// Negative eigenvalues of the tangent, harmonic by harmonic, as `harmonic:count`, or none.
 ///
 /// For an axisymmetric state without twist the harmonics 0 to `harmonics` are looked at, whatever
 /// the symmetry of the run: in an axisymmetric run 0 is the run's own tangent, all others are blocks
 /// of the whole tube's (1 tilts or shifts sideways, 2 turns oval, and so on). Of any other state only
 /// the run's own tangent is, whose eigenvalues cannot be told apart by harmonic and are listed as
-/// `any:count`: all of them in an axisymmetric run, else those that the solver met.
+/// `any:count`: all of them in an axisymmetric run; else one, if the lowest eigenvalue is negative,
+/// and `unknown` if that could not be told in the iterations that it may take.
 pub fn unstable_harmonics(problem: &TubeProblem, state: &State<Load>, harmonics: usize) -> String {
     let tube = &problem.tube;
     let (own, k) = (state.negative_pivots, tube.sector.rings);
@@ -28,10 +79,15 @@ pub fn unstable_harmonics(problem: &TubeProblem, state: &State<Load>, harmonics:
     let of_ring: Vec<f64> = state.u.iter().step_by(k).copied().collect();
     let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
     if !round || (twisted && k > 1) {
-        return if own == 0 {
-            "none".into()
+        let lost = if own == 0 && harmonics > 0 {
+            lowest_is_negative(problem, state)
         } else {
-            format!("any:{own}")
+            Some(own > 0)
+        };
+        return match lost {
+            Some(true) => format!("any:{}", own.max(1)),
+            Some(false) => "none".into(),
+            None => "unknown".into(),
         };
     }
     let looked_at = if twisted {

@@ -163,6 +163,7 @@ fn named(harmonic: &str) -> String {
         "1" => "harmonic 1 (sideways)".into(),
         "2" => "harmonic 2 (oval)".into(),
         "any" => "within the symmetry".into(),
+        "unknown" => "something, or to nothing: not told".into(),
         n => format!("harmonic {n} ({n} lobes)"),
     }
 }

@@ -7,7 +7,7 @@
 use super::super::tables::{Around, Layer, Slab};
 use super::super::tangent::{SlabTangent, add_along, add_through, add_turned, mirror};
 use crate::rings::{Sector, Turn};
-use crate::tensor::{LANES, Lanes};
+use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 
 /// Numbers of the moduli at a point: six blocks of 3×3.
@@ -69,9 +69,7 @@ fn kernel<S: Simd, const N: usize>(
     let mut turned = vec![[[[[zero; 3]; 3]; 3]; 3]; N];
 
     for (t, layer) in layers.iter().enumerate() {
-        for entry in &mut wall {
-            *entry = [[zero; 4]; N];
-        }
+        wall.fill([[zero; 4]; N]);
         for qz in 0..N {
             for qr in 0..N {
                 turned.fill([[[[zero; 3]; 3]; 3]; 3]);
@@ -148,7 +146,7 @@ fn reflect<S: Simd>(turned: &mut [[[[f64x8<S>; 3]; 3]; 3]; 3], own: bool) {
                     let (a, b) = (t[alpha][beta][i][j], t[beta][alpha][j][i]);
                     turned[alpha][beta][i][j] = match (own, across) {
                         (true, false) => a,
-                        (true, true) => a - a,
+                        (true, true) => a.like(0.0),
                         (false, false) => a + b,
                         (false, true) => a - b,
                     };

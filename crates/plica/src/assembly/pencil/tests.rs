@@ -153,9 +153,9 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
         let at = tube.linearised(&load, &u);
         let points = low.through.len();
         let waves = Transform::new(rings);
-        let x: Vec<f64> = (0..coupled.unknowns())
-            .map(|i| (0.37 * i as f64).sin())
-            .collect();
+        // As smooth along the tube as two points of an element can tell.
+        let of = |i: usize| (0.37 * (i % low.row()) as f64 + 0.3 * (i / low.row()) as f64).sin();
+        let x: Vec<f64> = (0..coupled.unknowns()).map(of).collect();
         // E x: coefficients of waves in columns, then rings.
         let lines = tube.unknowns() / rings;
         let mut coefficients = vec![0.0; tube.unknowns()];
