@@ -1,16 +1,23 @@
 //! Reading a case from disk.
 
 use crate::failure::Failure;
-use plica::case;
-use plica::study::Plan;
+use plica::case::{self, Open};
+use plica::study::{Plan, SavedState};
 use std::io::Read;
 use std::path::Path;
 
 /// Larger than any case; smaller than the memory of any machine.
 const LARGEST: u64 = 1 << 20;
 
-/// The text of a case file and what it means.
+/// The text of a case file and what it means; a state that it starts from is looked for from the
+/// folder of the file on.
 pub fn open(path: &Path) -> Result<(String, Plan), Failure> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    open_with(path, &|state| SavedState::read(&folder.join(state)))
+}
+
+/// The same, with another way to the state that it starts from.
+pub fn open_with(path: &Path, state: &Open<'_>) -> Result<(String, Plan), Failure> {
     let trouble = |error| Failure::Files(format!("{}: {error}", path.display()));
     let size = std::fs::metadata(path).map_err(trouble)?.len();
     if size > LARGEST {
@@ -33,7 +40,7 @@ pub fn open(path: &Path) -> Result<(String, Plan), Failure> {
         let what = format!("{} is not text (a case is TOML, in UTF-8)", path.display());
         return Err(Failure::Usage(what));
     };
-    match case::read(&text, &stem(path)) {
+    match case::read_with(&text, &stem(path), state) {
         Ok(plan) => Ok((text, plan)),
         Err(error) => Err(Failure::Case {
             path: path.to_owned(),

@@ -106,6 +106,13 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
             .collect();
         rows.insert(2, ("imperfect", parts.join(", ")));
     }
+    if let Some(start) = &plan.start {
+        let (row, stage) = (start.state.row, &start.state.stage);
+        rows.insert(
+            3,
+            ("start", format!("{}: state {row}, {stage}", start.file)),
+        );
+    }
     if let Some(units) = &plan.units {
         let (d, e) = (units.diameter, units.youngs_modulus);
         let units = format!("D = {d} {}, E = {e} {}", units.length, units.stress);

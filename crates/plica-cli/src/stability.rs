@@ -7,13 +7,23 @@ use crate::ticker::Ticker;
 use crate::{case_file, console, threads};
 use plica::report::stability_pictures;
 use plica::stability::{Observer, Request, StabilityError, Station, follow};
-use plica::study::RunDirectory;
+use plica::study::{RunDirectory, SavedState};
 use plica::tube::Tube;
 
 /// Tests a run's states, and writes what it finds beside them.
 pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     let directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
-    let (_, plan) = case_file::open(&arguments.run.join("case.toml"))?;
+    if directory.states().map_err(Failure::Study)?.is_empty() {
+        let none = StabilityError::NoStates {
+            directory: arguments.run.clone(),
+            found: 0,
+        };
+        return Err(Failure::Usage(none.to_string()));
+    }
+    // Where a run began is its own first state.
+    let begin = arguments.run.join("states/state-0000.safetensors");
+    let case = arguments.run.join("case.toml");
+    let (_, plan) = case_file::open_with(&case, &|_| SavedState::read(&begin))?;
     threads::limit(arguments.threads)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;

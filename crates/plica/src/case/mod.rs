@@ -46,23 +46,36 @@ pub use reference::reference;
 pub use starter::STARTER;
 pub use table::KEYS;
 
-use crate::study::Plan;
+use crate::study::{Plan, SavedState, SavedStateError};
 use problem::Problems;
 use serde::Deserialize;
 use toml::de::{DeTable, Deserializer};
 
-/// Reads and checks the text of a case file. `name` is its title if it gives none: the name of
-/// the file without its ending.
+/// Opens the saved state that a case names.
+pub type Open<'a> = dyn Fn(&str) -> Result<SavedState, SavedStateError> + 'a;
+
+/// Reads and checks the text of a case file that starts at rest. `name` is its title if it gives
+/// none: the name of the file without its ending.
 ///
 /// # Errors
 /// All problems that were found, in the order of the text. A text that is not TOML, or not shaped
 /// like a case, is not looked at any further.
 pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
+    let none = |_: &str| Err(std::io::Error::from(std::io::ErrorKind::NotFound).into());
+    read_with(text, name, &none)
+}
+
+/// The same of a case that may start from a saved state: `open` gives that of a path as it stands in
+/// the case, which is meant from the folder of the case file on.
+///
+/// # Errors
+/// As [`read`]; a state that cannot be opened, or is not one of the case's tube, is a problem too.
+pub fn read_with(text: &str, name: &str, open: &Open<'_>) -> Result<Plan, CaseError> {
     let root = DeTable::parse(text).map_err(|e| CaseError::from_toml(&e))?;
     let mut problems = Problems::default();
     shape::check(root.get_ref(), &mut problems);
     let plan = match spec::Spec::deserialize(Deserializer::from(root.clone())) {
-        Ok(spec) => check::plan(&spec, name, &mut problems),
+        Ok(spec) => check::plan(&spec, name, open, &mut problems),
         Err(error) if problems.is_empty() => return Err(CaseError::from_toml(&error)),
         Err(_) => return Err(problems.located(text, &root)),
     };

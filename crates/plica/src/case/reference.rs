@@ -37,6 +37,11 @@ const SECTIONS: &[(&str, &str)] = &[
     ),
     ("mesh.control_points.axial", "## `[mesh]`"),
     (
+        "start.state",
+        "## `[start]`\n\nA run begins at rest, unless this table names a state to begin from. The state may be of another \
+         mesh, and of a\nhigher symmetry; it is carried over and brought to equilibrium before it counts.",
+    ),
+    (
         "stages",
         "## `[[stages]]`\n\nTargets that a stage does not name stay as they are.",
     ),
@@ -82,6 +87,9 @@ const CLOSING: &str = "
   fold) and that the mesh draws, at most a quarter of the control points around. Its amplitude is at most a quarter of the
   wall's thickness, or half of a muscle's activity. An end is held, and displaced across only if it is fixed; an axisymmetric
   run has no imperfection of its geometry.
+- A state to start from is of a tube of the same length and thickness in D. Muscles that it drives are there,
+  with their names and directions; the others are at rest. It is axisymmetric, or repeats around the
+  tube a multiple of as many times as the case does.
 - A muscle's name has at most 40 letters, digits, - and _; names of stages differ.
 ";
 

@@ -23,6 +23,7 @@ pub(super) struct Spec {
     pub ends: Ends,
     #[serde(default)]
     pub mesh: Mesh,
+    pub start: Option<Start>,
     pub stages: Vec<Stage>,
     #[serde(default)]
     pub imperfections: Vec<Imperfection>,
@@ -139,6 +140,12 @@ pub(super) struct Refine {
     pub zone: [f64; 2],
     #[serde(default = "Refine::usual_factor")]
     pub factor: f64,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Start {
+    pub state: String,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]

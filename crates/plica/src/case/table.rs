@@ -67,8 +67,11 @@ pub const KEYS: &[Key] = &[
     key("mesh.refine[].factor", Number, "", Or("3.0"), from(1.0).to(100.0),
         "How many times as dense as elsewhere."),
 
+    key("start.state", Text, "", Always("\"runs/tube/states/state-0015.safetensors\""), ANY,
+        "Path of a saved state, from the folder of the case file on: the run begins there, and the first stage at its load."),
+
     key("stages", Tables, "", Always("[{ drive.circular.diameter_ratio = 0.5 }]"), ANY,
-        "What happens, one stage after the other; each begins where the one before ends, the first at rest."),
+        "What happens, one stage after the other; each begins where the one before ends, the first at rest or at `start`."),
     key("stages[].name", Text, "", OrElse("stage-1, stage-2, …", "\"stage-1\""), ANY,
         "Its name in tables."),
     key("stages[].steps", Count, "", Or("20"), from(1.0).to(100000.0),
@@ -148,8 +151,8 @@ pub const KEYS: &[Key] = &[
         "Points along the tube at which a wall is sampled for profiles and pictures."),
 ];
 
-const BEFORE_1: &str = "as in the stage before; 1 at rest";
-const BEFORE_0: &str = "as in the stage before; 0 at rest";
+const BEFORE_1: &str = "as in the stage before, or at the start; 1 at rest";
+const BEFORE_0: &str = "as in the stage before, or at the start; 0 at rest";
 
 const ANY: Range = Range {
     low: Limit::None,

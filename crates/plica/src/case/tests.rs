@@ -3,6 +3,8 @@
 use super::keys::{Given, Kind, Limit};
 use super::spec::*;
 use super::*;
+use crate::study::Layout;
+use crate::tube;
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
@@ -82,7 +84,40 @@ fn read_with(key: &Key, literal: &str) -> Result<Plan, CaseError> {
     let mut case = base(key);
     put_mark(&mut case, &path_in_base(key));
     let marked = toml::to_string(&case).unwrap();
-    read(&marked.replace(&format!("\"{MARK}\""), literal), "case")
+    super::read_with(
+        &marked.replace(&format!("\"{MARK}\""), literal),
+        "case",
+        &|_| Ok(at_rest()),
+    )
+}
+
+/// A state of the usual tube at rest.
+fn at_rest() -> SavedState {
+    let layout = Layout {
+        length: 3.0,
+        thickness: 0.06,
+        mesh: tube::Mesh {
+            axial: 4,
+            around: 8,
+            thickness: 4,
+            degree: 3,
+            refinements: vec![],
+        },
+        rings: 1,
+    };
+    SavedState {
+        stage: "rest".into(),
+        row: 0,
+        along: 0.0,
+        muscles: vec![],
+        load: tube::Load {
+            muscles: vec![],
+            ends: Default::default(),
+        },
+        u: vec![0.0; layout.unknowns()],
+        layout,
+        arrays: BTreeMap::new(),
+    }
 }
 
 #[test]
@@ -162,6 +197,9 @@ fn every_field_of_the_structs_is_in_the_table() {
                 factor: 2.0,
             }]),
         },
+        start: Some(Start {
+            state: String::new(),
+        }),
         stages: vec![Stage {
             name: Some("s".into()),
             steps: 1,

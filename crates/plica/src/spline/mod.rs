@@ -1,4 +1,4 @@
-//! B-splines: knots, bases, quadrature, and the circle they draw.
+//! B-splines: knots, bases, quadrature, the circle they draw, and the way from one basis to another.
 //!
 //! Non-rational splines of degree p (Okino et al. 2025 use p = 3): open knots along the tube and
 //! through the wall, periodic uniform knots around it.
@@ -21,8 +21,10 @@ mod basis;
 mod circle;
 mod grading;
 mod quadrature;
+mod transfer;
 
 pub use basis::{Basis, Values};
 pub use circle::{Circle, control_wave};
 pub use grading::{Refinement, graded_breakpoints};
 pub use quadrature::gauss_legendre;
+pub use transfer::transfer;

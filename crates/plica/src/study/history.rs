@@ -6,7 +6,7 @@ use serde::Serialize;
 /// forces relative to the forces in play.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Number of the state, from 0 (the tube at rest).
+    /// Number of the state, from 0 (the tube at rest, or where it started).
     pub step: usize,
     /// Name of the stage.
     pub stage: String,

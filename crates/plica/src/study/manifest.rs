@@ -17,6 +17,8 @@ pub struct Manifest {
     pub title: String,
     /// BLAKE3 of `case.toml`.
     pub case_hash: String,
+    /// The state that the run began from, as the case names it; none at rest.
+    pub start_state: Option<String>,
     /// Architecture and operating system.
     pub machine: String,
     /// Threads of the run.
@@ -50,6 +52,7 @@ impl Manifest {
             version: env!("CARGO_PKG_VERSION"),
             title: plan.title.clone(),
             case_hash: directory.case_hash().to_owned(),
+            start_state: plan.start.as_ref().map(|start| start.file.clone()),
             machine: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
             threads: rayon::current_num_threads(),
             length_unit: scale.length_name,

@@ -1,5 +1,6 @@
 //! What is to be computed: the checked content of a case file.
 
+use super::SavedState;
 use crate::solve::Settings;
 use crate::tube::{Load, Mesh, Symmetry, Tube};
 
@@ -14,6 +15,8 @@ pub struct Plan {
     pub mesh: Mesh,
     /// What repeats around it.
     pub symmetry: Symmetry,
+    /// Where the run begins, if not at rest.
+    pub start: Option<Start>,
     /// Where the load goes, stage after stage.
     pub stages: Vec<Stage>,
     /// How states are found.
@@ -24,12 +27,23 @@ pub struct Plan {
     pub units: Option<Units>,
 }
 
+/// A saved state that a run begins from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Its file, as the case names it.
+    pub file: String,
+    /// Its load on the muscles of this plan's tube.
+    pub load: Load,
+    /// The state, on its own mesh.
+    pub state: SavedState,
+}
+
 /// A straight way through the loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// Its name in tables.
     pub name: String,
-    /// The load at its end; it begins at the end of the stage before, the first at rest.
+    /// The load at its end; it begins at the end of the stage before, the first at rest or at the start.
     pub load: Load,
     /// Equal steps from begin to end, at least one; each ends in an accepted state.
     pub steps: usize,

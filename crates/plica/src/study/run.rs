@@ -5,16 +5,18 @@ use super::stability::unstable_harmonics;
 use super::summary::{Ending, Summary};
 use super::units::Scale;
 use super::{
-    Layout, Observer, Plan, Row, RunDirectory, SavedState, Snapshot, StudyError, TubeProblem,
-    forecast,
+    Layout, Observer, Plan, Row, RunDirectory, SavedState, Snapshot, Start, StudyError,
+    TubeProblem, forecast, prolong,
 };
-use crate::assembly::SplineTube;
+use crate::assembly::{Inverted, SplineTube};
 use crate::measure::{Face, Measures, Wall, even};
-use crate::solve::{Failure, Method, Path, PathError, Step, Watch};
+use crate::solve::{
+    Equilibrium, Failure, Found, Method, Path, PathError, Step, Watch, newton, relaxation,
+};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// Runs a study from rest to the end of its last stage, or as far as the tube can be followed.
+/// Runs a study from rest, or from the state that it starts from, to the end of its last stage, or as far as the tube can be followed.
 /// What has been accepted is on disk at any time.
 pub fn run(
     plan: &Plan,
@@ -51,40 +53,10 @@ fn follow(
     record: &mut Record<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Ending, StudyError> {
-    let (rest, u) = (plan.tube.rest(), problem.tube.start());
-    let mut begin = Step {
-        method: Method::Rest,
-        iterations: 1,
-        inner_iterations: 0,
-        drag_work: 0.0,
-    };
-    let lost_at_rest = |error| Ending::Lost {
-        stage: "rest".into(),
-        error,
-    };
-    let mut path = match Path::begin(problem, rest.clone(), u, plan.solver.clone()) {
+    let mut path = match begin(plan, problem, record, observer)? {
         Ok(path) => path,
-        Err(broken) => {
-            let tried = vec![(Method::Rest, Failure::Broken(broken))];
-            return Ok(lost_at_rest(PathError { tried, step: begin }));
-        }
+        Err(ending) => return Ok(ending),
     };
-    if !plan.tube.imperfections.is_empty() {
-        // The state of an imperfect tube at rest is to be found, too.
-        let mut watch = Relay {
-            observer: &mut *observer,
-            what: "rest".into(),
-            fraction: 0.0,
-            solves: 0,
-        };
-        path.set_out(rest);
-        match path.advance(1.0, &mut watch) {
-            Ok(found) => begin = found,
-            Err(error) if error.stopped() => return Ok(Ending::Stopped),
-            Err(error) => return Ok(lost_at_rest(error)),
-        }
-    }
-    record.accept("rest", &path, &begin, true, observer)?;
 
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
     let mut done = 0;
@@ -96,6 +68,7 @@ fn follow(
                 what: format!("{}, step {n} of {}", stage.name, stage.steps),
                 fraction: done as f64 / states as f64,
                 solves: 0,
+                inner_iterations: 0,
             };
             let from = path.reached();
             match path.advance(n as f64 / stage.steps as f64, &mut watch) {
@@ -122,6 +95,109 @@ fn follow(
         }
     }
     Ok(Ending::Complete)
+}
+
+/// The path at its first state: at rest, or at the state that the plan starts from, on this mesh and
+/// in equilibrium. Where there is none the run has ended.
+fn begin<'a>(
+    plan: &Plan,
+    problem: &'a TubeProblem,
+    record: &mut Record<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Result<Path<'a, TubeProblem>, Ending>, StudyError> {
+    let path = |load, u| Path::begin(problem, load, u, plan.solver.clone());
+    let lost = |stage: &str, error| Ending::Lost {
+        stage: stage.to_owned(),
+        error,
+    };
+    let Some(start) = &plan.start else {
+        let rest = plan.tube.rest();
+        let mut step = Step {
+            method: Method::Rest,
+            iterations: 1,
+            inner_iterations: 0,
+            drag_work: 0.0,
+        };
+        let mut path = match path(rest.clone(), problem.tube.start()) {
+            Ok(path) => path,
+            Err(broken) => {
+                let tried = vec![(Method::Rest, Failure::Broken(broken))];
+                return Ok(Err(lost("rest", PathError { tried, step })));
+            }
+        };
+        if !plan.tube.imperfections.is_empty() {
+            // The state of an imperfect tube at rest is to be found, too.
+            let mut watch = Relay::new(observer, "rest");
+            path.set_out(rest);
+            match path.advance(1.0, &mut watch) {
+                Ok(found) => step = found,
+                Err(error) if error.stopped() => return Ok(Err(Ending::Stopped)),
+                Err(error) => return Ok(Err(lost("rest", error))),
+            }
+        }
+        record.accept("rest", &path, &step, true, observer)?;
+        return Ok(Ok(path));
+    };
+    let mut watch = Relay::new(observer, START);
+    let (u, step) = match settle(plan, problem, start, &mut watch) {
+        Ok(settled) => settled,
+        Err(error) if error.stopped() => return Ok(Err(Ending::Stopped)),
+        Err(error) => return Ok(Err(lost(START, error))),
+    };
+    let path = match path(start.load.clone(), u) {
+        Ok(path) => path,
+        Err(broken) => unreachable!("a state in equilibrium is not inverted: {broken}"),
+    };
+    record.accept(START, &path, &step, true, observer)?;
+    Ok(Ok(path))
+}
+
+/// What the stage of a state is called from which a run starts.
+const START: &str = "start";
+
+/// Carries the state over to this mesh and brings it to equilibrium.
+fn settle(
+    plan: &Plan,
+    problem: &TubeProblem,
+    start: &Start,
+    watch: &mut Relay<'_>,
+) -> Result<(Vec<f64>, Step), PathError<Inverted>> {
+    let Layout { mesh, rings, .. } = &start.state.layout;
+    let from = SplineTube::new(&plan.tube, mesh, *rings);
+    let mut u = prolong(&from, &problem.tube, &start.state.u);
+    problem.impose(&start.load, &mut u);
+    let (load, settings) = (&start.load, &plan.solver);
+    let step = |method, found: &Found, inner_iterations| Step {
+        method,
+        iterations: found.iterations,
+        inner_iterations,
+        drag_work: found.drag_work,
+    };
+    let newton_failed = match newton(problem, load, u.clone(), settings, watch) {
+        Ok(found) => {
+            let step = step(Method::Newton, &found, watch.inner_iterations);
+            return Ok((found.u, step));
+        }
+        Err(failed) => failed,
+    };
+    match relaxation(problem, load, u, settings, watch) {
+        Ok(found) => {
+            let step = step(Method::Relaxation, &found, watch.inner_iterations);
+            Ok((found.u, step))
+        }
+        Err(failed) => Err(PathError {
+            tried: vec![
+                (Method::Newton, newton_failed),
+                (Method::Relaxation, failed),
+            ],
+            step: Step {
+                method: Method::Relaxation,
+                iterations: 0,
+                inner_iterations: watch.inner_iterations,
+                drag_work: 0.0,
+            },
+        }),
+    }
 }
 
 /// Refuses a study that the free memory of the machine does not hold, where the system tells
@@ -294,9 +370,25 @@ struct Relay<'a> {
     what: String,
     fraction: f64,
     solves: usize,
+    inner_iterations: usize,
+}
+
+impl<'a> Relay<'a> {
+    fn new(observer: &'a mut dyn Observer, what: &str) -> Self {
+        Self {
+            observer,
+            what: what.to_owned(),
+            fraction: 0.0,
+            solves: 0,
+            inner_iterations: 0,
+        }
+    }
 }
 
 impl Watch for Relay<'_> {
+    fn iterated(&mut self, inner_iterations: usize) {
+        self.inner_iterations += inner_iterations;
+    }
     fn solved(&mut self, method: Method, imbalance: f64) -> bool {
         self.solves += 1;
         let what = format!(

@@ -9,14 +9,16 @@ mod mesh;
 mod muscles;
 mod solver;
 mod stages;
+mod start;
 mod tube;
 
+use super::Open;
 use super::problem::Problems;
 use super::spec::{self, Spec};
 use crate::study::{Output, Plan, Units};
 
 /// The plan that a case means. It is worth something only if no problems were found.
-pub(super) fn plan(spec: &Spec, name: &str, problems: &mut Problems) -> Plan {
+pub(super) fn plan(spec: &Spec, name: &str, open: &Open<'_>, problems: &mut Problems) -> Plan {
     let spec::Material::NeoHookean(law) = &spec.material;
     let units = spec.units.as_ref().map(|units| Units {
         length: units.length.clone(),
@@ -25,8 +27,12 @@ pub(super) fn plan(spec: &Spec, name: &str, problems: &mut Problems) -> Plan {
         youngs_modulus: law.youngs_modulus,
     });
     let mut tube = tube::tube(spec, problems);
-    let stages = stages::stages(spec, &tube, problems);
     let (mesh, symmetry) = mesh::mesh(spec, &tube, problems);
+    let start = start::start(spec, &tube, &mesh, symmetry, open, problems);
+    let begin = start
+        .as_ref()
+        .map_or(tube.rest(), |start| start.load.clone());
+    let stages = stages::stages(spec, &tube, &begin, problems);
     tube.imperfections = imperfections::imperfections(spec, &tube, &mesh, symmetry, problems);
     imperfections::check_stretches(&tube, &stages, problems);
     let solver = solver::settings(&spec.solver, problems);
@@ -36,6 +42,7 @@ pub(super) fn plan(spec: &Spec, name: &str, problems: &mut Problems) -> Plan {
         tube,
         mesh,
         symmetry,
+        start,
         stages,
         solver,
         output: Output {

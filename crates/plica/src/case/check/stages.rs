@@ -15,10 +15,15 @@ pub(super) const SMALLEST_STRETCH: f64 = 0.02;
 /// Shortest and longest distance of the ends, over the length at rest.
 const ENDS_APART: std::ops::RangeInclusive<f64> = 0.05..=10.0;
 
-/// The stages with their loads.
-pub(super) fn stages(spec: &Spec, tube: &Tube, problems: &mut Problems) -> Vec<Stage> {
+/// The stages with their loads, the first from `begin` on.
+pub(super) fn stages(
+    spec: &Spec,
+    tube: &Tube,
+    begin: &Load,
+    problems: &mut Problems,
+) -> Vec<Stage> {
     let mut stages: Vec<Stage> = Vec::new();
-    let mut load = tube.rest();
+    let mut load = begin.clone();
     for (i, stage) in spec.stages.iter().enumerate() {
         let path = format!("stages[{}]", i + 1);
         let name = stage.name.clone();
@@ -41,14 +46,14 @@ pub(super) fn stages(spec: &Spec, tube: &Tube, problems: &mut Problems) -> Vec<S
         });
     }
     if problems.is_empty() {
-        check_whole(tube, &stages, problems);
+        check_whole(tube, begin, &stages, problems);
     }
     stages
 }
 
 /// What must hold for all stages together.
-fn check_whole(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
-    if stages.iter().all(|stage| stage.load == tube.rest()) {
+fn check_whole(tube: &Tube, begin: &Load, stages: &[Stage], problems: &mut Problems) {
+    if stages.iter().all(|stage| stage.load == *begin) {
         let cure = "write drive.NAME.diameter_ratio = 0.25 in a stage, NAME being a muscle's";
         problems.key(
             "stages",
@@ -166,7 +171,7 @@ fn apply(
 }
 
 /// Whether an end is held as its motion needs.
-fn check_held(key: &str, target: &str, support: Support, problems: &mut Problems) {
+pub(super) fn check_held(key: &str, target: &str, support: Support, problems: &mut Problems) {
     let rule = match (target, support) {
         (_, Support::Fixed) | ("displacement", Support::Sliding) => return,
         ("displacement", _) => "only a fixed or sliding end can be moved, and this one is free",
@@ -177,7 +182,13 @@ fn check_held(key: &str, target: &str, support: Support, problems: &mut Problems
 }
 
 /// Whether the wall can take a target.
-fn check_stretch(key: &str, muscle: &Muscle, ratio: f64, tube: &Tube, problems: &mut Problems) {
+pub(super) fn check_stretch(
+    key: &str,
+    muscle: &Muscle,
+    ratio: f64,
+    tube: &Tube,
+    problems: &mut Problems,
+) {
     let zone = format!("muscles.{}.zone", muscle.name);
     let table = format!("muscles.{}.profile.table", muscle.name);
     if !problems.none_about(&[key, &zone, &table, "tube.length", "tube.diameter"]) {
