@@ -87,8 +87,8 @@ pub const KEYS: &[Key] = &[
 
     key("imperfections", Tables, "", Or("[]"), ANY,
         "What is not as round or as even as it should be."),
-    key("imperfections[].of", Word(&["colon-end", "ileum-end", "geometry"]), "", Always("\"geometry\""), ANY,
-        "What is imperfect: where an end is held, or the stress-free shape of the wall."),
+    key("imperfections[].of", Word(&["colon-end", "ileum-end"]), "", Always("\"colon-end\""), ANY,
+        "What is imperfect: where an end is held; or a muscle, as below."),
     key("imperfections[].of.muscle", Text, "", OrElse("", "\"circular\""), ANY,
         "`of = { muscle = \"circular\" }`: how strong a muscle is. Its stress-free stretch θ becomes 1 + (θ − 1)(1 + amplitude · shape)."),
     key("imperfections[].amplitude", Number, "length", Always("1e-4"), ANY,
@@ -102,9 +102,8 @@ pub const KEYS: &[Key] = &[
         "Waves around the tube, n in cos n(φ − φ₀). 0 is the same all around, 1 goes sideways, 2 is oval."),
     key("imperfections[].shape.wave.phase_degrees", Number, "degrees", Or("0.0"), from(-360.0).to(360.0),
         "φ₀, the angle of a crest."),
-    key("imperfections[].shape.wave.axial", Word(&["uniform", "half-sine"]), "", OrElse("half-sine; of a muscle uniform", "\"half-sine\""), ANY,
-        "Factor along the tube, or along the zone of the muscle: one, or sin πx. A uniform imperfection of the geometry comes in over D/2 \
-         (at most L/4) from fixed ends. Not for an end."),
+    key("imperfections[].shape.wave.axial", Word(&["uniform", "half-sine"]), "", OrElse("uniform", "\"uniform\""), ANY,
+        "Factor along the zone of the muscle: one, or sin πx. Not for an end."),
     key("imperfections[].shape.wave.axial.zone", Zone, "length", OrElse("", "[0.5, 1.0]"), ANY,
         "`axial = { zone = [0.5, 1.0] }`: ½(1 − cos 2πx) over a zone, and nothing elsewhere."),
     key("imperfections[].shape.random.seed", Count, "", Always("7"), from(0.0).to(1e9),
@@ -112,7 +111,7 @@ pub const KEYS: &[Key] = &[
     key("imperfections[].shape.random.harmonics", Count, "", Or("4"), from(0.0).to(50.0),
         "Harmonics 0 to this around the tube, of those that the symmetry allows; all are as likely to be large."),
     key("imperfections[].shape.random.half_waves", Count, "", Or("4"), from(1.0).to(50.0),
-        "1 to this half-waves along the tube, or along the zone of the muscle. Not for an end."),
+        "1 to this half-waves along the zone of the muscle. Not for an end."),
 
     key("solver.scheme", Word(&["static", "newmark", "dragged"]), "", Or("\"static\""), ANY,
         "`\"static\"`: equilibrium after equilibrium, with relaxation where the path breaks off. `\"newmark\"`: the pseudo-time of \

@@ -36,11 +36,11 @@ fn base(key: &Key) -> Table {
             false => "wave = { harmonic = 2 }",
         };
         let of = match key.path {
-            "imperfections[].direction" => "colon-end",
-            _ => "geometry",
+            "imperfections[].direction" => "'colon-end'",
+            _ => "{ muscle = 'circular' }",
         };
         text = format!("symmetry = 'none'\n{text}")
-            + &format!("[[imperfections]]\nof = '{of}'\namplitude = 1e-4\nshape = {{ {shape} }}\n");
+            + &format!("[[imperfections]]\nof = {of}\namplitude = 1e-4\nshape = {{ {shape} }}\n");
     }
     if key.path.ends_with(".length_ratio") {
         text = text.replace("\"circular\"", "\"longitudinal\"");

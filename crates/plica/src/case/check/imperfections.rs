@@ -28,7 +28,7 @@ pub(super) fn imperfections(
     for (i, written) in spec.imperfections.iter().enumerate() {
         let path = format!("imperfections[{}]", i + 1);
         // Shapes of a part that does not exist cannot be told.
-        let Some(of) = part(&path, written, tube, symmetry, problems) else {
+        let Some(of) = part(&path, written, tube, problems) else {
             continue;
         };
         imperfections.push(Imperfection {
@@ -45,7 +45,6 @@ fn part(
     path: &str,
     written: &spec::Imperfection,
     tube: &Tube,
-    symmetry: Symmetry,
     problems: &mut Problems,
 ) -> Option<Part> {
     let key = format!("{path}.of");
@@ -60,10 +59,11 @@ fn part(
         spec::Part::ColonEnd => end(&key, written, End::Colon, tube.ends[0], problems),
         spec::Part::IleumEnd => end(&key, written, End::Ileum, tube.ends[1], problems),
         spec::Part::Geometry => {
-            if symmetry == Symmetry::Axisymmetric {
-                let rule = "an axisymmetric run has no imperfection of its geometry";
-                problems.value(&key, rule, Some(NO_SYMMETRY.into()));
-            }
+            // Its control values are there (SplineTube::geometric_imperfection), but no kernel
+            // measures strain from them.
+            let rule = "an imperfect geometry is not solved for yet";
+            let cure = "let an end or a muscle be imperfect";
+            problems.value(&key, rule, Some(cure.into()));
             Some(Part::Geometry)
         }
         spec::Part::Muscle(name) => {
