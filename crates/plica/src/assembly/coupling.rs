@@ -229,11 +229,17 @@ fn waves(tube: &SplineTube, highest: usize, d: usize) -> Vec<f64> {
 }
 
 impl SplineTube {
-    /// Eᵀ K E at a state; every unknown is free.
-    pub fn coupled_tangent(&self, low: &LowHarmonics, load: &Load, u: &[f64]) -> BlockBanded {
+    /// Makes a matrix, of blocks of [`LowHarmonics::row`], Eᵀ K E at a state; every unknown is free.
+    pub fn coupled_tangent(
+        &self,
+        low: &LowHarmonics,
+        load: &Load,
+        u: &[f64],
+        matrix: &mut BlockBanded,
+    ) {
         let u = self.lanes.pad(u);
         let (p, size) = (self.degree(), low.row());
-        let mut matrix = BlockBanded::zeros(self.axial.functions(), size, p);
+        matrix.clear();
         // A few slabs at a time, added up in their order.
         for slabs in low.slabs.chunks(4) {
             let parts: Vec<Vec<[Vec<f64>; 4]>> = slabs
@@ -283,7 +289,6 @@ impl SplineTube {
                     }
                 });
         }
-        matrix
     }
 
     /// Of every point along an element: the sums through the wall and around it that go with the

@@ -3,8 +3,7 @@
 use super::SplineTube;
 use super::forces::{SlabForces, Worst};
 use super::pencil::{
-    AVERAGED, Averaged, Kept, PencilInput, kept_len, pencil_forces, pencil_keep, pencil_product,
-    slab_offsets,
+    AVERAGED, Kept, PencilInput, kept_len, pencil_forces, pencil_keep, pencil_product, slab_offsets,
 };
 use super::spline_tube::{with_degree, with_law_and_degree};
 use super::tables::{Around, Slab};
@@ -17,7 +16,7 @@ use crate::tube::Load;
 use rayon::prelude::*;
 
 /// The tangent stiffness at a state: what its products need, and its average around the tube.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Linearised {
     /// 1/θζ and 1/θη, element by element along the tube.
     stretch: Vec<Vec<(Lanes, Lanes)>>,
@@ -32,20 +31,28 @@ impl SplineTube {
     /// be inverted (see [`SplineTube::forces`]). Takes ten numbers of memory, in single
     /// precision, for every quadrature point.
     pub fn linearised(&self, load: &Load, u: &[f64]) -> Linearised {
+        let mut at = Linearised::default();
+        self.linearise(load, u, &mut at);
+        at
+    }
+
+    /// The same in the memory of another state's.
+    pub fn linearise(&self, load: &Load, u: &[f64], at: &mut Linearised) {
         let u = self.lanes.pad(u);
         let lanes = |slab: &Slab| {
             let of = |lane| self.pencil_stretch(slab, lane, &self.around, load);
             (0..slab.elements).map(of).collect::<Vec<_>>()
         };
-        let stretch: Vec<_> = self.slabs.iter().flat_map(lanes).collect();
+        at.stretch = self.slabs.iter().flat_map(lanes).collect();
+        at.kept.resize(self.slabs.len(), vec![]);
+        let stretch = &at.stretch;
         let functions = self.degree() + 1;
         let element = functions.pow(3) * self.layers.len() * AVERAGED;
-        let parts: Vec<(Kept, Vec<f64>)> = self
-            .slabs
-            .par_iter()
-            .map(|slab| {
+        let offsets: Vec<Vec<SlabTangent>> = (&self.slabs, &mut at.kept)
+            .into_par_iter()
+            .map(|(slab, kept)| {
                 let len = kept_len(functions, self.layers.len(), self.lanes.vectors());
-                let mut kept = vec![[0.0; 16]; len * slab.elements];
+                kept.resize(len * slab.elements, [0.0; 16]);
                 let mut averaged = vec![0.0; element * slab.elements];
                 for lane in 0..slab.elements {
                     let input = self.pencil(slab, lane, &stretch[slab.first + lane], &u);
@@ -53,20 +60,10 @@ impl SplineTube {
                     let averaged = &mut averaged[lane * element..][..element];
                     with_law_and_degree!(self, pencil_keep, &input, kept, averaged);
                 }
-                (kept, averaged)
+                self.slab_offsets(slab, &averaged)
             })
             .collect();
-        let (kept, averaged): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
-        let averaged = Averaged {
-            numbers: averaged.concat(),
-            element,
-            elements_around: self.sector.rings as f64,
-        };
-        Linearised {
-            stretch,
-            kept,
-            average: self.circulant(&averaged),
-        }
+        self.circulant(&offsets, &mut at.average);
     }
 
     /// y += factor · K v.
@@ -140,40 +137,37 @@ impl SplineTube {
         }
     }
 
-    /// The blocks of an averaged tangent between rings.
-    fn circulant(&self, averaged: &Averaged) -> Circulant {
-        let (p, points) = (self.degree(), self.wall.functions());
-        let parts: Vec<Vec<SlabTangent>> = self
-            .slabs
-            .par_iter()
-            .map(|slab| {
-                let (layers, sector, around) = (&self.layers, &self.sector, &self.around);
-                let offsets = |n: usize| match n {
-                    1 => slab_offsets::<2>(slab, layers, points, sector, around, averaged),
-                    2 => slab_offsets::<3>(slab, layers, points, sector, around, averaged),
-                    3 => slab_offsets::<4>(slab, layers, points, sector, around, averaged),
-                    4 => slab_offsets::<5>(slab, layers, points, sector, around, averaged),
-                    5 => slab_offsets::<6>(slab, layers, points, sector, around, averaged),
-                    degree => unreachable!("degree {degree} is refused by SplineTube::new"),
-                };
-                offsets(p)
-            })
-            .collect();
-        let m = points * 3;
-        let offsets = (0..=p)
-            .into_par_iter()
-            .map(|d| {
-                let mut matrix = BlockBanded::zeros(self.axial.functions(), m, p);
-                for (slab, part) in self.slabs.iter().zip(&parts) {
-                    part[d].add_to(&mut matrix, slab.first, m, p);
-                }
-                matrix
-            })
-            .collect();
-        Circulant {
-            offsets,
-            angle: self.sector.angle(),
+    /// What a slab adds to the blocks between rings: moduli summed around the tube, element after
+    /// element.
+    fn slab_offsets(&self, slab: &Slab, summed: &[f64]) -> Vec<SlabTangent> {
+        let (points, layers) = (self.wall.functions(), &self.layers);
+        let (sector, around) = (&self.sector, &self.around);
+        match self.degree() {
+            1 => slab_offsets::<2>(slab, layers, points, sector, around, summed),
+            2 => slab_offsets::<3>(slab, layers, points, sector, around, summed),
+            3 => slab_offsets::<4>(slab, layers, points, sector, around, summed),
+            4 => slab_offsets::<5>(slab, layers, points, sector, around, summed),
+            5 => slab_offsets::<6>(slab, layers, points, sector, around, summed),
+            degree => unreachable!("degree {degree} is refused by SplineTube::new"),
         }
+    }
+
+    /// The blocks between rings, of what the slabs add to them.
+    fn circulant(&self, parts: &[Vec<SlabTangent>], average: &mut Circulant) {
+        let (p, m) = (self.degree(), self.wall.functions() * 3);
+        let zeros = || BlockBanded::zeros(self.axial.functions(), m, p);
+        average.offsets.resize_with(p + 1, zeros);
+        average.angle = self.sector.angle();
+        average
+            .offsets
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(d, matrix)| {
+                matrix.clear();
+                for (slab, part) in self.slabs.iter().zip(parts) {
+                    part[d].add_to(matrix, slab.first, m, p);
+                }
+            });
     }
 
     /// What a pencil kernel reads, at an element along the tube.

@@ -117,11 +117,20 @@ impl BlockBanded {
         self.panels[panel * self.panel_len() + self.place(d, i % self.size, j % self.size)]
     }
 
-    /// The sum of matrices of one shape, each entry times a factor that depends on its row and
-    /// column inside its block.
-    pub fn combined<F: Fn(usize, usize) -> f64>(parts: &[(&Self, F)]) -> Self {
-        let mut sum = Self::zeros(parts[0].0.blocks, parts[0].0.size, parts[0].0.band);
-        let (size, height) = (sum.size, sum.height());
+    /// Makes every entry zero.
+    pub fn clear(&mut self) {
+        self.panels.fill(0.0);
+    }
+
+    /// Becomes a copy of a matrix of its shape.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.panels.copy_from_slice(&other.panels);
+    }
+
+    /// Becomes the sum of matrices of its shape, each entry times a factor that depends on its row
+    /// and column inside its block.
+    pub fn combine<F: Fn(usize, usize) -> f64>(&mut self, parts: &[(&Self, F)]) {
+        let (size, height, len) = (self.size, self.height(), self.panel_len());
         let factors: Vec<Vec<f64>> = parts
             .iter()
             .map(|(_, factor)| {
@@ -130,8 +139,8 @@ impl BlockBanded {
                     .collect()
             })
             .collect();
-        let len = sum.panel_len();
-        for (j, panel) in sum.panels.chunks_exact_mut(len).enumerate() {
+        for (j, panel) in self.panels.chunks_exact_mut(len).enumerate() {
+            panel.fill(0.0);
             for ((part, _), factors) in parts.iter().zip(&factors) {
                 let from = &part.panels[j * len..][..len];
                 for ((sum, x), factor) in panel.iter_mut().zip(from).zip(factors) {
@@ -139,7 +148,6 @@ impl BlockBanded {
                 }
             }
         }
-        sum
     }
 
     /// Adds `factor` times another matrix of the same shape.
@@ -218,6 +226,11 @@ impl BlockBanded {
 }
 
 impl Factor {
+    /// The memory of the factor; what it holds is no longer of use.
+    pub fn into_memory(self) -> BlockBanded {
+        self.matrix
+    }
+
     /// How many eigenvalues of the factored matrix are negative.
     pub fn negative_pivots(&self) -> usize {
         self.negative_pivots

@@ -13,7 +13,7 @@
 use crate::matrix::BlockBanded;
 
 /// A matrix that is the same at every ring.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Circulant {
     /// M_0 = K̄_0 and M_d = K̄_d + S K̄_dᵀ S for d = 1 to p, where K̄_d couples ring j with ring j + d
     /// and S changes the sign of circumferential components; each numbered as one ring is.
@@ -25,6 +25,14 @@ pub struct Circulant {
 impl Circulant {
     /// B_n: the matrix on circumferential harmonic n of the whole tube; every unknown is free.
     pub fn harmonic(&self, n: usize) -> BlockBanded {
+        let like = &self.offsets[0];
+        let mut block = BlockBanded::zeros(like.blocks(), like.size(), like.band());
+        self.harmonic_into(n, &mut block);
+        block
+    }
+
+    /// The same into a matrix of its shape.
+    pub fn harmonic_into(&self, n: usize, block: &mut BlockBanded) {
         let parts: Vec<_> = self
             .offsets
             .iter()
@@ -41,6 +49,6 @@ impl Circulant {
                 (offset, factor)
             })
             .collect();
-        BlockBanded::combined(&parts)
+        block.combine(&parts);
     }
 }

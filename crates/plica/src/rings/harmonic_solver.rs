@@ -30,6 +30,14 @@ impl HarmonicSolver {
         self
     }
 
+    /// The factors of all harmonics, and what corrects them.
+    pub fn into_factors(self) -> (impl Iterator<Item = Factor>, Option<Coupling>) {
+        (
+            self.factors.into_iter().map(|(_, factor)| factor),
+            self.coupling,
+        )
+    }
+
     /// Solves for the unknowns of all rings.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         let mut coefficients = self.transform.forward(b);

@@ -1,12 +1,13 @@
 //! The tangent of a tube of many rings: conjugate gradients around the harmonic solver.
 
+use super::spare::Spare;
 use crate::assembly::{Linearised, LowHarmonics, RingDrag, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::rings::{Coupling, HarmonicSolver};
 use crate::solve::{NegativeCurvature, Operator, Solver, Tangent, conjugate_gradients};
 use crate::tube::Load;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Displacement from ring to ring, in D, up to which a state counts as the same at every ring.
 const SYMMETRIC: f64 = 1e-9;
@@ -21,30 +22,132 @@ const HIGHEST: usize = 6;
 /// Iterations after which a solve is cut off; what there is still leads down.
 const ITERATIONS: usize = 400;
 
+/// A tube of many rings, and what its tangents share.
+#[derive(Debug)]
+pub struct HarmonicTube {
+    tube: Arc<SplineTube>,
+    drag: RingDrag,
+    /// Low harmonics, once a state needs them.
+    low: OnceLock<LowHarmonics>,
+    /// Memory of tangents, of blocks of harmonics, and of matrices of low harmonics.
+    linearised: Spare<Linearised>,
+    blocks: Spare<BlockBanded>,
+    coupled: Spare<BlockBanded>,
+}
+
 /// The tangent stiffness K of a state, without its matrix.
 #[derive(Clone, Debug)]
 pub struct HarmonicTangent {
-    shared: Arc<Shared>,
+    state: Arc<Linear>,
 }
 
+/// A linearised state; its memory goes back to its tube.
 #[derive(Debug)]
-struct Shared {
-    tube: Arc<SplineTube>,
-    drag: Arc<RingDrag>,
+struct Linear {
+    tube: Arc<HarmonicTube>,
     at: Linearised,
     /// Whether the state is the same at every ring.
     symmetric: bool,
-    /// Low harmonics and the tangent on them, where the state couples them.
-    low: Option<(LowHarmonics, BlockBanded)>,
+    /// The tangent on low harmonics, where the state couples them.
+    coupled: Option<BlockBanded>,
 }
 
 /// K + α C on the free unknowns.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct HarmonicSystem {
-    shared: Arc<Shared>,
+    state: Arc<Linear>,
     alpha: f64,
-    preconditioner: HarmonicSolver,
+    /// None only while it is dropped.
+    preconditioner: Option<HarmonicSolver>,
     negative_pivots: usize,
+}
+
+impl Drop for Linear {
+    fn drop(&mut self) {
+        self.tube.linearised.give(std::mem::take(&mut self.at));
+        if let Some(coupled) = self.coupled.take() {
+            self.tube.coupled.give(coupled);
+        }
+    }
+}
+
+impl Drop for HarmonicSystem {
+    fn drop(&mut self) {
+        let tube = &self.state.tube;
+        if let Some(preconditioner) = self.preconditioner.take() {
+            let (factors, coupling) = preconditioner.into_factors();
+            for factor in factors {
+                tube.blocks.give(factor.into_memory());
+            }
+            if let Some(coupling) = coupling {
+                tube.coupled.give(coupling.coupled.into_memory());
+            }
+        }
+    }
+}
+
+impl HarmonicTube {
+    /// Of a tube.
+    pub fn new(tube: Arc<SplineTube>) -> Self {
+        Self {
+            drag: tube.ring_drag(),
+            tube,
+            low: OnceLock::new(),
+            linearised: Spare::default(),
+            blocks: Spare::default(),
+            coupled: Spare::default(),
+        }
+    }
+
+    /// y += factor · C v.
+    pub fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.drag.multiply_add(factor, v, y);
+    }
+
+    /// The tangent stiffness at a state.
+    pub fn tangent(self: &Arc<Self>, load: &Load, u: &[f64]) -> HarmonicTangent {
+        let mut at = self.linearised.take().unwrap_or_default();
+        self.tube.linearise(load, u, &mut at);
+        let rings = u.chunks_exact(self.tube.sector.rings);
+        let difference = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs()));
+        let differs = rings.map(difference).fold(0.0, f64::max);
+        let coupled = (differs > COUPLED).then(|| {
+            let mut coupled = self.low_matrix();
+            self.tube.coupled_tangent(self.low(), load, u, &mut coupled);
+            coupled
+        });
+        HarmonicTangent {
+            state: Arc::new(Linear {
+                tube: self.clone(),
+                at,
+                symmetric: differs <= SYMMETRIC,
+                coupled,
+            }),
+        }
+    }
+
+    fn low(&self) -> &LowHarmonics {
+        self.low
+            .get_or_init(|| LowHarmonics::new(&self.tube, HIGHEST))
+    }
+
+    /// Memory for a matrix of low harmonics.
+    fn low_matrix(&self) -> BlockBanded {
+        let (rows, size, band) = (
+            self.tube.axial.functions(),
+            self.low().row(),
+            self.tube.degree(),
+        );
+        let new = || BlockBanded::zeros(rows, size, band);
+        self.coupled.take().unwrap_or_else(new)
+    }
+
+    /// Memory for the block of a harmonic.
+    fn block(&self) -> BlockBanded {
+        let (rows, points) = (self.tube.axial.functions(), self.tube.wall.functions());
+        let new = || BlockBanded::zeros(rows, 3 * points, self.tube.degree());
+        self.blocks.take().unwrap_or_else(new)
+    }
 }
 
 impl HarmonicTangent {
@@ -52,85 +155,60 @@ impl HarmonicTangent {
     pub fn low_row(rings: usize) -> usize {
         9 * (2 * HIGHEST.min((rings - 1) / 2) + 1)
     }
-
-    /// At a state of a tube.
-    pub fn new(tube: Arc<SplineTube>, drag: Arc<RingDrag>, load: &Load, u: &[f64]) -> Self {
-        let at = tube.linearised(load, u);
-        let rings = u.chunks_exact(tube.sector.rings);
-        let difference = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs()));
-        let differs = rings.map(difference).fold(0.0, f64::max);
-        let symmetric = differs <= SYMMETRIC;
-        let low = (differs > COUPLED).then(|| {
-            let low = LowHarmonics::new(&tube, HIGHEST);
-            let coupled = tube.coupled_tangent(&low, load, u);
-            (low, coupled)
-        });
-        Self {
-            shared: Arc::new(Shared {
-                tube,
-                drag,
-                at,
-                symmetric,
-                low,
-            }),
-        }
-    }
 }
 
 impl Tangent for HarmonicTangent {
     type Solver = HarmonicSystem;
 
     fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        self.shared.tube.product(&self.shared.at, factor, v, y);
+        let Linear { tube, at, .. } = &*self.state;
+        tube.tube.product(at, factor, v, y);
     }
 
     fn shifted(&self, alpha: f64) -> Result<HarmonicSystem, Singular> {
-        let Shared {
+        let Linear {
             tube,
             symmetric,
-            low,
+            coupled,
             ..
-        } = &*self.shared;
-        let rings = tube.sector.rings;
+        } = &*self.state;
+        let rings = tube.tube.sector.rings;
         let blocks: Vec<Block> = (0..=rings / 2)
             .into_par_iter()
-            .map(|n| self.block(n, alpha))
+            .map(|n| self.state.block(n, alpha))
             .collect::<Result<_, _>>()?;
         let negative_pivots = if *symmetric {
             blocks[0].negative_pivots
         } else {
             0
         };
-        let averaged: Vec<Factor> = match low {
-            Some((low, _)) => blocks[..=low.highest]
-                .par_iter()
-                .enumerate()
-                .map(|(n, block)| self.averaged(low, n, alpha + block.shift))
-                .collect::<Result<_, _>>()?,
-            None => vec![],
-        };
-        let factors = blocks.into_iter().map(|block| block.factor).collect();
+        let (factors, averaged): (Vec<_>, Vec<_>) = blocks
+            .into_iter()
+            .map(|block| (block.factor, block.averaged))
+            .unzip();
         let mut preconditioner = HarmonicSolver::new(rings, factors);
-        if let Some((low, coupled)) = low {
-            let mut coupled = coupled.clone();
+        if let Some(coupled) = coupled {
+            let low = tube.low();
+            let mut matrix = tube.low_matrix();
+            matrix.copy_from(coupled);
             if alpha != 0.0 {
-                low.add_drag(tube, &self.shared.drag, alpha, &mut coupled);
+                low.add_drag(&tube.tube, &tube.drag, alpha, &mut matrix);
             }
-            coupled.constrain(&low.given(tube));
-            let mut coupled = coupled.factor()?;
+            matrix.constrain(&low.given(&tube.tube));
+            let mut coupled = matrix.factor()?;
             coupled.make_positive();
             preconditioner = preconditioner.coupled(Coupling {
                 highest: low.highest,
                 through: low.through.clone(),
                 coupled,
-                averaged,
+                averaged: averaged.into_iter().flatten().collect(),
             });
         }
         Ok(HarmonicSystem {
-            shared: self.shared.clone(),
+            state: self.state.clone(),
             alpha,
             negative_pivots,
-            preconditioner,
+            preconditioner: Some(preconditioner),
         })
     }
 }
@@ -138,83 +216,103 @@ impl Tangent for HarmonicTangent {
 /// The factored block of a harmonic, made positive definite by more drag if need be.
 struct Block {
     factor: Factor,
-    /// Drag that was added.
-    shift: f64,
-    /// Without it.
+    /// Of the block as it would be without that drag.
     negative_pivots: usize,
+    /// The block on the functions through the wall that low harmonics have, for those that are coupled.
+    averaged: Option<Factor>,
 }
 
 /// The first drag that is tried to make a block positive definite, and what it grows by.
 const SHIFT: (f64, f64) = (1e-3, 4.0);
 
-impl HarmonicTangent {
-    /// K_n + α C_n of the average, of harmonic n of the sector; every unknown is free.
-    fn matrix(&self, n: usize, alpha: f64) -> BlockBanded {
-        let Shared { tube, drag, at, .. } = &*self.shared;
-        let n = n * (tube.sector.around / tube.sector.rings);
-        let mut block = at.average.harmonic(n);
-        if alpha != 0.0 {
-            drag.add_harmonic(alpha, n, &mut block);
-        }
-        block
-    }
-
+impl Linear {
+    /// K_n + α C_n of the average, of harmonic n of the sector.
     fn block(&self, n: usize, alpha: f64) -> Result<Block, Singular> {
-        let tube = &self.shared.tube;
-        let given = tube.given_in_harmonic(n * (tube.sector.around / tube.sector.rings));
+        let (tube, waves) = (&self.tube.tube, n * self.waves());
+        let given = tube.given_in_harmonic(waves);
         let factored = |alpha: f64| {
-            let mut block = self.matrix(n, alpha);
+            let mut block = self.tube.block();
+            self.at.average.harmonic_into(waves, &mut block);
+            if alpha != 0.0 {
+                self.tube.drag.add_harmonic(alpha, waves, &mut block);
+            }
+            let low = self.coupled.as_ref().map(|_| self.tube.low());
+            let averaged = low
+                .filter(|low| n <= low.highest)
+                .map(|low| self.averaged(low, n, &block))
+                .transpose()?;
             block.constrain(&given);
-            block.factor()
+            Ok((block.factor()?, averaged))
         };
-        let first = factored(alpha);
-        let negative_pivots = first.as_ref().map_or(1, Factor::negative_pivots);
-        let mut block = (first, 0.0);
-        while block.0.as_ref().map_or(1, Factor::negative_pivots) > 0 && block.1 < 1e6 {
-            let shift = (block.1 * SHIFT.1).max(SHIFT.0);
-            block = (factored(alpha + shift), shift);
+        let pivots = |factored: &Result<(Factor, _), Singular>| {
+            factored
+                .as_ref()
+                .map_or(1, |(factor, _)| factor.negative_pivots())
+        };
+        let mut found = factored(alpha);
+        let negative_pivots = pivots(&found);
+        let mut shift = 0.0;
+        while pivots(&found) > 0 && shift < 1e6 {
+            if let Ok((factor, _)) = found {
+                self.tube.blocks.give(factor.into_memory());
+            }
+            shift = f64::max(shift * SHIFT.1, SHIFT.0);
+            found = factored(alpha + shift);
         }
+        let (factor, averaged) = found?;
         Ok(Block {
-            factor: block.0?,
-            shift: block.1,
+            factor,
             negative_pivots,
+            averaged,
         })
     }
 
-    /// The same on the functions through the wall that low harmonics have.
-    fn averaged(&self, low: &LowHarmonics, n: usize, alpha: f64) -> Result<Factor, Singular> {
-        let tube = &self.shared.tube;
-        let block = self.matrix(n, alpha);
+    /// Waves around the whole tube of harmonic 1 of the sector.
+    fn waves(&self) -> usize {
+        let sector = &self.tube.tube.sector;
+        sector.around / sector.rings
+    }
+
+    /// A block, every unknown free, on the functions through the wall that low harmonics have.
+    fn averaged(
+        &self,
+        low: &LowHarmonics,
+        n: usize,
+        block: &BlockBanded,
+    ) -> Result<Factor, Singular> {
         let mut matrix = BlockBanded::zeros(block.blocks(), 3 * low.functions(), block.band());
         let place = |(c, i): (usize, usize)| 3 * c + i;
         low.project(
-            &block,
+            block,
             |row, column| (place(row), place(column)),
             &mut matrix,
         );
-        matrix.constrain(&low.given_in_harmonic(tube, n));
+        matrix.constrain(&low.given_in_harmonic(&self.tube.tube, n));
         matrix.factor()
     }
 }
 
 impl Operator for HarmonicSystem {
     fn given(&self) -> &[bool] {
-        self.shared.tube.given()
+        self.state.tube.tube.given()
     }
     fn apply(&self, v: &[f64], out: &mut [f64]) {
-        let Shared { tube, drag, at, .. } = &*self.shared;
+        let Linear { tube, at, .. } = &*self.state;
         out.fill(0.0);
-        tube.product(at, 1.0, v, out);
+        tube.tube.product(at, 1.0, v, out);
         if self.alpha != 0.0 {
-            drag.multiply_add(self.alpha, v, out);
+            tube.drag(self.alpha, v, out);
         }
     }
     fn precondition(&self, r: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(&self.preconditioner.solve(r));
+        match &self.preconditioner {
+            Some(preconditioner) => out.copy_from_slice(&preconditioner.solve(r)),
+            None => out.copy_from_slice(r),
+        }
     }
     fn metric(&self, v: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.shared.drag.multiply_add(1.0, v, out);
+        self.state.tube.drag(1.0, v, out);
     }
 }
 

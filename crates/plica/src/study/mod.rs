@@ -13,6 +13,7 @@ mod problem;
 mod prolong;
 mod run;
 mod saved_state;
+mod spare;
 mod stability;
 mod summary;
 mod units;

@@ -1,7 +1,7 @@
 //! A spline tube as the solver sees it.
 
-use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent};
-use crate::assembly::{Inverted, RingDrag, SplineTube};
+use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
+use crate::assembly::{Inverted, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::solve::{Balance, Direct, Equilibrium, NegativeCurvature, Solver, Tangent};
 use crate::tube::{Load, Tube};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub struct TubeProblem {
     /// The tube.
     pub tube: Arc<SplineTube>,
-    drag: Drag,
+    rings: Rings,
     given: Arc<[bool]>,
     /// Reference volume of the sector.
     volume: f64,
@@ -22,11 +22,11 @@ pub struct TubeProblem {
     at_rest: f64,
 }
 
-/// The drag matrix: assembled for few rings, as are their tangents.
+/// The drag matrix of one ring, assembled as its tangents are; or what the tangents of many share.
 #[derive(Clone, Debug)]
-enum Drag {
-    Assembled(Arc<BlockBanded>),
-    Rings(Arc<RingDrag>),
+enum Rings {
+    One(Arc<BlockBanded>),
+    Many(Arc<HarmonicTube>),
 }
 
 /// The tangent stiffness of a tube: assembled and factored for one ring, without a matrix for more.
@@ -39,7 +39,7 @@ pub enum TubeTangent {
 }
 
 /// What solves with a [`TubeTangent`].
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub enum TubeSolver {
     /// For one ring.
     Direct(Factor),
@@ -50,23 +50,19 @@ pub enum TubeSolver {
 impl TubeProblem {
     /// Puts a tube before the solver.
     pub fn new(tube: SplineTube) -> Self {
-        let drag = if tube.sector.rings == 1 {
-            Drag::Assembled(Arc::new(tube.drag()))
-        } else {
-            Drag::Rings(Arc::new(tube.ring_drag()))
-        };
-        Self::with_drag(tube, drag)
-    }
-
-    fn with_drag(tube: SplineTube, drag: Drag) -> Self {
         let at_rest = 3e-11 * tube.tube.material.longitudinal_modulus();
         let (outer, inner) = (Tube::OUTER_RADIUS, tube.tube.inner_radius());
+        let tube = Arc::new(tube);
         Self {
-            drag,
+            rings: if tube.sector.rings == 1 {
+                Rings::One(Arc::new(tube.drag()))
+            } else {
+                Rings::Many(Arc::new(HarmonicTube::new(tube.clone())))
+            },
             given: tube.given().into(),
             volume: PI * (outer * outer - inner * inner) * tube.tube.length / tube.sector.repeats(),
             at_rest,
-            tube: Arc::new(tube),
+            tube,
         }
     }
 }
@@ -98,21 +94,18 @@ impl Equilibrium for TubeProblem {
         })
     }
     fn tangent(&self, load: &Load, u: &[f64]) -> TubeTangent {
-        match &self.drag {
-            Drag::Assembled(drag) => {
+        match &self.rings {
+            Rings::One(drag) => {
                 let stiffness = self.tube.tangent(load, u);
                 TubeTangent::Direct(Direct::new(stiffness, drag.clone(), self.given.clone()))
             }
-            Drag::Rings(drag) => {
-                let (tube, drag) = (self.tube.clone(), drag.clone());
-                TubeTangent::Harmonic(HarmonicTangent::new(tube, drag, load, u))
-            }
+            Rings::Many(tube) => TubeTangent::Harmonic(tube.tangent(load, u)),
         }
     }
     fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        match &self.drag {
-            Drag::Assembled(drag) => drag.multiply_add(factor, v, y),
-            Drag::Rings(drag) => drag.multiply_add(factor, v, y),
+        match &self.rings {
+            Rings::One(drag) => drag.multiply_add(factor, v, y),
+            Rings::Many(tube) => tube.drag(factor, v, y),
         }
     }
 }

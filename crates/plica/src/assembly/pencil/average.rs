@@ -13,31 +13,23 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 /// Numbers of the moduli at a point: six blocks of 3×3.
 pub const AVERAGED: usize = 54;
 
-/// Moduli pulled back to (ζ, s, R) with their weights, averaged around the tube, of every element
-/// along it: at (point along, layer, point through, point around).
-#[derive(Clone, Debug)]
-pub struct Averaged {
-    /// The numbers, element after element.
-    pub numbers: Vec<f64>,
-    /// Numbers of an element.
-    pub element: usize,
-    /// What they are divided by: the elements around that were added up.
-    pub elements_around: f64,
-}
-
 /// What a slab adds to the blocks K̄_d between rings d = 0 to p apart, as far as a mirror through
 /// the axis leaves them: M_0 = K̄_0, M_d = K̄_d + S K̄_dᵀ S, where S turns the circumferential
 /// component around. Lower half by rows of control points, one ring to each.
+///
+/// `summed` holds moduli pulled back to (ζ, s, R) with their weights, summed around the tube: for
+/// every element along the slab, [`AVERAGED`] numbers at (point along, layer, point through, point
+/// around).
 pub fn slab_offsets<const N: usize>(
     slab: &Slab,
     layers: &[Layer],
     points: usize,
     sector: &Sector,
     around: &[Around],
-    averaged: &Averaged,
+    summed: &[f64],
 ) -> Vec<SlabTangent> {
     dispatch!(Level::new(), simd => {
-        kernel::<_, N>(simd, slab, layers, points, sector, around, averaged)
+        kernel::<_, N>(simd, slab, layers, points, sector, around, summed)
     })
 }
 
@@ -49,10 +41,11 @@ fn kernel<S: Simd, const N: usize>(
     points: usize,
     sector: &Sector,
     around: &[Around],
-    averaged: &Averaged,
+    summed: &[f64],
 ) -> Vec<SlabTangent> {
     let m = points * 3;
     let rows = slab.elements + N - 1;
+    let scale = 1.0 / sector.rings as f64;
     let zero = f64x8::splat(simd, 0.0);
     let turns: Vec<Vec<Turn>> = around
         .iter()
@@ -75,7 +68,7 @@ fn kernel<S: Simd, const N: usize>(
                 turned.fill([[[[zero; 3]; 3]; 3]; 3]);
                 for (qs, turns) in turns.iter().enumerate() {
                     let at = (((qz * layers.len() + t) * N + qr) * N + qs) * AVERAGED;
-                    let blocks = load(simd, slab, averaged, at);
+                    let blocks = load(simd, slab, scale, summed, at);
                     for r in 0..N {
                         for s in r..N {
                             add_turned(&mut turned[s - r], &blocks, &turns[r], &turns[s], s == r);
@@ -110,14 +103,18 @@ fn kernel<S: Simd, const N: usize>(
     out
 }
 
-/// The moduli of eight elements along the tube.
+/// The moduli of eight elements along the tube, scaled.
 #[inline(always)]
-fn load<S: Simd>(simd: S, slab: &Slab, averaged: &Averaged, at: usize) -> [[[f64x8<S>; 3]; 3]; 6] {
-    let scale = 1.0 / averaged.elements_around;
-    let elements: [&[f64]; LANES] = std::array::from_fn(|l| {
-        let from = (slab.first + slab.row(l)) * averaged.element + at;
-        &averaged.numbers[from..from + AVERAGED]
-    });
+fn load<S: Simd>(
+    simd: S,
+    slab: &Slab,
+    scale: f64,
+    summed: &[f64],
+    at: usize,
+) -> [[[f64x8<S>; 3]; 3]; 6] {
+    let element = summed.len() / slab.elements;
+    let elements: [&[f64]; LANES] =
+        std::array::from_fn(|l| &summed[slab.row(l) * element + at..][..AVERAGED]);
     // Spare lanes have no weight, but add_along would count them.
     let scale: [f64; LANES] = std::array::from_fn(|l| if l < slab.elements { scale } else { 0.0 });
     let mut blocks = [[[f64x8::splat(simd, 0.0); 3]; 3]; 6];

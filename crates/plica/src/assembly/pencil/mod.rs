@@ -22,7 +22,7 @@ mod linear;
 #[cfg(test)]
 mod tests;
 
-pub use average::{AVERAGED, Averaged, slab_offsets};
+pub use average::{AVERAGED, slab_offsets};
 pub use coupling::pencil_moduli;
 pub use forces::pencil_forces;
 pub use linear::{Kept, kept_len, pencil_keep, pencil_product};

@@ -149,7 +149,8 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
             ]
         });
         let low = LowHarmonics::new(&tube, 2);
-        let coupled = tube.coupled_tangent(&low, &load, &u);
+        let mut coupled = BlockBanded::zeros(tube.axial.functions(), low.row(), tube.degree());
+        tube.coupled_tangent(&low, &load, &u, &mut coupled);
         let at = tube.linearised(&load, &u);
         let points = low.through.len();
         let waves = Transform::new(rings);
