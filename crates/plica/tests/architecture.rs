@@ -68,10 +68,7 @@ fn table() -> (Vec<String>, Arrows) {
 
 /// The rooms that a file names after `crate::`, tests and comments aside.
 fn named(file: &Path) -> BTreeSet<String> {
-    if ["tests.rs", "plain.rs"]
-        .iter()
-        .any(|name| file.ends_with(name))
-    {
+    if is_test(file) {
         return BTreeSet::new();
     }
     let text = text(file);
@@ -93,4 +90,12 @@ fn named(file: &Path) -> BTreeSet<String> {
         }
     }
     rooms
+}
+
+/// A file of tests alone, in its own folder or not; plain twins are there for tests only.
+fn is_test(file: &Path) -> bool {
+    let within = file
+        .parent()
+        .is_some_and(|folder| folder.ends_with("tests"));
+    within || file.ends_with("tests.rs") || file.ends_with("plain.rs")
 }

@@ -1,0 +1,183 @@
+//! What imperfections displace.
+
+use super::{TubeAndLoad, tube_and_load};
+use crate::assembly::{Point, SplineTube};
+use crate::tube::{
+    Axial, End, EndMotion, Imperfection, Mesh, Part, Push, Shape, Support, Tube, Wave,
+};
+
+/// The tube of the other tests, imperfect, with twelve rings around.
+fn imperfect(ends: [Support; 2], of: Part, amplitude: f64, wave: Wave) -> SplineTube {
+    let TubeAndLoad { tube, .. } = tube_and_load(3, [9, 2, 12], 1);
+    let mesh = Mesh {
+        axial: 12,
+        around: 12,
+        thickness: 5,
+        degree: 3,
+        refinements: vec![],
+    };
+    let imperfection = Imperfection {
+        of,
+        amplitude,
+        shape: Shape::Wave(wave),
+    };
+    let tube = Tube {
+        ends,
+        imperfections: vec![imperfection],
+        ..tube.tube
+    };
+    SplineTube::new(&tube, &mesh, 12)
+}
+
+const COLON: Part = Part::End(End::Colon, Push::Across);
+
+/// Displacement (z, x, y) of a point of a tube at rest whose unknowns are `u`.
+fn displacement(tube: &SplineTube, u: &[f64], z: f64, radius: f64, angle: f64) -> [f64; 3] {
+    let at = tube.sample(&tube.tube.rest(), u, Point { z, radius, angle });
+    [0, 1, 2].map(|i| at.position[i] - at.reference[i])
+}
+
+#[test]
+fn harmonic_1_of_an_end_shifts_the_drawn_face_sideways() {
+    let phase = 0.4;
+    let wave = Wave::new(1, phase, Axial::Uniform);
+    let tube = imperfect([Support::Fixed; 2], COLON, 0.03, wave);
+    let mut u = vec![0.0; tube.unknowns()];
+    tube.impose(&tube.tube.rest(), &mut u);
+    for i in 0..50 {
+        let angle = 0.13 * f64::from(i);
+        let moved = displacement(&tube, &u, 0.0, 0.45, angle);
+        let shift = [0.0, 0.03 * phase.cos(), 0.03 * phase.sin()];
+        for (x, expected) in moved.into_iter().zip(shift) {
+            assert!((x - expected).abs() < 1e-16, "{moved:?}");
+        }
+        assert!(displacement(&tube, &u, 1.5, 0.45, angle)[1].abs() < 1e-16);
+    }
+}
+
+#[test]
+fn harmonic_1_of_an_end_along_the_axis_tilts_the_drawn_face() {
+    let wave = Wave::new(1, 0.0, Axial::Uniform);
+    let of = Part::End(End::Ileum, Push::Axial);
+    let tube = imperfect([Support::Fixed, Support::Sliding], of, 0.03, wave);
+    let mut u = vec![0.0; tube.unknowns()];
+    tube.impose(&tube.tube.rest(), &mut u);
+    for i in 0..50 {
+        let (angle, radius) = (0.13 * f64::from(i), 0.35 + 0.003 * f64::from(i));
+        let at = tube.sample(
+            &tube.tube.rest(),
+            &u,
+            Point {
+                z: 1.5,
+                radius,
+                angle,
+            },
+        );
+        let [z, x, y] = [0, 1, 2].map(|i| at.position[i] - at.reference[i]);
+        // A plane: proportional to x, and the amplitude at x = D/2.
+        let expected = 0.03 * at.reference[1] / 0.5;
+        assert!((z - expected).abs() < 1e-15, "{z} is not {expected}");
+        assert!(x.abs().max(y.abs()) < 1e-16);
+    }
+}
+
+#[test]
+fn harmonic_2_of_an_end_is_oval_as_high_as_asked_and_keeps_lengths() {
+    let wave = Wave::new(2, 0.0, Axial::Uniform);
+    let tube = imperfect([Support::Fixed; 2], COLON, 0.01, wave);
+    let mut u = vec![0.0; tube.unknowns()];
+    tube.impose(&tube.tube.rest(), &mut u);
+    let turned = |angle: f64| {
+        let [_, x, y] = displacement(&tube, &u, 0.0, 0.45, angle);
+        let (sin, cos) = angle.sin_cos();
+        [x * cos + y * sin, y * cos - x * sin]
+    };
+    for i in 0..50 {
+        let angle = 0.13 * f64::from(i);
+        let [radial, around] = turned(angle);
+        // Twelve splines draw three turns to 2 %.
+        assert!(
+            (radial - 0.01 * (2.0 * angle).cos()).abs() < 1e-4,
+            "{radial}"
+        );
+        assert!(
+            (around + 0.005 * (2.0 * angle).sin()).abs() < 1e-4,
+            "{around}"
+        );
+    }
+}
+
+#[test]
+fn an_imperfect_end_is_turned_with_its_shift() {
+    let wave = Wave::new(1, 0.0, Axial::Uniform);
+    let tube = imperfect([Support::Fixed; 2], COLON, 0.03, wave);
+    let mut load = tube.tube.rest();
+    load.ends[0] = EndMotion {
+        displacement: 0.02,
+        twist: 0.5,
+    };
+    let mut u = vec![0.0; tube.unknowns()];
+    tube.impose(&load, &mut u);
+    for i in 0..20 {
+        let angle = 0.3 * f64::from(i);
+        let point = Point {
+            z: 0.0,
+            radius: 0.45,
+            angle,
+        };
+        let at = tube.sample(&load, &u, point);
+        let (sin, cos) = 0.5_f64.sin_cos();
+        let [_, x, y] = at.reference;
+        let expected = [0.02, (x + 0.03) * cos - y * sin, (x + 0.03) * sin + y * cos];
+        for (x, expected) in at.position.into_iter().zip(expected) {
+            assert!((x - expected).abs() < 1e-15, "{:?}", at.position);
+        }
+    }
+}
+
+#[test]
+fn a_geometric_imperfection_is_zero_at_fixed_ends_and_as_high_as_asked_between() {
+    for (axial, middle) in [
+        (Axial::HalfWaves(1), 1.0),
+        (Axial::Uniform, 1.0),
+        (Axial::Zone([0.5, 1.0]), 0.7),
+    ] {
+        for harmonic in 0..=3 {
+            let wave = Wave::new(harmonic, 0.0, axial);
+            let tube = imperfect([Support::Fixed; 2], Part::Geometry, 0.01, wave);
+            let u = tube.geometric_imperfection().unwrap();
+            for z in [0.0, 1.5] {
+                for x in displacement(&tube, &u, z, 0.45, 0.3) {
+                    assert!(x.abs() < 1e-17, "{wave:?} at {z}: {x}");
+                }
+            }
+            // Control values flatten a crest, that over three elements by a quarter.
+            let x = displacement(&tube, &u, 0.75, 0.45, 0.0)[1];
+            assert!(x > 0.95 * middle * 0.01 && x < 0.0103, "{wave:?}: {x}");
+        }
+    }
+}
+
+#[test]
+fn a_perfect_tube_has_no_imperfect_geometry_and_starts_at_rest() {
+    let TubeAndLoad { tube, load } = tube_and_load(3, [9, 2, 6], 6);
+    assert_eq!(tube.geometric_imperfection(), None);
+    assert!(tube.start().iter().all(|x| x.to_bits() == 0));
+    for z in [0.1, 0.3, 0.75, 1.2] {
+        assert_eq!(
+            tube.tube.stretches_at(z, 2.0, &load),
+            tube.tube.stretches(z, &load)
+        );
+    }
+}
+
+#[test]
+fn a_start_is_smooth_and_holds_the_ends() {
+    let wave = Wave::new(2, 0.3, Axial::Uniform);
+    let tube = imperfect([Support::Fixed; 2], COLON, 0.01, wave);
+    let u = tube.start();
+    let mut imposed = u.clone();
+    tube.impose(&tube.tube.rest(), &mut imposed);
+    assert_eq!(u, imposed);
+    assert!(tube.forces(&tube.tube.rest(), &u).is_ok());
+}

@@ -1,0 +1,91 @@
+//! That neither threads nor parts show in what slabs leave, and that what cannot be is an error.
+
+use super::{TubeAndLoad, direction, largest, moved, replicated, tube_and_load, unknowns, wavy};
+use crate::assembly::{Inverted, SplineTube};
+
+#[test]
+fn a_tangent_too_large_to_be_held_at_once_is_summed_in_parts() {
+    // Slabs of 90 MB, so that the third is not worked on together with the first two.
+    let one = tube_and_load(1, [17, 1, 132], 1);
+    let whole = tube_and_load(1, [17, 1, 132], 132).tube;
+    let (u, d) = (wavy(&one.tube), direction(&one.tube));
+    let product = |tube: &SplineTube, u: &[f64], d: &[f64]| {
+        let mut sum = vec![0.0; u.len()];
+        tube.tangent(&one.load, u).multiply_add(1.0, d, &mut sum);
+        sum
+    };
+    let expected = replicated(&product(&one.tube, &u, &d), 132);
+    let many = product(&whole, &replicated(&u, 132), &replicated(&d, 132));
+    let off = largest(&moved(&many, &expected, -1.0));
+    assert!(off < 1e-11 * largest(&expected), "{off:e}");
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let TubeAndLoad { tube, load } = tube_and_load(3, [29, 2, 6], 6);
+    let u = wavy(&tube);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().unwrap().install(|| {
+            let forces = tube.forces(&load, &u).unwrap();
+            let tangent = tube.tangent(&load, &u);
+            let n = tube.unknowns();
+            let mut bits: Vec<u64> = (0..n * n)
+                .map(|e| tangent.entry(e / n, e % n).to_bits())
+                .collect();
+            bits.extend(forces.residual.iter().map(|r| r.to_bits()));
+            bits.extend([forces.energy, forces.energy_ungrown, forces.in_play].map(f64::to_bits));
+            bits
+        })
+    };
+    let alone = with(1);
+    for threads in [2, 8] {
+        assert!(with(threads) == alone, "{threads} threads");
+    }
+}
+
+#[test]
+fn an_element_turned_inside_out_is_an_error_that_says_where() {
+    // One row of control points is pushed past its neighbours: every element there inverts.
+    let TubeAndLoad { tube, .. } = tube_and_load(1, [20, 2, 6], 6);
+    let rest = tube.tube.rest();
+    let middle = tube.axial.greville()[13];
+    let u = unknowns(&tube, |z, _, _| {
+        [if z == middle { 0.1 } else { 0.0 }, 0.0, 0.0]
+    });
+    let Inverted {
+        element,
+        z,
+        radius,
+        jacobian,
+    } = tube.forces(&rest, &u).unwrap_err();
+    // Elements are 0.075 long: row 13 passes row 14, and the element between them is mirrored.
+    assert_eq!(element[0], 13);
+    assert!((z - middle).abs() < 1e-14, "z = {z}");
+    assert!((0.35..0.5).contains(&radius) && element[1] < 2 && element[2] < 6);
+    assert!((jacobian - (1.0 - 0.1 / 0.075)).abs() < 1e-12, "{jacobian}");
+}
+
+#[test]
+fn a_displacement_that_is_not_a_number_is_an_error() {
+    for rings in [1, 6] {
+        let TubeAndLoad { tube, load } = tube_and_load(3, [11, 2, 6], rings);
+        for unknown in [0, tube.unknowns() / 2, tube.unknowns() - 1] {
+            for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut u = wavy(&tube);
+                u[unknown] = bad;
+                let error = tube.forces(&load, &u).unwrap_err();
+                let row = unknown / tube.row_size();
+                assert!(
+                    (element_rows(&tube, error.element[0])).contains(&row),
+                    "{rings} rings, unknown {unknown}: row {row} is not of {error:?}"
+                );
+            }
+        }
+    }
+}
+
+/// The rows of control points that an element along the tube reads.
+fn element_rows(tube: &SplineTube, element: usize) -> std::ops::RangeInclusive<usize> {
+    element..=element + tube.degree()
+}

@@ -1,0 +1,77 @@
+//! How a tube is held.
+
+use super::{TubeAndLoad, tube_and_load};
+use crate::assembly::{Point, SplineTube};
+use crate::tube::{EndMotion, Mesh, Support, Tube};
+
+#[test]
+fn anchors_are_as_many_as_rigid_motions_are_left() {
+    use Support::{Fixed, Free, Sliding};
+    // Along z and about z; for the whole circumference also two shifts and two tilts.
+    for (ends, one_ring, whole) in [
+        ([Fixed, Fixed], 0, 0),
+        ([Fixed, Sliding], 0, 0),
+        ([Fixed, Free], 0, 0),
+        ([Sliding, Fixed], 0, 0),
+        ([Sliding, Sliding], 1, 3),
+        ([Sliding, Free], 1, 3),
+        ([Free, Fixed], 0, 0),
+        ([Free, Sliding], 1, 3),
+        ([Free, Free], 2, 6),
+    ] {
+        for (rings, anchors) in [(1, one_ring), (3, one_ring), (6, whole)] {
+            let TubeAndLoad { tube, .. } = tube_and_load(2, [4, 1, 6], rings);
+            let tube = Tube { ends, ..tube.tube };
+            let mesh = Mesh {
+                axial: 6,
+                around: 6,
+                thickness: 3,
+                degree: 2,
+                refinements: vec![],
+            };
+            let spline = SplineTube::new(&tube, &mesh, rings);
+            assert_eq!(spline.anchors(), anchors, "{ends:?}, {rings} rings");
+
+            // With them the tube at rest is held: its stiffness has no eigenvalue near zero.
+            let zero = vec![0.0; spline.unknowns()];
+            let mut K = spline.tangent(&tube.rest(), &zero);
+            K.constrain(spline.given());
+            let n = spline.unknowns();
+            let dense = faer::Mat::from_fn(n, n, |i, j| K.entry(i, j));
+            let eigenvalues = dense.self_adjoint_eigenvalues(faer::Side::Lower).unwrap();
+            assert!(eigenvalues[0] > 1e-5, "{ends:?}: {}", eigenvalues[0]);
+        }
+    }
+}
+
+#[test]
+fn ends_move_and_twist_as_the_load_says() {
+    for rings in [1, 6] {
+        let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 6], rings);
+        let mut load = tube.tube.rest();
+        load.ends = [
+            EndMotion {
+                displacement: -0.2,
+                twist: 0.0,
+            },
+            EndMotion {
+                displacement: 0.1,
+                twist: 0.9,
+            },
+        ];
+        let mut u = vec![0.0; tube.unknowns()];
+        tube.impose(&load, &mut u);
+        for angle in [0.0, 0.3, 2.0] {
+            for radius in [0.35, 0.42, 0.5] {
+                for (z, motion) in [(0.0, load.ends[0]), (1.5, load.ends[1])] {
+                    let sample = tube.sample(&load, &u, Point { z, radius, angle });
+                    let ([_, X, Y], [along, x, y]) = (sample.reference, sample.position);
+                    let (sin, cos) = motion.twist.sin_cos();
+                    assert!((along - z - motion.displacement).abs() < 1e-14);
+                    assert!((x - (X * cos - Y * sin)).abs() < 1e-14);
+                    assert!((y - (X * sin + Y * cos)).abs() < 1e-14);
+                }
+            }
+        }
+    }
+}
