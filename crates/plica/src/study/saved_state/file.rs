@@ -6,173 +6,19 @@
 //! BLAKE3 of the whole file with its own 64 digits written as zeros. docs/run-directory.md
 //! describes the file for readers in other languages.
 
-use super::{Layout, Plan};
-use crate::activation::Direction;
-use crate::spline::Refinement;
-use crate::tube::{EndMotion, Load, Mesh};
+use super::header::Header;
+use super::{Array, SavedState, SavedStateError};
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensorError, SafeTensors};
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
 /// Version of the format that is written, and the newest that is read.
-const FORMAT: u32 = 1;
+pub(super) const FORMAT: u32 = 1;
 /// The checksum before it is known.
-const BLANK: &str = "0000000000000000000000000000000000000000000000000000000000000000";
-
-/// A state with all that it takes to go on from it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SavedState {
-    /// Name of its stage; `rest` for the tube at rest.
-    pub stage: String,
-    /// Number of its row in `history.csv`.
-    pub row: usize,
-    /// How far along its stage it is, 0 to 1.
-    pub along: f64,
-    /// Name and direction of each muscle, in the order of the load.
-    pub muscles: Vec<(String, Direction)>,
-    /// The load it is under.
-    pub load: Load,
-    /// What its unknowns belong to.
-    pub layout: Layout,
-    /// The unknowns of the sector, in D.
-    pub u: Vec<f64>,
-    /// Whatever else goes with it, by name; not `u`.
-    pub arrays: BTreeMap<String, Array>,
-}
-
-/// Numbers in rows and columns, the last index fastest.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Array {
-    /// Length of each index; the product is the number of values.
-    pub shape: Vec<usize>,
-    /// The numbers.
-    pub values: Vec<f64>,
-}
-
-/// Why a saved state cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum SavedStateError {
-    /// It cannot be read or written.
-    #[error(transparent)]
-    File(#[from] Error),
-    /// It is something else.
-    #[error("this is not a saved state ({0})")]
-    Foreign(String),
-    /// It ends early, or late.
-    #[error("the file is cut short or has something added (it holds {bytes} bytes); save it again")]
-    Cut {
-        /// Bytes of the file.
-        bytes: usize,
-    },
-    /// A later version wrote it.
-    #[error(
-        "its format is {found}, and this program reads formats up to {FORMAT}; take a newer plica"
-    )]
-    Newer {
-        /// Its format.
-        found: u32,
-    },
-    /// It is not what was written.
-    #[error(
-        "the file is damaged: its checksum is {found}, and should be {expected}; save it again"
-    )]
-    Damaged {
-        /// The checksum it carries.
-        expected: String,
-        /// The checksum it has.
-        found: String,
-    },
-    /// An array is not as it must be.
-    #[error("its array `{name}` {what}")]
-    Array {
-        /// Its name.
-        name: String,
-        /// What is wrong with it.
-        what: String,
-    },
-    /// Its tube or mesh is none.
-    #[error("its header makes no sense: {0}")]
-    Header(&'static str),
-    /// It belongs to another tube or mesh.
-    #[error("it belongs to another {what}: {found}, and not {expected}")]
-    Other {
-        /// Tube, mesh or symmetry.
-        what: &'static str,
-        /// Of the state.
-        found: String,
-        /// Of the case.
-        expected: String,
-    },
-}
-
-/// What is written about a state, as JSON. The checksum comes first, so that nothing that a user
-/// names can be taken for it.
-#[derive(Debug, Deserialize, Serialize)]
-struct Header {
-    format: u32,
-    blake3: String,
-    written_by: String,
-    stage: String,
-    row: usize,
-    along: f64,
-    load: LoadHeader,
-    tube: TubeHeader,
-    mesh: MeshHeader,
-    rings: usize,
-}
-
-#[derive(Debug, Deserialize, Serialize)]
-struct LoadHeader {
-    muscles: Vec<MuscleHeader>,
-    colon: EndHeader,
-    ileum: EndHeader,
-}
-
-#[derive(Debug, Deserialize, Serialize)]
-struct MuscleHeader {
-    name: String,
-    direction: DirectionHeader,
-    ratio: f64,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum DirectionHeader {
-    Circular,
-    Longitudinal,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
-struct EndHeader {
-    displacement: f64,
-    twist_radians: f64,
-}
-
-#[derive(Debug, Deserialize, Serialize)]
-struct TubeHeader {
-    length: f64,
-    thickness: f64,
-}
-
-#[derive(Debug, Deserialize, Serialize)]
-struct MeshHeader {
-    axial: usize,
-    around: usize,
-    thickness: usize,
-    degree: usize,
-    refine: Vec<RefineHeader>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
-struct RefineHeader {
-    from: f64,
-    to: f64,
-    factor: f64,
-}
+pub(super) const BLANK: &str = "0000000000000000000000000000000000000000000000000000000000000000";
 
 impl SavedState {
     /// The content of its file.
@@ -264,168 +110,6 @@ impl SavedState {
         file.take(about.len()).read_to_end(&mut bytes)?;
         Self::from_bytes(&bytes)
     }
-
-    /// Whether the state is one of a plan's tube on the plan's mesh.
-    ///
-    /// # Errors
-    /// [`SavedStateError::Other`] with what differs.
-    pub fn belongs_to(&self, plan: &Plan) -> Result<(), SavedStateError> {
-        let (mine, own) = (&self.layout, &Layout::of(plan));
-        let differ = |what, found: String, expected: String| {
-            if found == expected {
-                return Ok(());
-            }
-            Err(SavedStateError::Other {
-                what,
-                found,
-                expected,
-            })
-        };
-        let size = |l: &Layout| format!("{} D long, {} D thick", l.length, l.thickness);
-        let mesh = |l: &Layout| {
-            let Mesh {
-                axial,
-                around,
-                thickness,
-                degree,
-                ..
-            } = &l.mesh;
-            format!("{axial} x {around} x {thickness} of degree {degree}")
-        };
-        let refine = |l: &Layout| format!("refined as {:?}", l.mesh.refinements);
-        let muscles = plan.tube.muscles.iter();
-        let muscles: Vec<_> = muscles.map(|m| (m.name.clone(), m.direction)).collect();
-        differ("tube", size(mine), size(own))?;
-        differ("mesh", mesh(mine), mesh(own))?;
-        differ("mesh", refine(mine), refine(own))?;
-        differ(
-            "symmetry",
-            format!("{} rings", mine.rings),
-            format!("{} rings", own.rings),
-        )?;
-        differ(
-            "set of muscles",
-            format!("{:?}", self.muscles),
-            format!("{muscles:?}"),
-        )
-    }
-
-    fn header(&self) -> Header {
-        let muscle = |((name, direction), &ratio): (&(String, Direction), &f64)| MuscleHeader {
-            name: name.clone(),
-            direction: match direction {
-                Direction::Circular => DirectionHeader::Circular,
-                Direction::Longitudinal => DirectionHeader::Longitudinal,
-            },
-            ratio,
-        };
-        let end = |motion: EndMotion| EndHeader {
-            displacement: motion.displacement,
-            twist_radians: motion.twist,
-        };
-        let Layout {
-            length,
-            thickness,
-            ref mesh,
-            rings,
-        } = self.layout;
-        let refine = |r: &Refinement| RefineHeader {
-            from: r.from,
-            to: r.to,
-            factor: r.factor,
-        };
-        Header {
-            format: FORMAT,
-            blake3: BLANK.to_owned(),
-            written_by: concat!("plica ", env!("CARGO_PKG_VERSION")).to_owned(),
-            stage: self.stage.clone(),
-            row: self.row,
-            along: self.along,
-            load: LoadHeader {
-                muscles: self
-                    .muscles
-                    .iter()
-                    .zip(&self.load.muscles)
-                    .map(muscle)
-                    .collect(),
-                colon: end(self.load.ends[0]),
-                ileum: end(self.load.ends[1]),
-            },
-            tube: TubeHeader { length, thickness },
-            mesh: MeshHeader {
-                axial: mesh.axial,
-                around: mesh.around,
-                thickness: mesh.thickness,
-                degree: mesh.degree,
-                refine: mesh.refinements.iter().map(refine).collect(),
-            },
-            rings,
-        }
-    }
-
-    /// Of a header and the arrays beside it, if they go together.
-    fn new(
-        header: Header,
-        u: Array,
-        arrays: BTreeMap<String, Array>,
-    ) -> Result<Self, SavedStateError> {
-        let end = |end: EndHeader| EndMotion {
-            displacement: end.displacement,
-            twist: end.twist_radians,
-        };
-        let refinement = |r: &RefineHeader| Refinement {
-            from: r.from,
-            to: r.to,
-            factor: r.factor,
-        };
-        let layout = Layout {
-            length: header.tube.length,
-            thickness: header.tube.thickness,
-            mesh: Mesh {
-                axial: header.mesh.axial,
-                around: header.mesh.around,
-                thickness: header.mesh.thickness,
-                degree: header.mesh.degree,
-                refinements: header.mesh.refine.iter().map(refinement).collect(),
-            },
-            rings: header.rings,
-        };
-        if let Some(fault) = layout.fault() {
-            return Err(SavedStateError::Header(fault));
-        }
-        if u.shape != layout.shape() {
-            let what = format!(
-                "has shape {:?}, and its mesh needs {:?}",
-                u.shape,
-                layout.shape()
-            );
-            return Err(SavedStateError::Array {
-                name: "u".into(),
-                what,
-            });
-        }
-        let muscles = header.load.muscles;
-        let direction = |direction| match direction {
-            DirectionHeader::Circular => Direction::Circular,
-            DirectionHeader::Longitudinal => Direction::Longitudinal,
-        };
-        Ok(Self {
-            stage: header.stage,
-            row: header.row,
-            along: header.along,
-            load: Load {
-                muscles: muscles.iter().map(|m| m.ratio).collect(),
-                ends: [end(header.load.colon), end(header.load.ileum)],
-            },
-            muscles: muscles
-                .into_iter()
-                .map(|m| (m.name, direction(m.direction)))
-                .collect(),
-            layout,
-            u: u.values,
-            arrays,
-        })
-    }
 }
 
 /// An array of a file.
@@ -490,6 +174,10 @@ fn unreadable(bytes: &[u8], error: &SafeTensorError) -> SavedStateError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::activation::Direction;
+    use crate::spline::Refinement;
+    use crate::study::Layout;
+    use crate::tube::{EndMotion, Load, Mesh};
 
     /// A state whose numbers use all their bits.
     fn state() -> SavedState {

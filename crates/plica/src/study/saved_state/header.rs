@@ -1,0 +1,195 @@
+//! What a file says about its state.
+
+use super::file::{BLANK, FORMAT};
+use super::{Array, SavedState, SavedStateError};
+use crate::activation::Direction;
+use crate::spline::Refinement;
+use crate::study::Layout;
+use crate::tube::{EndMotion, Load, Mesh};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What is written about a state, as JSON. The checksum comes first, so that nothing that a user
+/// names can be taken for it.
+#[derive(Debug, Deserialize, Serialize)]
+pub(super) struct Header {
+    format: u32,
+    blake3: String,
+    written_by: String,
+    stage: String,
+    row: usize,
+    along: f64,
+    load: LoadHeader,
+    tube: TubeHeader,
+    mesh: MeshHeader,
+    rings: usize,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct LoadHeader {
+    muscles: Vec<MuscleHeader>,
+    colon: EndHeader,
+    ileum: EndHeader,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct MuscleHeader {
+    name: String,
+    direction: DirectionHeader,
+    ratio: f64,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum DirectionHeader {
+    Circular,
+    Longitudinal,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+struct EndHeader {
+    displacement: f64,
+    twist_radians: f64,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct TubeHeader {
+    length: f64,
+    thickness: f64,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct MeshHeader {
+    axial: usize,
+    around: usize,
+    thickness: usize,
+    degree: usize,
+    refine: Vec<RefineHeader>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+struct RefineHeader {
+    from: f64,
+    to: f64,
+    factor: f64,
+}
+
+impl SavedState {
+    /// What its file says about it, the checksum left blank.
+    pub(super) fn header(&self) -> Header {
+        let muscle = |((name, direction), &ratio): (&(String, Direction), &f64)| MuscleHeader {
+            name: name.clone(),
+            direction: match direction {
+                Direction::Circular => DirectionHeader::Circular,
+                Direction::Longitudinal => DirectionHeader::Longitudinal,
+            },
+            ratio,
+        };
+        let end = |motion: EndMotion| EndHeader {
+            displacement: motion.displacement,
+            twist_radians: motion.twist,
+        };
+        let Layout {
+            length,
+            thickness,
+            ref mesh,
+            rings,
+        } = self.layout;
+        let refine = |r: &Refinement| RefineHeader {
+            from: r.from,
+            to: r.to,
+            factor: r.factor,
+        };
+        Header {
+            format: FORMAT,
+            blake3: BLANK.to_owned(),
+            written_by: concat!("plica ", env!("CARGO_PKG_VERSION")).to_owned(),
+            stage: self.stage.clone(),
+            row: self.row,
+            along: self.along,
+            load: LoadHeader {
+                muscles: self
+                    .muscles
+                    .iter()
+                    .zip(&self.load.muscles)
+                    .map(muscle)
+                    .collect(),
+                colon: end(self.load.ends[0]),
+                ileum: end(self.load.ends[1]),
+            },
+            tube: TubeHeader { length, thickness },
+            mesh: MeshHeader {
+                axial: mesh.axial,
+                around: mesh.around,
+                thickness: mesh.thickness,
+                degree: mesh.degree,
+                refine: mesh.refinements.iter().map(refine).collect(),
+            },
+            rings,
+        }
+    }
+
+    /// Of a header and the arrays beside it, if they go together.
+    pub(super) fn new(
+        header: Header,
+        u: Array,
+        arrays: BTreeMap<String, Array>,
+    ) -> Result<Self, SavedStateError> {
+        let end = |end: EndHeader| EndMotion {
+            displacement: end.displacement,
+            twist: end.twist_radians,
+        };
+        let refinement = |r: &RefineHeader| Refinement {
+            from: r.from,
+            to: r.to,
+            factor: r.factor,
+        };
+        let layout = Layout {
+            length: header.tube.length,
+            thickness: header.tube.thickness,
+            mesh: Mesh {
+                axial: header.mesh.axial,
+                around: header.mesh.around,
+                thickness: header.mesh.thickness,
+                degree: header.mesh.degree,
+                refinements: header.mesh.refine.iter().map(refinement).collect(),
+            },
+            rings: header.rings,
+        };
+        if let Some(fault) = layout.fault() {
+            return Err(SavedStateError::Header(fault));
+        }
+        if u.shape != layout.shape() {
+            let what = format!(
+                "has shape {:?}, and its mesh needs {:?}",
+                u.shape,
+                layout.shape()
+            );
+            return Err(SavedStateError::Array {
+                name: "u".into(),
+                what,
+            });
+        }
+        let muscles = header.load.muscles;
+        let direction = |direction| match direction {
+            DirectionHeader::Circular => Direction::Circular,
+            DirectionHeader::Longitudinal => Direction::Longitudinal,
+        };
+        Ok(Self {
+            stage: header.stage,
+            row: header.row,
+            along: header.along,
+            load: Load {
+                muscles: muscles.iter().map(|m| m.ratio).collect(),
+                ends: [end(header.load.colon), end(header.load.ileum)],
+            },
+            muscles: muscles
+                .into_iter()
+                .map(|m| (m.name, direction(m.direction)))
+                .collect(),
+            layout,
+            u: u.values,
+            arrays,
+        })
+    }
+}
