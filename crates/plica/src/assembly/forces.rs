@@ -27,10 +27,29 @@ pub struct SlabForces {
 pub struct Worst {
     /// det Fe there; NaN where Fe is not a number.
     pub jacobian: f64,
-    /// Lane (element along the slab), layer and element around.
+    /// Element along the slab (its lane; 0 in a pencil), layer and element around.
     pub element: [usize; 3],
     /// Quadrature point through the wall.
     pub qr: usize,
+}
+
+impl Worst {
+    /// Keeps the smallest det Fe, and its point; one that is not a number counts as smallest.
+    /// `element` names the element of a lane.
+    #[inline(always)]
+    pub fn note(&mut self, J: Lanes, element: impl Fn(usize) -> [usize; 3], qr: usize) {
+        let smallest = J.min();
+        if smallest >= self.jacobian || self.jacobian.is_nan() {
+            return;
+        }
+        let is_worst = |x: &f64| *x == smallest || x.is_nan();
+        let lane = J.0.iter().position(is_worst).unwrap_or(0);
+        *self = Self {
+            jacobian: smallest,
+            element: element(lane),
+            qr,
+        };
+    }
 }
 
 /// Energy and residual of one slab. `N` is the degree plus one.
@@ -87,7 +106,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'
                         let columns = Columns::new(point, radius, inverse_along, inverse_around);
                         let Fe = columns.elastic(point, radius, gradients(simd, point, &through));
                         let J = Lanes::store(Fe.determinant());
-                        note_worst(&mut worst, J, [t, element], qr);
+                        worst.note(J, |lane| [lane, t, element], qr);
 
                         let volume = weight.times(layer.weight[qr] * point.volume(radius)); // dV₀
                         let grown = volume * growth;
@@ -142,22 +161,6 @@ fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'
         worst,
         residual,
     }
-}
-
-/// Keeps the smallest det Fe; one that is not a number counts as smallest.
-#[inline(always)]
-fn note_worst(worst: &mut Worst, J: Lanes, [layer, around]: [usize; 2], qr: usize) {
-    let smallest = J.min();
-    if smallest >= worst.jacobian || worst.jacobian.is_nan() {
-        return;
-    }
-    let is_worst = |x: &f64| *x == smallest || x.is_nan();
-    let lane = J.0.iter().position(is_worst).unwrap_or(0);
-    *worst = Worst {
-        jacobian: smallest,
-        element: [lane, layer, around],
-        qr,
-    };
 }
 
 /// Adds the forces of one element per lane to the rows of the slab, lane after lane.

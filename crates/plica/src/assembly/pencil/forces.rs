@@ -72,7 +72,8 @@ fn kernel<S: Simd, L: Law, const N: usize>(
                         let columns = Columns::new(point, radius, inverse_along, inverse_around);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let Fe = columns.elastic(point, radius, g);
-                        note_worst(&mut worst, Lanes::store(Fe.determinant()), t, v, qr);
+                        let J = Lanes::store(Fe.determinant());
+                        worst.note(J, |lane| [0, t, v * LANES + lane], qr);
 
                         let volume =
                             mask.times(input.weight(qz) * layer.weight[qr] * point.volume(radius)); // dV₀
@@ -158,20 +159,4 @@ fn scatter<const N: usize>(
             }
         }
     }
-}
-
-/// Keeps the smallest det Fe; one that is not a number counts as smallest.
-#[inline(always)]
-fn note_worst(worst: &mut Worst, J: Lanes, layer: usize, v: usize, qr: usize) {
-    let smallest = J.min();
-    if smallest >= worst.jacobian || worst.jacobian.is_nan() {
-        return;
-    }
-    let is_worst = |x: &f64| *x == smallest || x.is_nan();
-    let lane = J.0.iter().position(is_worst).unwrap_or(0);
-    *worst = Worst {
-        jacobian: smallest,
-        element: [0, layer, v * LANES + lane],
-        qr,
-    };
 }
