@@ -10,6 +10,9 @@ pub const EQUILIBRIUM: f64 = 1e-6;
 /// Armijo's condition: the fraction of the predicted fall of the energy that a step must reach.
 const SUFFICIENT: f64 = 1e-4;
 
+/// Halvings of a step before it counts as leading nowhere.
+const HALVINGS: usize = 7;
+
 /// From `u`, which satisfies the supports: K Δu = −R (Okino et al. 2025, Eq. (14)) until the
 /// residual is within the tolerance. The tangent must be positive definite all the way, as far as
 /// the solver tells, and every step must lower the energy, so what is found is a minimum. A solver
@@ -96,7 +99,7 @@ enum Descent<B> {
     None,
 }
 
-/// Goes along a step as far as the energy falls, halving it at most eight times.
+/// Goes along a step as far as the energy falls: all of it, or after halvings a part.
 fn descend<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
@@ -106,7 +109,7 @@ fn descend<P: Equilibrium>(
 ) -> Result<(f64, Vec<f64>, Balance), Descent<P::Broken>> {
     let slope: f64 = forces.residual.iter().zip(step).map(|(r, s)| r * s).sum();
     let (mut length, mut broken) = (1.0, None);
-    for _ in 0..8 {
+    for _ in 0..=HALVINGS {
         let next: Vec<f64> = u.iter().zip(step).map(|(u, s)| u + length * s).collect();
         match problem.forces(load, &next) {
             Ok(f) if f.energy <= forces.energy + SUFFICIENT * length * slope + forces.rounding => {
