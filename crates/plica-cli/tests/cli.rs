@@ -2,21 +2,8 @@
 
 mod common;
 
-use common::{compare, plica, tests, text};
-use std::path::{Path, PathBuf};
-
-/// The root of the repository.
-fn root() -> PathBuf {
-    tests().join("../../..")
-}
-
-/// An empty directory of one test.
-fn scratch(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = std::fs::remove_dir_all(&path);
-    std::fs::create_dir_all(&path).unwrap();
-    path
-}
+use common::{compare, plica, root, scratch, text};
+use std::path::Path;
 
 /// A case of a second: few states on a coarse mesh.
 const QUICK: &str = "\

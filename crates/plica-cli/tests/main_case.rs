@@ -2,20 +2,8 @@
 
 mod common;
 
-use common::{compare, plica, tests, text};
-use std::path::{Path, PathBuf};
-
-/// The root of the repository.
-fn root() -> PathBuf {
-    tests().join("../../..")
-}
-
-/// A directory that is not there yet.
-fn scratch(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = std::fs::remove_dir_all(&path);
-    path
-}
+use common::{compare, plica, root, scratch, tests, text};
+use std::path::Path;
 
 /// The rows of a `history.csv`, and what its columns are called.
 struct History {
@@ -74,7 +62,7 @@ fn history(case: &str, threads: &str, run: &Path) -> History {
 
 #[test]
 fn the_small_case_invaginates_as_the_paper_says() {
-    let (run, alone) = (scratch("small"), scratch("small-alone"));
+    let [run, alone] = ["small", "small-alone"].map(|name| scratch(name).join("run"));
     let history_of_two = history("cases/small.toml", "2", &run);
     it_has_the_energies(&history_of_two);
     it_invaginates_to_the_colon(&history_of_two);
@@ -228,7 +216,6 @@ fn the_paper_s_mesh_has_the_energies_of_an_independent_program() {
         .replace(steps, "steps = 13")
         .replace(length, "length_ratio = 1.13");
     let directory = scratch("paper");
-    std::fs::create_dir_all(&directory).unwrap();
     let path = directory.join("cut.toml");
     std::fs::write(&path, cut + "\n[output]\npictures = false\n").unwrap();
     let history = history(path.to_str().unwrap(), "2", &directory.join("run"));

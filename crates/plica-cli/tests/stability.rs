@@ -2,18 +2,10 @@
 
 mod common;
 
-use common::{compare, plica, text};
+use common::{compare, plica, scratch, text};
 use plica::study::SavedState;
 use std::fs;
-use std::path::{Path, PathBuf};
-
-/// An empty directory of one test.
-fn scratch(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).unwrap();
-    path
-}
+use std::path::Path;
 
 /// The relaxing tube on a coarse mesh.
 const RELAXING: &str = "\

@@ -2,18 +2,10 @@
 
 mod common;
 
-use common::{compare, plica, text};
+use common::{compare, plica, scratch, text};
 use plica::study::SavedState;
 use std::fs;
-use std::path::{Path, PathBuf};
-
-/// An empty directory of one test.
-fn scratch(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(path.join("cases")).unwrap();
-    path
-}
+use std::path::Path;
 
 /// A ring contracts on a coarse mesh.
 const FIRST: &str = "\
@@ -44,6 +36,7 @@ fn next(state: &str) -> String {
 /// Runs a case of a name: exit code and standard error.
 fn run(directory: &Path, name: &str, case: &str) -> (Option<i32>, String) {
     let file = format!("cases/{name}.toml");
+    fs::create_dir_all(directory.join("cases")).unwrap();
     fs::write(directory.join(&file), case).unwrap();
     let said = plica(directory, &["run", &file, "--out", name]);
     (said.status.code(), text(&said.stderr))

@@ -1,5 +1,7 @@
 //! Running the program, and comparing what it says with a file.
 
+#![allow(dead_code)] // every file of tests uses a part
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -15,6 +17,19 @@ pub fn plica(directory: &Path, arguments: &[&str]) -> Output {
 /// The directory of these tests.
 pub fn tests() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests")
+}
+
+/// The root of the repository.
+pub fn root() -> PathBuf {
+    tests().join("../../..")
+}
+
+/// An empty directory of one test.
+pub fn scratch(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
 }
 
 /// Bytes as text, with the line ends and the program's name that they have everywhere.
