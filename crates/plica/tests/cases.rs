@@ -4,22 +4,6 @@
 
 use plica::assembly::SplineTube;
 
-/// Unknowns from a function of z, reference radius and ring (0 to 1 over the sector) that gives
-/// the axial, radial and circumferential component.
-fn unknowns(tube: &SplineTube, field: impl Fn(f64, f64, f64) -> [f64; 3]) -> Vec<f64> {
-    let rings = tube.sector.rings;
-    let mut u = vec![];
-    for z in tube.axial.greville() {
-        for r in tube.wall.greville() {
-            let at = |j: usize| field(z, r, j as f64 / rings as f64);
-            for i in 0..3 {
-                u.extend((0..rings).map(|j| at(j)[i]));
-            }
-        }
-    }
-    u
-}
-
 /// A sum of waves with wave numbers and phases from a fixed recurrence, of size one.
 fn waves(seed: u64) -> impl Fn(f64, f64, f64) -> [f64; 3] {
     let mut state = seed;
@@ -58,14 +42,18 @@ fn the_tangent_of_every_case_is_the_slope_of_its_residual() {
         let rings = plan.mesh.rings(plan.symmetry);
         let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
         let load = plan.tube.rest().towards(&plan.stages[0].load, 0.5);
+        let field = |seed| {
+            let waves = waves(seed);
+            tube.control_values(|z, r, ring| waves(z, r, ring as f64 / rings as f64))
+        };
         // A displacement less than half as large as the wall is thick.
         let mut u = moved(
             &vec![0.0; tube.unknowns()],
-            &unknowns(&tube, waves(1)),
+            &field(1),
             0.2 * plan.tube.thickness,
         );
         tube.impose(&load, &mut u);
-        let d = unknowns(&tube, waves(2));
+        let d = field(2);
 
         let residual = |h: f64| tube.forces(&load, &moved(&u, &d, h)).unwrap().residual;
         let mut exact = vec![0.0; u.len()];

@@ -159,6 +159,22 @@ impl SplineTube {
         self.wall.functions() * 3 * self.sector.rings
     }
 
+    /// Control values, numbered as the unknowns, from a function of a control point's z, its
+    /// reference radius and its ring that gives (axial, radial, circumferential).
+    pub fn control_values(&self, of: impl Fn(f64, f64, usize) -> [f64; 3]) -> Vec<f64> {
+        let mut values = Vec::with_capacity(self.unknowns());
+        for z in self.axial.greville() {
+            for r in self.wall.greville() {
+                let point: Vec<[f64; 3]> =
+                    (0..self.sector.rings).map(|ring| of(z, r, ring)).collect();
+                for i in 0..3 {
+                    values.extend(point.iter().map(|u| u[i]));
+                }
+            }
+        }
+        values
+    }
+
     /// Unknowns of the sector, given ones included.
     pub fn unknowns(&self) -> usize {
         self.axial.functions() * self.row_size()

@@ -37,26 +37,19 @@ fn lowest_is_negative(problem: &TubeProblem, state: &State<Load>) -> Option<bool
 fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
     let (k, length) = (tube.sector.rings, tube.tube.length);
     let repeats = tube.sector.around / k;
+    let highest = 4.min((k - 1) / 2);
     let seed = |quarter: f64| {
-        let mut u = Vec::with_capacity(tube.unknowns());
-        for z in tube.axial.greville() {
+        tube.control_values(|z, _, ring| {
             let along = (PI * z / length).sin() + 0.5 * (2.0 * PI * z / length + quarter).sin();
-            for _ in tube.wall.greville() {
-                let wave = |n: usize, j: usize| {
-                    let n = (n * repeats) as f64;
-                    (n, n * tube.sector.ring_angle(j) + quarter * (1.0 + 0.3 * n))
-                };
-                let sum = |j: usize, of: &dyn Fn(f64, f64) -> f64| {
-                    let highest = 4.min((k - 1) / 2);
-                    let parts = (1..=highest).map(|n| wave(n, j));
-                    parts.map(|(n, phi)| along * of(n, phi)).sum::<f64>()
-                };
-                u.extend((0..k).map(|j| 0.1 * sum(j, &|_, phi| phi.cos())));
-                u.extend((0..k).map(|j| along + sum(j, &|_, phi| phi.cos())));
-                u.extend((0..k).map(|j| sum(j, &|n, phi| -phi.sin() / n)));
+            let (mut radial, mut around) = (0.0, 0.0);
+            for n in 1..=highest {
+                let n = (n * repeats) as f64;
+                let phi = n * tube.sector.ring_angle(ring) + quarter * (1.0 + 0.3 * n);
+                radial += along * phi.cos();
+                around += along * (-phi.sin() / n);
             }
-        }
-        u
+            [0.1 * radial, along + radial, around]
+        })
     };
     vec![seed(0.0), seed(0.5 * PI)]
 }

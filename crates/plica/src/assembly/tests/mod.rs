@@ -65,17 +65,8 @@ pub(in crate::assembly) fn unknowns(
     tube: &SplineTube,
     field: impl Fn(f64, f64, f64) -> [f64; 3],
 ) -> Vec<f64> {
-    let rings = tube.sector.rings;
-    let mut u = vec![];
-    for z in tube.axial.greville() {
-        for r in tube.wall.greville() {
-            let at = |j: usize| field(z, r, j as f64 / rings as f64);
-            for i in 0..3 {
-                u.extend((0..rings).map(|j| at(j)[i]));
-            }
-        }
-    }
-    u
+    let rings = tube.sector.rings as f64;
+    tube.control_values(|z, r, ring| field(z, r, ring as f64 / rings))
 }
 
 /// A displacement without any symmetry but the sector's: waves as large as the wall is thick,
