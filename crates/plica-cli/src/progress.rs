@@ -8,6 +8,7 @@ use plica::study::{Observer, Plan, Row};
 pub struct Progress {
     ticker: Ticker,
     stage_width: usize,
+    round: bool,
     begun: bool,
 }
 
@@ -18,6 +19,7 @@ impl Progress {
         Self {
             ticker: Ticker::new(interrupt),
             stage_width: names.max().unwrap_or(0).clamp(5, 24),
+            round: plan.mesh.rings(plan.symmetry) == 1,
             begun: false,
         }
     }
@@ -31,10 +33,12 @@ impl Progress {
 impl Observer for Progress {
     fn accepted(&mut self, row: &Row) {
         let width = self.stage_width;
+        // What only a tube that may leave axisymmetry has to tell.
+        let departs = |what: String| if self.round { String::new() } else { what };
         if !self.begun {
             self.begun = true;
             self.ticker.line(&format!(
-                "{:>5}  {:<width$}  {:>7} {:>7} {:>11}  {:<11} {:>6}  {:<11} {:>5} {:>8}",
+                "{:>5}  {:<width$}  {:>7} {:>7} {:>11}  {:<11} {:>6}  {:<11}{} {:>5} {:>8}",
                 "state",
                 "stage",
                 "Lmax/L",
@@ -43,12 +47,13 @@ impl Observer for Progress {
                 "found by",
                 "angle",
                 "shape",
+                departs(format!(" {:>12}", "departs")),
                 "iter",
                 "seconds"
             ));
         }
         self.ticker.line(&format!(
-            "{:>5}  {:<width$}  {:>7.4} {:>7.4} {:>11.4e}  {:<11} {:>5.1}°  {:<11} {:>5} {:>8.1}",
+            "{:>5}  {:<width$}  {:>7.4} {:>7.4} {:>11.4e}  {:<11} {:>5.1}°  {:<11}{} {:>5} {:>8.1}",
             row.step,
             row.stage,
             row.length_ratio,
@@ -57,6 +62,7 @@ impl Observer for Progress {
             row.method,
             row.max_wall_angle_deg,
             row.shape,
+            departs(format!(" {:>12}", departure(row))),
             row.iterations,
             row.seconds
         ));
@@ -68,5 +74,13 @@ impl Observer for Progress {
 
     fn stop(&mut self) -> bool {
         self.ticker.stop()
+    }
+}
+
+/// How far a state is from axisymmetric, and in which harmonic.
+fn departure(row: &Row) -> String {
+    match row.departure_harmonic {
+        0 => "0".into(),
+        n => format!("{:.1e} n={n}", row.departure),
     }
 }

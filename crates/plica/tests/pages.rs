@@ -74,6 +74,9 @@ fn the_columns_of_the_history_are_listed() {
         overhang: 0.0,
         side: String::new(),
         shape: String::new(),
+        departure: 0.0,
+        departure_harmonic: 0,
+        departure_angle_deg: 0.0,
         min_det_fe: 0.0,
         unstable_harmonics: String::new(),
     };

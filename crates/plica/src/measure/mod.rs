@@ -1,20 +1,33 @@
 //! Measures of a deformed tube: what a person reads off its wall.
 //!
+//! A meridian is the material line at a reference angle φ. The radius of one of its points (z, x, y)
+//! is how far it lies out along its own direction,
+//!
+//! ρ = x cos(φ + ω) + y sin(φ + ω),
+//!
+//! where ω is the angle by which the axisymmetric part of the displacement has turned its place in
+//! the wall about the axis. In an axisymmetric tube ρ = r. Else ρ has a sign: past the axis it is negative,
+//! and the wall goes straight on there, where r would turn back.
+//!
 //! | measure | definition |
 //! |---|---|
-//! | wall | the points (z, r) of one meridian of the outer or inner face, colon to ileum |
+//! | wall | the points (z, ρ) of one meridian of the outer or inner face, colon to ileum |
 //! | wall angle | angle between the wall's tangent, followed from colon to ileum, and the axis; 0° along the tube, 90° straight in or out, past 90° where the wall runs back |
 //! | overhang | how far the wall runs back along the axis, at most: the largest z(s) − z(s') over s < s' |
 //! | side | the shoulder that overhangs more: colon if the wall runs back while it goes in, ileum if while it comes out |
-//! | depth | outer radius at rest less the smallest outer radius |
+//! | own axis | where the radii of the outer face have no first harmonic |
+//! | depth | outer radius at rest less the smallest outer radius about the own axis |
 //! | flatness | axial extent of the wall deeper than ¾ of the depth, over that deeper than ¼ |
 //! | shape | see [`Shape`] |
+//! | departure | amplitude √(aᶻ² + aᵨ²) of the largest wave cos n(φ − φ₀), n ≥ 1, in z and ρ around the outer face |
 
+mod meridians;
 mod shape;
 mod wall;
 
+pub use meridians::{Departure, Meridians};
 pub use shape::{Shape, Side};
-pub use wall::{Face, Wall, even, meridians};
+pub use wall::{Face, Wall, even};
 
 use crate::assembly::SplineTube;
 use crate::tube::Load;
@@ -22,7 +35,7 @@ use crate::tube::Load;
 /// The measures of one state; lengths in D.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
-    /// Smallest radius of the outer face.
+    /// Smallest radius of the outer face, about the tube's own axis.
     pub outer_radius_min: f64,
     /// Where along the tube that is.
     pub z_at_min: f64,
@@ -34,6 +47,8 @@ pub struct Measures {
     pub side: Side,
     /// What the contracting region looks like.
     pub shape: Shape,
+    /// How far it is from axisymmetric.
+    pub departure: Departure,
 }
 
 /// Points along the outer face from which measures are taken, per element along the tube.
@@ -41,43 +56,43 @@ const POINTS_PER_ELEMENT: usize = 6;
 
 impl Measures {
     /// Measures a state. Where the tube is not axisymmetric, each is that of the meridian where
-    /// it is most.
+    /// it is most, of sixteen from the crest of its departure on.
     pub fn of(tube: &SplineTube, load: &Load, u: &[f64]) -> Self {
-        let walls: Vec<Wall> = meridians(tube)
-            .into_iter()
-            .map(|angle| Wall::fine(tube, load, u, Face::Outer, angle, POINTS_PER_ELEMENT))
-            .collect();
-        let narrowest = |wall: &Wall| wall.narrowest().1;
-        let deepest = walls
-            .iter()
-            .min_by(|a, b| narrowest(a).total_cmp(&narrowest(b)));
-        let overhanging = walls
-            .iter()
-            .max_by(|a, b| a.overhang().0.total_cmp(&b.overhang().0));
-        let (Some(deepest), Some(overhanging)) = (deepest, overhanging) else {
+        let meridians = Meridians::of(tube, load, u);
+        let departure = meridians.departure();
+        let angles = meridians.around(departure.crest);
+        let z = even(tube, tube.axial.elements() * POINTS_PER_ELEMENT + 1);
+        let [outer, inner] =
+            [Face::Outer, Face::Inner].map(|face| meridians.walls(face, &angles, &z));
+        let overhangs = outer.iter().map(Wall::overhang);
+        let steepest = outer.iter().map(Wall::steepest_angle_deg);
+        let angle = steepest.fold(0.0, f64::max);
+
+        let [own_outer, own_inner] = meridians.about_own_axis([&outer, &inner]);
+        let narrowest = |&i: &usize| own_outer[i].narrowest().1;
+        let deepest = (0..angles.len()).min_by(|a, b| narrowest(a).total_cmp(&narrowest(b)));
+        let (Some(deepest), Some((overhang, side))) =
+            (deepest, overhangs.max_by(|a, b| a.0.total_cmp(&b.0)))
+        else {
             unreachable!("a tube has a meridian")
         };
-        let angle = walls
-            .iter()
-            .map(Wall::steepest_angle_deg)
-            .fold(0.0, f64::max);
-        let (z_at_min, outer_radius_min) = deepest.narrowest();
-        let (overhang, side) = overhanging.overhang();
-        let inner = Wall::fine(
-            tube,
-            load,
-            u,
-            Face::Inner,
-            deepest.angle,
-            POINTS_PER_ELEMENT,
-        );
+        let (z_at_min, outer_radius_min) = own_outer[deepest].narrowest();
         Self {
             outer_radius_min,
             z_at_min,
             max_wall_angle_deg: angle,
             overhang,
             side,
-            shape: Shape::of(deepest, &inner, angle, tube.tube.diameter_ratio(load)),
+            shape: Shape::of(
+                &own_outer[deepest],
+                &own_inner[deepest],
+                angle,
+                tube.tube.diameter_ratio(load),
+            ),
+            departure,
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,8 +1,7 @@
-//! One meridian of the wall, as a curve in (z, r).
+//! One meridian of the wall, as a curve in (z, ρ).
 
 use super::Side;
-use crate::assembly::{Point, SplineTube};
-use crate::tube::{Load, Tube};
+use crate::assembly::SplineTube;
 
 /// A face of the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,49 +19,12 @@ pub struct Wall {
     pub angle: f64,
     /// Reference position of its points along the tube, in D.
     pub reference_z: Vec<f64>,
-    /// Current (z, r) of its points, in D, colon to ileum.
+    /// Current (z, ρ) of its points, in D, colon to ileum. ρ is negative past the axis.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Wall {
-    /// The meridian at reference positions along the tube.
-    pub fn at(
-        tube: &SplineTube,
-        load: &Load,
-        u: &[f64],
-        face: Face,
-        angle: f64,
-        reference_z: Vec<f64>,
-    ) -> Self {
-        let radius = match face {
-            Face::Outer => Tube::OUTER_RADIUS,
-            Face::Inner => tube.tube.inner_radius(),
-        };
-        let point = |&z: &f64| {
-            let [z, x, y] = tube.sample(load, u, Point { z, radius, angle }).position;
-            (z, x.hypot(y))
-        };
-        Self {
-            angle,
-            points: reference_z.iter().map(point).collect(),
-            reference_z,
-        }
-    }
-
-    /// The meridian with equally many points in every element along the tube.
-    pub fn fine(
-        tube: &SplineTube,
-        load: &Load,
-        u: &[f64],
-        face: Face,
-        angle: f64,
-        per_element: usize,
-    ) -> Self {
-        let count = tube.axial.elements() * per_element;
-        Self::at(tube, load, u, face, angle, even(tube, count + 1))
-    }
-
-    /// The point nearest to the axis: (z, r).
+    /// The point that lies deepest: (z, ρ).
     pub fn narrowest(&self) -> (f64, f64) {
         let nearest = self.points.iter().min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.copied().unwrap_or((f64::NAN, f64::NAN))
@@ -107,17 +69,6 @@ impl Wall {
         });
         (high - low).max(0.0)
     }
-}
-
-/// The angles of the meridians that are looked at: one if the tube is axisymmetric, else eight
-/// that spread over the sector that repeats.
-pub fn meridians(tube: &SplineTube) -> Vec<f64> {
-    let sector = &tube.sector;
-    if sector.rings == 1 {
-        return vec![0.0];
-    }
-    let span = sector.rings as f64 * sector.angle();
-    (0..8).map(|i| span * f64::from(i) / 8.0).collect()
 }
 
 /// `count` reference positions, as dense along the tube as its elements.

@@ -40,7 +40,7 @@ pub struct Row {
     pub cg_iterations: usize,
     /// Wall time since the state before.
     pub seconds: f64,
-    /// Smallest radius of the outer wall.
+    /// Smallest radius of the outer wall, about the tube's own axis.
     pub outer_radius_min: f64,
     /// Where along the tube that is.
     pub z_at_min: f64,
@@ -52,6 +52,12 @@ pub struct Row {
     pub side: String,
     /// V, U, square, invaginated or collapsed; straight where nothing is contracted.
     pub shape: String,
+    /// How far the outer wall is from axisymmetric: amplitude of its largest wave around.
+    pub departure: f64,
+    /// Circumferential harmonic of that wave; 0 if there is none.
+    pub departure_harmonic: usize,
+    /// Angle of a crest of that wave, where the wall at rest was, from −180/n to 180/n.
+    pub departure_angle_deg: f64,
     /// Smallest det Fe.
     pub min_det_fe: f64,
     /// Circumferential harmonics with negative eigenvalues of the tangent, as `harmonic:count`

@@ -9,7 +9,7 @@ use super::{
     TubeProblem, forecast, prolong,
 };
 use crate::assembly::{Inverted, SplineTube};
-use crate::measure::{Face, Measures, Wall, even};
+use crate::measure::{Departure, Face, Measures, Meridians, even};
 use crate::solve::{
     Equilibrium, Failure, Found, Method, Path, PathError, Step, Watch, newton, relaxation,
 };
@@ -300,13 +300,16 @@ impl<'a> Record<'a> {
             overhang: length * measures.overhang,
             side: measures.side.to_string(),
             shape: measures.shape.to_string(),
+            departure: length * measures.departure.amplitude,
+            departure_harmonic: measures.departure.harmonic,
+            departure_angle_deg: measures.departure.crest.to_degrees(),
             min_det_fe: forces.smallest_jacobian,
             unstable_harmonics: unstable_harmonics(self.problem, state, self.plan.output.harmonics),
         };
         self.directory.record(&row)?;
         let every = self.plan.output.profiles_every;
         if every > 0 && (last || row.step.is_multiple_of(every)) {
-            self.write_profile(row.step, path)?;
+            self.write_profile(row.step, path, measures.departure)?;
         }
         let every = self.plan.output.states_every;
         if every > 0 && (last || row.step.is_multiple_of(every)) {
@@ -345,22 +348,47 @@ impl<'a> Record<'a> {
         })
     }
 
-    fn write_profile(&self, step: usize, path: &Path<'_, TubeProblem>) -> Result<(), StudyError> {
+    /// The walls of a state: one meridian, or where they differ those at crest and trough.
+    fn write_profile(
+        &self,
+        step: usize,
+        path: &Path<'_, TubeProblem>,
+        departure: Departure,
+    ) -> Result<(), StudyError> {
         let (tube, state) = (&self.problem.tube, path.state());
         let z = even(tube, self.plan.output.wall_points);
-        let wall = |face| Wall::at(tube, &state.load, &state.u, face, 0.0, z.clone());
-        let (outer, inner) = (wall(Face::Outer), wall(Face::Inner));
+        let meridians = Meridians::of(tube, &state.load, &state.u);
+        let both = departure.crest_and_trough();
+        let angles = if tube.sector.rings == 1 {
+            &both[..1]
+        } else {
+            &both
+        };
+        let [outer, inner] =
+            [Face::Outer, Face::Inner].map(|face| meridians.walls(face, angles, &z));
         let length = self.scale.length;
         let rows = (0..z.len()).map(|i| {
-            let (a, b) = (outer.points[i], inner.points[i]);
-            [z[i], a.0, a.1, b.0, b.1]
-                .iter()
-                .map(|x| length * x)
-                .collect()
+            let mut row = vec![length * z[i]];
+            for (outer, inner) in outer.iter().zip(&inner) {
+                let (a, b) = (outer.points[i], inner.points[i]);
+                row.extend([a.0, a.1, b.0, b.1].map(|x| length * x));
+            }
+            row
         });
-        let header = ["reference_z", "outer_z", "outer_r", "inner_z", "inner_r"];
+        let header = [
+            "reference_z",
+            "outer_z",
+            "outer_r",
+            "inner_z",
+            "inner_r",
+            "trough_outer_z",
+            "trough_outer_r",
+            "trough_inner_z",
+            "trough_inner_r",
+        ];
+        let header = &header[..1 + 4 * angles.len()];
         self.directory
-            .write_table(&format!("profiles/state-{step:04}.csv"), &header, rows)
+            .write_table(&format!("profiles/state-{step:04}.csv"), header, rows)
     }
 }
 

@@ -215,6 +215,13 @@ impl fmt::Display for Summary {
             "last state",
             format!("{}, {} ({})", energy(last), place(last), last.shape),
         )?;
+        let departs = self.rows.iter().filter(|row| row.departure_harmonic > 0);
+        if let Some(row) = departs.max_by(|a, b| a.departure.total_cmp(&b.departure)) {
+            let far = format!("{:.1e} {}", row.departure, self.scale.length_name);
+            let harmonic = named(&row.departure_harmonic.to_string());
+            let most = format!("by at most {far}, in {harmonic}, at {}", place(row));
+            line(f, "leaves axisymmetry", most)?;
+        }
         let count = |what: fn(&&Row) -> bool| self.rows.iter().filter(what).count();
         let found = self.rows.iter().filter(|row| row.method != "rest");
         let worst = found.map(|row| row.residual).fold(0.0, f64::max);

@@ -1,0 +1,176 @@
+//! Meridians of a state, in planes that turn with the tube; and how far it is from axisymmetric.
+
+use super::{Face, Wall, even};
+use crate::assembly::{Point, SplineTube};
+use crate::tube::{Load, Tube};
+use std::f64::consts::TAU;
+
+/// Meridians that are looked at where they differ: harmonics up to 7 of the sector are told apart.
+pub(super) const MERIDIANS: usize = 16;
+
+/// Departure, in D, up to which a tube counts as axisymmetric: what solvers leave of nothing.
+const ROUND: f64 = 1e-9;
+
+/// A state, and where its meridians have turned to.
+pub struct Meridians<'a> {
+    tube: &'a SplineTube,
+    load: &'a Load,
+    u: &'a [f64],
+    /// Where meridians may differ, the axisymmetric part of the state: its tube and its unknowns.
+    mean: Option<(SplineTube, Vec<f64>)>,
+}
+
+/// How far a state is from axisymmetric: the largest wave around its outer face.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Departure {
+    /// Amplitude of the wave's displacement along the axis and of the radius, together; in D.
+    pub amplitude: f64,
+    /// Its waves around the tube, at least 1; 0 if the tube is axisymmetric.
+    pub harmonic: usize,
+    /// Reference angle of a crest, in radians, from −π/n to π/n.
+    pub crest: f64,
+}
+
+impl Departure {
+    /// Reference angles of a crest and of the trough beside it: both sides of a tube that leans,
+    /// the widest and the narrowest meridian of an oval one.
+    pub fn crest_and_trough(&self) -> [f64; 2] {
+        [
+            self.crest,
+            self.crest + 0.5 * TAU / self.harmonic.max(1) as f64,
+        ]
+    }
+}
+
+impl<'a> Meridians<'a> {
+    /// The meridians of a state.
+    pub fn of(tube: &'a SplineTube, load: &'a Load, u: &'a [f64]) -> Self {
+        let rings = tube.sector.rings;
+        let mean = (rings > 1).then(|| {
+            let mean = |u: &[f64]| u.iter().sum::<f64>() / rings as f64;
+            let mean = u.chunks_exact(rings).map(mean).collect();
+            (tube.of_one_ring(), mean)
+        });
+        Self {
+            tube,
+            load,
+            u,
+            mean,
+        }
+    }
+
+    /// Meridians of a face at reference angles, through points at reference positions along the tube.
+    pub fn walls(&self, face: Face, angles: &[f64], reference_z: &[f64]) -> Vec<Wall> {
+        let radius = match face {
+            Face::Outer => Tube::OUTER_RADIUS,
+            Face::Inner => self.tube.tube.inner_radius(),
+        };
+        let at = |z: f64, angle: f64| Point { z, radius, angle };
+        // exp(iω) where rings may be turned against where they were.
+        let turned = |&z: &f64| {
+            let (tube, u) = self.mean.as_ref()?;
+            let [_, x, y] = tube.sample(self.load, u, at(z, 0.0)).position;
+            let size = x.hypot(y);
+            Some(if size > 0.0 {
+                (x / size, y / size)
+            } else {
+                (1.0, 0.0)
+            })
+        };
+        let turned: Vec<Option<(f64, f64)>> = reference_z.iter().map(turned).collect();
+        let wall = |&angle: &f64| {
+            let (sin, cos) = angle.sin_cos();
+            let point = |(&z, turned): (&f64, &Option<(f64, f64)>)| {
+                let [z, x, y] = self.tube.sample(self.load, self.u, at(z, angle)).position;
+                match turned {
+                    None => (z, x.hypot(y)),
+                    Some((c, s)) => (z, x * (c * cos - s * sin) + y * (s * cos + c * sin)),
+                }
+            };
+            Wall {
+                angle,
+                points: reference_z.iter().zip(&turned).map(point).collect(),
+                reference_z: reference_z.to_vec(),
+            }
+        };
+        angles.iter().map(wall).collect()
+    }
+
+    /// The largest wave around the outer face.
+    pub fn departure(&self) -> Departure {
+        let mut largest = Departure::default();
+        if self.mean.is_none() {
+            return largest;
+        }
+        let walls = self.walls(Face::Outer, &self.around(0.0), &self.every_element());
+        for i in 0..walls[0].points.len() {
+            for m in 1..MERIDIANS / 2 {
+                let harmonic = m * self.tube.sector.repeats() as usize;
+                let along = wave(&walls, harmonic, |wall| wall.points[i].0);
+                let radial = wave(&walls, harmonic, |wall| wall.points[i].1);
+                let size = |(re, im): (f64, f64)| re.hypot(im);
+                let amplitude = size(along).hypot(size(radial));
+                if amplitude > largest.amplitude {
+                    let (re, im) = if size(radial) >= size(along) {
+                        radial
+                    } else {
+                        along
+                    };
+                    largest = Departure {
+                        amplitude,
+                        harmonic,
+                        crest: im.atan2(re) / harmonic as f64,
+                    };
+                }
+            }
+        }
+        if largest.amplitude > ROUND {
+            largest
+        } else {
+            Departure::default()
+        }
+    }
+
+    /// Reference angles spread over the sector that repeats, from one on; one if all meridians are
+    /// the same.
+    pub(super) fn around(&self, first: f64) -> Vec<f64> {
+        if self.mean.is_none() {
+            return vec![0.0];
+        }
+        let span = TAU / self.tube.sector.repeats();
+        let angle = |i: usize| first + span * i as f64 / MERIDIANS as f64;
+        (0..MERIDIANS).map(angle).collect()
+    }
+
+    /// Walls at the angles of [`Meridians::around`], as seen from the tube's own axis: that about
+    /// which the radii of the first face have no first harmonic. (In a sector that repeats none have.)
+    pub(super) fn about_own_axis<const N: usize>(&self, faces: [&[Wall]; N]) -> [Vec<Wall>; N] {
+        let mut centred = faces.map(<[Wall]>::to_vec);
+        if self.mean.is_none() || self.tube.sector.repeats() > 1.0 {
+            return centred;
+        }
+        for i in 0..faces[0][0].points.len() {
+            let (x, y) = wave(faces[0], 1, |wall| wall.points[i].1);
+            for wall in centred.iter_mut().flatten() {
+                let (sin, cos) = wall.angle.sin_cos();
+                wall.points[i].1 -= x * cos + y * sin;
+            }
+        }
+        centred
+    }
+
+    /// A point per element along the tube.
+    fn every_element(&self) -> Vec<f64> {
+        even(self.tube, self.tube.axial.elements() + 1)
+    }
+}
+
+/// (a, b) of the wave a cos nφ + b sin nφ in what evenly spread meridians hold.
+fn wave(walls: &[Wall], harmonic: usize, of: impl Fn(&Wall) -> f64) -> (f64, f64) {
+    let scale = 2.0 / walls.len() as f64;
+    walls.iter().fold((0.0, 0.0), |(a, b), wall| {
+        let (sin, cos) = (harmonic as f64 * wall.angle).sin_cos();
+        let value = scale * of(wall);
+        (a + value * cos, b + value * sin)
+    })
+}
