@@ -5,7 +5,7 @@ use crate::assembly::SplineTube;
 use crate::material::{Material, NeoHookean};
 use crate::tube::{Mesh, Support, Tube};
 
-/// A long tube of `rings` rings of 24.
+/// A long tube of `rings` rings of 24, which draw a circle to 1.2e-5.
 fn tube(rings: usize) -> SplineTube {
     let tube = Tube {
         length: 3.0,
@@ -59,8 +59,9 @@ fn a_tube_that_is_round_has_the_measures_of_one_ring_though_it_twists() {
         measures(&whole, &moved(&whole, narrow)),
     );
     assert_eq!(b.departure, Departure::default());
-    assert!((a.outer_radius_min - b.outer_radius_min).abs() < 1e-6); // 24 splines are so round
-    assert!((a.max_wall_angle_deg - b.max_wall_angle_deg).abs() < 1e-4);
+    assert!((a.outer_radius_min - b.outer_radius_min).abs() < 1e-5);
+    let off = a.max_wall_angle_deg - b.max_wall_angle_deg;
+    assert!(off.abs() < 1e-2, "{off}");
     assert_eq!((a.z_at_min, a.shape, a.side), (b.z_at_min, b.shape, b.side));
 }
 
@@ -82,7 +83,8 @@ fn a_shift_that_takes_the_axis_out_of_the_lumen_bends_no_wall_and_narrows_nothin
     assert!((amplitude - 1.5).abs() < 1e-6, "{amplitude}");
     assert!((crest - 0.7).abs() < 1e-6, "{crest}");
     assert!((found.max_wall_angle_deg - 0.5_f64.atan().to_degrees()).abs() < 1e-4);
-    assert!((found.outer_radius_min - 0.5).abs() < 1e-6);
+    let off = found.outer_radius_min - 0.5;
+    assert!(off.abs() < 2e-5, "{off}");
     assert_eq!((found.overhang, found.side), (0.0, Side::None));
     // The meridian on the lee side goes through the axis as straight as it came.
     let rest = whole.tube.rest();
@@ -90,7 +92,7 @@ fn a_shift_that_takes_the_axis_out_of_the_lumen_bends_no_wall_and_narrows_nothin
     let lee = found.departure.crest_and_trough()[1];
     let wall = &meridians.walls(super::Face::Outer, &[lee], &[0.5, 2.5])[0];
     for &(z, radius) in &wall.points {
-        assert!((radius - (0.5 - 0.5 * z)).abs() < 1e-6, "{wall:?}");
+        assert!((radius - (0.5 - 0.5 * z)).abs() < 2e-5, "{wall:?}");
     }
 }
 
@@ -147,8 +149,12 @@ fn departures_of_a_fold_are_its_harmonics() {
     });
     let found = measures(&fold, &u).departure;
     assert_eq!(found.harmonic, 3);
+    // e^{iφ} cos 3φ: waves of four turns and of two, flattened as the splines draw them.
+    let drawn = |turns| fold.sector.control_wave(1) / fold.sector.control_wave(turns);
+    let expected = 0.01 * 0.5 * (drawn(4) + drawn(2));
+    let off = found.amplitude / expected - 1.0;
     assert!(
-        (found.amplitude / 0.01 - 1.0).abs() < 0.05 && found.crest.abs() < 1e-6,
-        "{found:?}"
+        off.abs() < 0.01 && found.crest.abs() < 1e-6,
+        "{found:?}, off by {off}"
     );
 }

@@ -160,7 +160,7 @@ fn walls(
     if !one_line {
         let axis = Curve {
             points: vec![(low, 0.0), (high, 0.0)],
-            stroke: Stroke::Fine,
+            stroke: Stroke::Dashed,
             ..Curve::default()
         };
         curves.push(axis);
