@@ -60,15 +60,22 @@ pub struct RunArguments {
 /// What `plica stability` takes.
 #[derive(Args, Debug)]
 pub struct StabilityArguments {
-    /// The directory of an axisymmetric run
+    /// The directory of a run
     #[arg(value_name = "RUN_DIR")]
     pub run: PathBuf,
-    /// Circumferential harmonics to test: 0 to N [default: as in the case, 4 there]
+    /// Axisymmetric runs: circumferential harmonics to test, 0 to N [default: as in the case, 4 there]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=100))]
     pub harmonics: Option<u8>,
-    /// Width to which a critical value is bracketed, in what is driven (Lmax/L, Dmin/D, or D)
-    #[arg(long, value_name = "X", default_value = "1e-4", value_parser = tolerance)]
-    pub tolerance: f64,
+    /// Axisymmetric runs: width to which a critical value is bracketed, in what is driven (Lmax/L,
+    /// Dmin/D, or D) [default: 1e-4]
+    #[arg(long, value_name = "X", value_parser = tolerance)]
+    pub tolerance: Option<f64>,
+    /// Three-dimensional runs: how many of the lowest eigenvalues and modes of each state [default: 3]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=50))]
+    pub modes: Option<u8>,
+    /// Three-dimensional runs: number of a state to look at; may be given again [default: all saved]
+    #[arg(long, value_name = "N")]
+    pub state: Vec<usize>,
     /// Threads to use [default: all cores]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -112,9 +119,9 @@ Ctrl-C or SIGTERM ends a run after the solve at hand, with everything written. A
 ends it at once.";
 
 const STABILITY_EPILOGUE: &str = "\
-Every saved state of the run is tested against circumferential harmonics: 0 keeps the tube round,
-1 tilts it sideways, 2 turns it oval, n folds it into n lobes. Where a harmonic is lost or regained
-between two states, the path is followed again between them, halving the interval.
+Every saved state of an axisymmetric run is tested against circumferential harmonics: 0 keeps the
+tube round, 1 tilts it sideways, 2 turns it oval, n folds it into n lobes. Where a harmonic is lost
+or regained between two states, the path is followed again between them, halving the interval.
 
 What it leaves in the directory of the run:
   stability.csv    critical values: stage, harmonic, lost or regained, where, how
@@ -123,4 +130,15 @@ What it leaves in the directory of the run:
   stability.png    lowest eigenvalues along the path, critical values marked
   mode.png         the first mode to go
 
-Ctrl-C or SIGTERM ends it after the solve at hand, with nothing written.";
+Ctrl-C or SIGTERM ends it after the solve at hand, with nothing written.
+
+The states of a three-dimensional run do not part into harmonics: the lowest eigenvalues of their
+own tangent are looked for, with their modes, and the share that each harmonic has in them.
+
+What it leaves in the directory of the run:
+  eigenpairs.csv   lowest eigenvalues of every state, how exact they are, their harmonics
+  modes/           the modes, with the state they belong to
+  stability.png    lowest eigenvalues, state by state
+  mode.png         the modes of the first unstable state, or else of the last
+
+Ctrl-C or SIGTERM ends it after the iteration at hand, with the states before written.";

@@ -5,10 +5,18 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{case_file, console, threads};
-use plica::report::stability_pictures;
-use plica::stability::{Observer, Request, StabilityError, Station, follow};
-use plica::study::{RunDirectory, SavedState};
+use plica::draw::DrawError;
+use plica::report::{mode_pictures, stability_pictures};
+use plica::stability::{
+    ModesRequest, Observer, Request, Spectrum, StabilityError, Station, follow, lowest_modes,
+};
+use plica::study::{Plan, RunDirectory, SavedState};
 use plica::tube::Tube;
+
+/// How close critical values are bracketed, unless told otherwise.
+const TOLERANCE: f64 = 1e-4;
+/// Lowest modes of a state, unless told otherwise.
+const MODES: u8 = 3;
 
 /// Tests a run's states, and writes what it finds beside them.
 pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
@@ -27,12 +35,6 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     threads::limit(arguments.threads)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
-    let request = Request {
-        harmonics: arguments
-            .harmonics
-            .map_or(plan.output.harmonics, usize::from),
-        tolerance: arguments.tolerance,
-    };
     console::tell(&format!(
         "{}\nstates of {}",
         plan.title,
@@ -47,17 +49,97 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
         ticker: Ticker::new(interrupt),
         begun: false,
     };
-    let found = follow(&plan, &directory, &request, &mut watch);
+    if plan.mesh.rings(plan.symmetry) == 1 {
+        by_harmonics(arguments, &plan, &directory, &mut watch)
+    } else {
+        by_modes(arguments, &plan, &directory, &mut watch)
+    }
+}
+
+/// A run of one ring, harmonic by harmonic.
+fn by_harmonics(
+    arguments: &StabilityArguments,
+    plan: &Plan,
+    directory: &RunDirectory,
+    watch: &mut Watcher,
+) -> Result<(), Failure> {
+    if arguments.modes.is_some() || !arguments.state.is_empty() {
+        return Err(Failure::Usage(StabilityError::OneRing.to_string()));
+    }
+    let request = Request {
+        harmonics: arguments
+            .harmonics
+            .map_or(plan.output.harmonics, usize::from),
+        tolerance: arguments.tolerance.unwrap_or(TOLERANCE),
+    };
+    let found = follow(plan, directory, &request, watch);
     watch.ticker.finish();
-    let found = found.map_err(|error| match error {
+    let found = found.map_err(failure)?;
+    let names = found.write(&plan.tube, directory).map_err(Failure::Study)?;
+    let pictures = stability_pictures(plan, &found);
+    finish(
+        arguments,
+        directory,
+        found.table(&plan.tube),
+        names,
+        pictures,
+    )
+}
+
+/// A run of many rings: the lowest modes of its states.
+fn by_modes(
+    arguments: &StabilityArguments,
+    plan: &Plan,
+    directory: &RunDirectory,
+    watch: &mut Watcher,
+) -> Result<(), Failure> {
+    if arguments.harmonics.is_some() || arguments.tolerance.is_some() {
+        return Err(Failure::Usage(
+            "the run is not axisymmetric: --harmonics and --tolerance do not apply to it; \
+             --modes and --state do"
+                .into(),
+        ));
+    }
+    let request = ModesRequest {
+        states: arguments.state.clone(),
+        modes: usize::from(arguments.modes.unwrap_or(MODES)),
+    };
+    let found = lowest_modes(plan, directory, &request, watch);
+    watch.ticker.finish();
+    let found = found.map_err(failure)?;
+    if found.states.is_empty() {
+        return Err(failure(StabilityError::Stopped));
+    }
+    let mut names = vec![found.write(&plan.tube, directory).map_err(Failure::Study)?];
+    names.extend(found.modes.iter().cloned());
+    let pictures = mode_pictures(plan, &found);
+    let table = found.table(&plan.tube);
+    finish(arguments, directory, table, names, pictures)?;
+    if found.stopped {
+        return Err(Failure::Interrupted(
+            "interrupted; the states before were written",
+        ));
+    }
+    Ok(())
+}
+
+fn failure(error: StabilityError) -> Failure {
+    match error {
         StabilityError::Stopped => Failure::Interrupted("interrupted; nothing was written"),
         error if error.is_misuse() => Failure::Usage(error.to_string()),
         error => Failure::Files(error.to_string()),
-    })?;
-    let mut names = found
-        .write(&plan.tube, &directory)
-        .map_err(Failure::Study)?;
-    match stability_pictures(&plan, &found) {
+    }
+}
+
+/// Pictures, the table, and where everything is.
+fn finish(
+    arguments: &StabilityArguments,
+    directory: &RunDirectory,
+    table: String,
+    mut names: Vec<String>,
+    pictures: Result<Vec<(String, Vec<u8>)>, DrawError>,
+) -> Result<(), Failure> {
+    match pictures {
         Ok(pictures) => {
             for (name, png) in pictures {
                 directory.write(&name, &png).map_err(Failure::Study)?;
@@ -74,7 +156,7 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     }
     let run = arguments.run.display();
     let written = format!("  {:<22} {run}: {}\n", "written to", files.join(", "));
-    console::say(&(found.table(&plan.tube) + &written))
+    console::say(&(table + &written))
 }
 
 /// A line per saved state.
@@ -107,6 +189,26 @@ impl Observer for Watcher {
             tube.length_ratio(&station.load),
             tube.diameter_ratio(&station.load),
             "",
+            lowest.collect::<String>()
+        ));
+    }
+
+    fn found(&mut self, tube: &Tube, spectrum: &Spectrum) {
+        if !self.begun {
+            self.begun = true;
+            self.ticker.line(&format!(
+                "{:>5}  {:>7} {:>7}  {:>10}  lowest eigenvalues, E/D²",
+                "state", "Lmax/L", "Dmin/D", "iterations"
+            ));
+        }
+        let lowest = spectrum.lowest.iter().take(5);
+        let lowest = lowest.map(|eigenvalue| format!("{:>11.3e}", eigenvalue.value));
+        self.ticker.line(&format!(
+            "{:>5}  {:>7.4} {:>7.4}  {:>10}{}",
+            spectrum.row,
+            tube.length_ratio(&spectrum.load),
+            tube.diameter_ratio(&spectrum.load),
+            spectrum.iterations,
             lowest.collect::<String>()
         ));
     }

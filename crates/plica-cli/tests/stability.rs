@@ -125,13 +125,27 @@ fn runs_that_cannot_be_tested_are_told_apart() {
     let none = format!("{short}states_every = 0\n");
     note("no states", 2, tested(&directory, &none, &[]));
     let fold = format!("symmetry = {{ fold = 24 }}\n{short}");
-    note("several rings", 2, tested(&directory, &fold, &[]));
+    note(
+        "harmonics of several rings",
+        2,
+        tested(&directory, &fold, &["--harmonics", "2"]),
+    );
+    note(
+        "a state that was not saved",
+        2,
+        stability(&directory, &["--state", "7"]),
+    );
     let twisted = short.replace("[output]", "drive.ileum.twist_degrees = 5.0\n[output]");
     note("twisted", 2, tested(&directory, &twisted, &[]));
 
     let state = directory.join("run/states/state-0001.safetensors");
     let case = directory.join("run/case.toml");
     assert_eq!(tested(&directory, &short, &[]).0, Some(0));
+    note(
+        "modes of one ring",
+        2,
+        stability(&directory, &["--modes", "2"]),
+    );
     let whole = fs::read(&state).unwrap();
     fs::write(&state, &whole[..whole.len() - 8]).unwrap();
     note("a state cut short", 3, stability(&directory, &[]));
@@ -160,6 +174,68 @@ fn runs_that_cannot_be_tested_are_told_apart() {
         stability(&directory, &["--tolerance", "0"]),
     );
     compare("stability.txt", &page);
+}
+
+#[test]
+fn the_lowest_modes_of_a_tube_that_is_not_round_are_told() {
+    let directory = scratch("stability-modes");
+    let case = "\
+symmetry = { fold = 2 }
+[mesh]
+control_points = { axial = 20, around = 12, thickness = 4 }
+[muscles.long]
+direction = \"longitudinal\"
+zone = [0.5, 1.0]
+[[imperfections]]
+of = \"colon-end\"
+amplitude = 5e-3
+shape = { wave = { harmonic = 2, phase_degrees = 30 } }
+[[stages]]
+name = \"relax\"
+steps = 1
+drive.long.length_ratio = 1.02
+[output]
+pictures = false
+";
+    let modes = ["--modes", "2", "--state", "1"];
+    let (code, told, errors) = tested(&directory, case, &modes);
+    assert_eq!(code, Some(0), "{errors}");
+    // A heading, two modes, where it all is.
+    let lines: Vec<&str> = told.lines().collect();
+    assert_eq!(lines.len(), 4, "{told}");
+    let first: Vec<&str> = lines[1].split_whitespace().collect();
+    assert_eq!(first[..6], ["1", "relax", "1.0200", "1.0000", "0", "1"]);
+    assert_eq!(first[8], "2", "turns oval: {told}");
+    let run = directory.join("run");
+    let table = fs::read_to_string(run.join("eigenpairs.csv")).unwrap();
+    assert_eq!(table.lines().count(), 3, "{table}");
+    let read = |number: usize| {
+        let name = format!("modes/mode-state-0001-{number}.safetensors");
+        SavedState::read(&run.join(name)).unwrap()
+    };
+    let (one, two) = (read(1), read(2));
+    let value = |mode: &SavedState, name: &str| mode.arrays[name].values[0];
+    assert!(value(&one, "eigenvalue") <= value(&two, "eigenvalue"));
+    assert!(value(&one, "residual") <= 1e-4 && value(&one, "harmonic") == 2.0);
+    assert_eq!(one.arrays["mode"].shape, [20, 4, 3, 6]);
+    let largest = |x: &[f64]| x.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+    assert_eq!(largest(&one.arrays["mode"].values), 1.0);
+    let shares = &one.arrays["shares"].values;
+    assert!(
+        (shares.iter().sum::<f64>() - 1.0).abs() < 1e-12,
+        "{shares:?}"
+    );
+    assert!(shares.iter().skip(1).step_by(2).all(|&share| share == 0.0));
+    let picture = fs::read(run.join("mode.png")).unwrap();
+    assert!(picture.starts_with(b"\x89PNG\r\n\x1a\n"));
+
+    // The same again, to the last digit.
+    let (_, alone, _) = stability(&directory, &[&modes[..], &["--threads", "1"]].concat());
+    assert_eq!(alone, told);
+    assert_eq!(
+        fs::read_to_string(run.join("eigenpairs.csv")).unwrap(),
+        table
+    );
 }
 
 #[cfg(unix)]

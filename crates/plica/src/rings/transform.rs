@@ -85,6 +85,21 @@ impl Transform {
         out
     }
 
+    /// What every harmonic, 0 to k/2, adds to u · v.
+    pub fn products(&self, u: &[f64], v: &[f64]) -> Vec<f64> {
+        let lines = u.len() / self.rings;
+        let (u, v) = (self.forward(u), self.forward(v));
+        let columns = u.chunks_exact(lines).zip(v.chunks_exact(lines));
+        let product = |(u, v): (&[f64], &[f64])| u.iter().zip(v).map(|(u, v)| u * v).sum::<f64>();
+        let products: Vec<f64> = columns
+            .map(product)
+            .zip(&self.scale)
+            .map(|(product, scale)| product * scale)
+            .collect();
+        let of_wave = |wave: Wave| products[wave.cosine] + wave.sine.map_or(0.0, |s| products[s]);
+        self.harmonics().map(of_wave).collect()
+    }
+
     /// The displacements of given coefficients, each over the sum of the squares of its wave: the
     /// inverse of [`Transform::forward`].
     pub fn back(&self, coefficients: &[f64]) -> Vec<f64> {
@@ -115,6 +130,28 @@ mod tests {
             for (a, b) in back.iter().zip(&u) {
                 assert!((a - b).abs() < 1e-14, "{rings} rings: {a} {b}");
             }
+        }
+    }
+
+    #[test]
+    fn products_of_harmonics_add_up_to_the_whole() {
+        for rings in [1, 2, 5, 12] {
+            let transform = Transform::new(rings);
+            let u: Vec<f64> = (0..4 * rings).map(|i| (i as f64 * 0.37).sin()).collect();
+            let v: Vec<f64> = (0..4 * rings).map(|i| (i as f64 * 0.81).cos()).collect();
+            let whole: f64 = u.iter().zip(&v).map(|(u, v)| u * v).sum();
+            let parts = transform.products(&u, &v);
+            assert_eq!(parts.len(), rings / 2 + 1);
+            assert!((parts.iter().sum::<f64>() - whole).abs() < 1e-14);
+        }
+        // A wave has a part in its own harmonic only.
+        let wave = |phase: f64| -> Vec<f64> {
+            let angle = |j: usize| TAU * (3 * j) as f64 / 12.0 + phase;
+            (0..12).map(|j| angle(j).cos()).collect()
+        };
+        for (n, part) in (0..).zip(Transform::new(12).products(&wave(0.3), &wave(0.7))) {
+            let expected = if n == 3 { 6.0 * 0.4_f64.cos() } else { 0.0 };
+            assert!((part - expected).abs() < 1e-13, "{n}: {part}");
         }
     }
 

@@ -26,14 +26,17 @@ const REFRESH: usize = 25;
 /// The bound is exact for M = A only, and an eigenvector that is hardly there yet does not show in
 /// it: with 2, and M from the tube at rest, tubes that had just become unstable passed for stable.
 const CERTAIN: f64 = 10.0;
+/// An eigenvalue near zero need not be known more closely, against itself, than one this much of the
+/// largest wanted.
+const NEAR_ZERO: f64 = 1e-2;
 
 /// What is looked for, and when it is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Search {
     /// How many of the lowest eigenvalues; at most as many as there are seeds.
     pub wanted: usize,
-    /// They are found when their error bounds, relative to themselves, are at most this. (The
-    /// error of an eigenvalue is about the square of its relative bound.)
+    /// They are found when their relative residuals are at most this. (The relative error of an
+    /// eigenvalue is about the square of that.)
     pub accuracy: f64,
     /// The iterations, at most.
     pub iterations: usize,
@@ -52,6 +55,9 @@ pub struct Lowest {
     pub vectors: Vec<Vec<f64>>,
     /// Error bounds δ: an eigenvalue lies that near.
     pub errors: Vec<f64>,
+    /// Relative residuals (r · M⁻¹ r/s)^½ with r = A x − ν C x and s = |ν|, or a hundredth of the
+    /// largest wanted if that is more. An eigenvalue is off by about their square times s.
+    pub residuals: Vec<f64>,
     /// Iterations it took; each applies A, M⁻¹ and C once to every vector not found yet.
     pub iterations: usize,
 }
@@ -70,6 +76,17 @@ impl Lowest {
             None
         }
     }
+
+    /// Error bounds and residuals, of r · M⁻¹ r.
+    fn measure(&mut self, squares: &[f64], wanted: usize) {
+        let wanted = self.values.iter().take(wanted);
+        let near_zero = NEAR_ZERO * wanted.fold(0.0, |most: f64, value| most.max(value.abs()));
+        let pairs = || self.values.iter().zip(squares);
+        self.errors = pairs().map(|(v, q)| (v.abs() * q).sqrt()).collect();
+        self.residuals = pairs()
+            .map(|(v, q)| (q / v.abs().max(near_zero)).sqrt())
+            .collect();
+    }
 }
 
 /// Finds the lowest eigenpairs of A x = ν C x on the free unknowns, from seeds: vectors that have a
@@ -79,11 +96,20 @@ impl Lowest {
 /// The error bound of a pair is δ² = |ν| r · M⁻¹ r with r = A x − ν C x: with x = Σ c v over
 /// eigenvectors and Σ c² = 1, r · A⁻¹ r = Σ c² (νᵢ − ν)²/νᵢ, so some νᵢ has |νᵢ − ν| ≤ (νᵢ r · A⁻¹ r)^½.
 /// It costs nothing, and does not depend on the mesh.
-pub fn lowest<O: Operator>(operator: &O, seeds: &[Vec<f64>], search: &Search) -> Lowest {
+///
+/// `goes_on` is asked in every iteration, and told what there is, vectors aside; if false the search
+/// ends there.
+pub fn lowest<O: Operator>(
+    operator: &O,
+    seeds: &[Vec<f64>],
+    search: &Search,
+    goes_on: &mut dyn FnMut(&Lowest) -> bool,
+) -> Lowest {
     let mut found = Lowest {
         values: vec![],
         vectors: vec![],
         errors: vec![],
+        residuals: vec![],
         iterations: 0,
     };
     let Some(start) = Basis::of_seeds(operator, seeds) else {
@@ -97,14 +123,18 @@ pub fn lowest<O: Operator>(operator: &O, seeds: &[Vec<f64>], search: &Search) ->
     // What the last iteration changed every vector by.
     let mut p: Option<Basis> = None;
     loop {
-        let (errors, corrections) = corrections(operator, &x, &found.values);
-        found.errors = errors;
+        let (squares, corrections) = corrections(operator, &x, &found.values);
+        found.measure(&squares, search.wanted);
         let open: Vec<usize> = (0..found.values.len())
-            .filter(|&j| found.errors[j] > search.accuracy * found.values[j].abs())
+            .filter(|&j| found.residuals[j] > search.accuracy)
             .collect();
         let all = open.iter().all(|&j| j >= search.wanted);
         let decided = |value| found.is_below(value).is_some();
-        if all || search.side_of.is_some_and(decided) || found.iterations == search.iterations {
+        if all
+            || search.side_of.is_some_and(decided)
+            || found.iterations == search.iterations
+            || !goes_on(&found)
+        {
             break;
         }
         let mut basis = x.clone();
@@ -132,19 +162,19 @@ pub fn lowest<O: Operator>(operator: &O, seeds: &[Vec<f64>], search: &Search) ->
     found
 }
 
-/// Error bounds of eigenpairs, and M⁻¹ of their residuals.
+/// r · M⁻¹ r of eigenpairs, and M⁻¹ r.
 fn corrections<O: Operator>(operator: &O, x: &Basis, values: &[f64]) -> (Vec<f64>, Columns) {
-    let (mut errors, mut corrections) = (vec![], Columns::new(x.vectors.rows()));
+    let (mut squares, mut corrections) = (vec![], Columns::new(x.vectors.rows()));
     let mut z = vec![0.0; x.vectors.rows()];
     for (j, &value) in values.iter().enumerate() {
         let mut r = x.applied.column(j).to_vec();
         add(-value, x.measured.column(j), &mut r);
         operator.precondition(&r, &mut z);
         hold(operator.given(), &mut z);
-        errors.push((value.abs() * dot(&r, &z).max(0.0)).sqrt());
+        squares.push(dot(&r, &z).max(0.0));
         corrections.push(&z);
     }
-    (errors, corrections)
+    (squares, corrections)
 }
 
 /// Vectors S with their images A S and C S.
@@ -287,6 +317,10 @@ mod tests {
         (0..count).map(seed).collect()
     }
 
+    fn lowest_of(operator: &Reflected, seeds: &[Vec<f64>], search: &Search) -> Lowest {
+        lowest(operator, seeds, search, &mut |_| true)
+    }
+
     fn search(wanted: usize) -> Search {
         Search {
             wanted,
@@ -325,7 +359,7 @@ mod tests {
         let mut spectrum: Vec<f64> = (0..300).map(|i| 1.0 + (i * i) as f64).collect();
         (spectrum[100], spectrum[7], spectrum[200]) = (1e-3, 1.01e-3, 1.02e-3);
         let operator = Reflected::new(&spectrum, 3.0);
-        let found = lowest(&operator, &seeds(300, 4), &search(3));
+        let found = lowest_of(&operator, &seeds(300, 4), &search(3));
         assert!(found.iterations < 60, "{}", found.iterations);
         assert_lowest(&operator, &found, &[1e-3, 1.01e-3, 1.02e-3]);
     }
@@ -335,7 +369,7 @@ mod tests {
         let mut spectrum: Vec<f64> = (0..300).map(|i| 0.5 * (1 + i) as f64).collect();
         (spectrum[250], spectrum[3]) = (-0.2, -0.05);
         let operator = Reflected::new(&spectrum, 3.0);
-        let found = lowest(&operator, &seeds(300, 3), &search(2));
+        let found = lowest_of(&operator, &seeds(300, 3), &search(2));
         assert!(found.iterations < 60, "{}", found.iterations);
         assert_lowest(&operator, &found, &[-0.2, -0.05]);
     }
@@ -344,7 +378,7 @@ mod tests {
     fn one_vector_is_enough_for_a_single_lowest_eigenvalue() {
         let spectrum: Vec<f64> = (0..200).map(|i| 0.01 + i as f64).collect();
         let operator = Reflected::new(&spectrum, 10.0);
-        let found = lowest(&operator, &seeds(200, 1), &search(1));
+        let found = lowest_of(&operator, &seeds(200, 1), &search(1));
         assert!(found.iterations < 100, "{}", found.iterations);
         assert_lowest(&operator, &found, &[0.01]);
     }
@@ -358,7 +392,7 @@ mod tests {
             accuracy: 0.0,
             ..search(2)
         };
-        let found = lowest(&operator, &seeds(100, 3), &exact);
+        let found = lowest_of(&operator, &seeds(100, 3), &exact);
         assert_eq!(found.iterations, 300);
         assert_lowest(&operator, &found, &[0.9, 1.0]);
         assert!(
@@ -378,9 +412,9 @@ mod tests {
                 side_of: Some(0.5),
                 ..search(1)
             };
-            let quick = lowest(&operator, &seeds(300, 3), &side);
+            let quick = lowest_of(&operator, &seeds(300, 3), &side);
             assert_eq!(quick.is_below(0.5), Some(below));
-            let whole = lowest(&operator, &seeds(300, 3), &search(1));
+            let whole = lowest_of(&operator, &seeds(300, 3), &search(1));
             assert!(quick.iterations < whole.iterations);
         }
     }
@@ -392,7 +426,7 @@ mod tests {
         let mut seeds = seeds(60, 2);
         seeds.push(seeds[0].iter().map(|x| -3.0 * x).collect());
         seeds.push(vec![0.0; 60]);
-        let found = lowest(&operator, &seeds, &search(2));
+        let found = lowest_of(&operator, &seeds, &search(2));
         assert_eq!(found.values.len(), 2);
         assert_lowest(&operator, &found, &[1.0, 2.0]);
     }
@@ -400,10 +434,10 @@ mod tests {
     #[test]
     fn a_block_as_large_as_the_problem_is_solved_at_once() {
         let operator = Reflected::new(&[3.0, -1.0, 2.0], 2.0);
-        let found = lowest(&operator, &seeds(3, 3), &search(3));
+        let found = lowest_of(&operator, &seeds(3, 3), &search(3));
         assert!(found.iterations <= 1, "{}", found.iterations);
         assert_lowest(&operator, &found, &[-1.0, 2.0, 3.0]);
-        assert!(lowest(&operator, &[], &search(1)).values.is_empty());
+        assert!(lowest_of(&operator, &[], &search(1)).values.is_empty());
     }
 
     #[test]
@@ -413,7 +447,7 @@ mod tests {
         for i in [0, 11, 39] {
             operator.given[i] = true;
         }
-        let found = lowest(&operator, &seeds(40, 2), &search(1));
+        let found = lowest_of(&operator, &seeds(40, 2), &search(1));
         let x = &found.vectors[0];
         assert_eq!([x[0], x[11], x[39]], [0.0; 3]);
         // Fewer directions: no lower.

@@ -9,11 +9,34 @@ use std::path::PathBuf;
 pub enum StabilityError {
     /// The run is not axisymmetric.
     #[error(
-        "the run is not axisymmetric: its states do not part into harmonics. Its history.csv says in \
-         the column unstable_harmonics how many eigenvalues of its own tangent are negative \
-         (any:count); for harmonics, run the case with symmetry = \"axisymmetric\""
+        "the run is not axisymmetric: its states do not part into harmonics. Ask for the lowest modes \
+         of its own tangent; for harmonics, run the case with symmetry = \"axisymmetric\""
     )]
     Symmetry,
+    /// The run is axisymmetric.
+    #[error(
+        "the run is axisymmetric: its states are tested harmonic by harmonic. For the lowest modes of \
+         single states, run the case with symmetry = \"none\""
+    )]
+    OneRing,
+    /// A state that is asked for was not saved.
+    #[error(
+        "{} holds no state {row}; its folder states tells which there are, and \
+         output.states_every = 1 saves all",
+        directory.display()
+    )]
+    NoSuchState {
+        /// Its number.
+        row: usize,
+        /// Of the run.
+        directory: PathBuf,
+    },
+    /// The tangent of a state cannot be worked with.
+    #[error("{}: its tangent cannot be solved with around the tube; save the state again", path.display())]
+    NoTangent {
+        /// The file of the state.
+        path: PathBuf,
+    },
     /// The run twists.
     #[error(
         "the tube is twisted in state {row}: its waves turn around it, and are no harmonics of one \
@@ -77,7 +100,11 @@ impl StabilityError {
     pub fn is_misuse(&self) -> bool {
         matches!(
             self,
-            Self::Symmetry | Self::Twisted { .. } | Self::NoStates { .. }
+            Self::Symmetry
+                | Self::OneRing
+                | Self::Twisted { .. }
+                | Self::NoStates { .. }
+                | Self::NoSuchState { .. }
         )
     }
 }

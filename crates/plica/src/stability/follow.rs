@@ -8,7 +8,6 @@ use crate::assembly::SplineTube;
 use crate::matrix::NoEigenpairs;
 use crate::solve::{Method, Path, Scheme, Settings, Watch};
 use crate::study::{Plan, RunDirectory, SavedState, TubeProblem};
-use crate::tube::Symmetry;
 use std::path;
 
 /// Circumferential displacement, in D, from which a tube counts as twisted.
@@ -24,7 +23,7 @@ pub struct Request {
     pub tolerance: f64,
 }
 
-/// Tests every saved state of an axisymmetric run, and finds where between two of them a harmonic
+/// Tests every saved state of a run of one ring, and finds where between two of them a harmonic
 /// changes. The path is followed anew there from the earlier state, by the static scheme with the
 /// settings of the run; equilibria do not depend on the scheme.
 ///
@@ -36,7 +35,7 @@ pub fn follow(
     request: &Request,
     observer: &mut dyn Observer,
 ) -> Result<Stability, StabilityError> {
-    if plan.symmetry != Symmetry::Axisymmetric {
+    if plan.mesh.rings(plan.symmetry) != 1 {
         return Err(StabilityError::Symmetry);
     }
     let files = directory.states()?;

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
 /// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
 /// | `*.png` | pictures |
-/// | `stability.csv`, `eigenvalues.csv`, `modes/` | what a test of stability found |
+/// | `stability.csv`, `eigenvalues.csv`, `eigenpairs.csv`, `modes/` | what a test of stability found |
 #[derive(Debug)]
 pub struct RunDirectory {
     path: PathBuf,
@@ -139,6 +139,11 @@ impl RunDirectory {
         Ok(numbered.into_iter().map(|(_, file)| file).collect())
     }
 
+    /// The relative path of the file of a saved state, by the number of its row.
+    pub fn name_of_state(row: usize) -> String {
+        format!("states/state-{row:04}.{STATE_ENDING}")
+    }
+
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
@@ -195,7 +200,7 @@ impl RunDirectory {
 
     /// Saves a state in full, under the number of its row.
     pub fn write_state(&self, state: &SavedState) -> Result<(), StudyError> {
-        let name = format!("states/state-{:04}.{STATE_ENDING}", state.row);
+        let name = Self::name_of_state(state.row);
         let bytes = state.to_bytes().map_err(|source| StudyError::State {
             path: self.path.join(&name),
             source,
@@ -286,6 +291,7 @@ fn stability_files(path: &Path) -> Vec<PathBuf> {
     let names = [
         "stability.csv",
         "eigenvalues.csv",
+        "eigenpairs.csv",
         "stability.png",
         "mode.png",
     ];

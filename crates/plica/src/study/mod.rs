@@ -6,6 +6,7 @@ mod forecast;
 mod harmonic_tangent;
 mod history;
 mod layout;
+mod lowest_modes;
 mod manifest;
 mod observer;
 mod plan;

@@ -30,7 +30,7 @@ fn lowest_is_negative(problem: &TubeProblem, state: &State<Load>) -> Option<bool
         iterations: ITERATIONS,
         side_of: Some(0.0),
     };
-    lowest(&system, &seeds(&problem.tube), &search).is_below(0.0)
+    lowest(&system, &seeds(&problem.tube), &search, &mut |_| true).is_below(0.0)
 }
 
 /// Two displacements with a part of every low harmonic, not alike on any two sides of the tube.

@@ -1,0 +1,121 @@
+//! The lowest eigenvalues of states, as tables.
+
+use super::{Eigenvalue, Spectra, Spectrum};
+use crate::study::{RunDirectory, StudyError};
+use crate::tube::Tube;
+use std::fmt::Write;
+
+impl Spectra {
+    /// The table of eigenvalues, as the program prints it.
+    pub fn table(&self, tube: &Tube) -> String {
+        let mut page = String::new();
+        let stage = |state: &Spectrum| state.stage.chars().count();
+        let width = self.states.iter().map(stage).max().unwrap_or(0).max(5);
+        let _ = writeln!(
+            page,
+            "  {:>5}  {:<width$}  {:>7}  {:>7}  {:>8}  {:>4}  {:>12}  {:>8}  harmonics",
+            "state", "stage", "Lmax/L", "Dmin/D", "unstable", "mode", "eigenvalue", "residual",
+        );
+        for state in &self.states {
+            for (number, eigenvalue) in (1..).zip(&state.lowest) {
+                let place = if number == 1 {
+                    format!(
+                        "{:>5}  {:<width$}  {:>7.4}  {:>7.4}  {:>8}",
+                        state.row,
+                        state.stage,
+                        tube.length_ratio(&state.load),
+                        tube.diameter_ratio(&state.load),
+                        state.unstable(),
+                    )
+                } else {
+                    " ".repeat(width + 35)
+                };
+                let _ = writeln!(
+                    page,
+                    "  {place}  {number:>4}  {:>12.5e}  {:>8.0e}  {}",
+                    eigenvalue.value,
+                    eigenvalue.residual,
+                    eigenvalue.content(),
+                );
+            }
+        }
+        let missed = self.states.iter().flat_map(|state| &state.lowest);
+        let missed = missed.filter(|eigenvalue| !eigenvalue.found).count();
+        if missed > 0 {
+            let _ = writeln!(
+                page,
+                "  {missed} eigenvalue(s) are known only as far as their residual says"
+            );
+        }
+        page
+    }
+
+    /// Writes `eigenpairs.csv` into the directory of the run.
+    ///
+    /// # Errors
+    /// [`StudyError`] if the file cannot be written.
+    pub fn write(&self, tube: &Tube, directory: &RunDirectory) -> Result<String, StudyError> {
+        let header = [
+            "state",
+            "stage",
+            "along",
+            "length_ratio",
+            "diameter_ratio",
+            "mode",
+            "eigenvalue",
+            "residual",
+            "found",
+            "iterations",
+            "harmonic",
+            "shares",
+        ];
+        let mut rows = vec![header.map(str::to_owned).to_vec()];
+        for state in &self.states {
+            for (number, eigenvalue) in (1..).zip(&state.lowest) {
+                let shares = eigenvalue.parts();
+                let shares = shares.iter().map(|(n, share)| format!("{n}:{share:.4}"));
+                rows.push(vec![
+                    format!("{}", state.row),
+                    state.stage.clone(),
+                    format!("{:.9}", state.along),
+                    format!("{:.9}", tube.length_ratio(&state.load)),
+                    format!("{:.9}", tube.diameter_ratio(&state.load)),
+                    format!("{number}"),
+                    format!("{:.9e}", eigenvalue.value),
+                    format!("{:.2e}", eigenvalue.residual),
+                    if eigenvalue.found { "yes" } else { "no" }.into(),
+                    format!("{}", state.iterations),
+                    format!("{}", eigenvalue.harmonic()),
+                    shares.collect::<Vec<_>>().join(" "),
+                ]);
+            }
+        }
+        let name = "eigenpairs.csv";
+        directory.write_records(name, rows)?;
+        Ok(name.into())
+    }
+}
+
+impl Spectrum {
+    /// How many eigenvalues are negative, in a table.
+    pub fn unstable(&self) -> String {
+        match self.negative() {
+            (count, true) => format!("{count}"),
+            (count, false) => format!(">= {count}"),
+        }
+    }
+}
+
+impl Eigenvalue {
+    /// What the mode is made of, in a table: "2 (97 %), 4 (3 %)".
+    pub fn content(&self) -> String {
+        let parts = self.parts();
+        let part = |(n, share): &(usize, f64)| format!("{n} ({:.0} %)", 100.0 * share);
+        parts
+            .iter()
+            .take(4)
+            .map(part)
+            .collect::<Vec<_>>()
+            .join(", ")
+    }
+}

@@ -1,0 +1,51 @@
+//! The lowest eigenpairs of the tangent of a tube of many rings, whatever its state.
+
+use super::TubeProblem;
+use super::problem::TubeSolver;
+use crate::solve::{Equilibrium, Lowest, Operator, Search, Tangent, lowest};
+use crate::tube::Load;
+
+impl TubeProblem {
+    /// The lowest eigenpairs of K x = ν C x on the free unknowns, with the tangent K of a state that
+    /// is not inverted and the mass C of unit density ([`crate::assembly::RingDrag`]), ν in E/D². As
+    /// many as `block` are searched for together: more than are wanted, since a search is as slow as
+    /// the next eigenvalue is near, and on a tube that is nearly round eigenvalues come in pairs.
+    /// Where it starts is noise of a fixed seed, made smooth, so that no symmetry hides a mode.
+    ///
+    /// None for a tube of one ring, whose tangent is assembled, or where the preconditioner is singular.
+    pub fn lowest_modes(
+        &self,
+        load: &Load,
+        u: &[f64],
+        block: usize,
+        search: &Search,
+        goes_on: &mut dyn FnMut(&Lowest) -> bool,
+    ) -> Option<Lowest> {
+        let system = self.tangent(load, u).into_shifted(0.0);
+        let Ok(TubeSolver::Harmonic(system)) = system else {
+            return None;
+        };
+        let mut noise = Noise(0);
+        let mut seed = || {
+            let force: Vec<f64> = u.iter().map(|_| noise.next()).collect();
+            let mut smooth = vec![0.0; u.len()];
+            system.precondition(&force, &mut smooth);
+            smooth
+        };
+        let seeds: Vec<Vec<f64>> = (0..block).map(|_| seed()).collect();
+        Some(lowest(&system, &seeds, search, goes_on))
+    }
+}
+
+/// Numbers from −1 to 1 without order, the same for ever (SplitMix64, Steele et al. 2014).
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) as f64 / (1_u64 << 63) as f64 - 1.0
+    }
+}
