@@ -238,6 +238,9 @@ impl SplineTube {
         matrix: &mut BlockBanded,
     ) {
         let u = self.lanes.pad(u);
+        let imperfect = self.imperfect.as_ref();
+        let displacement = imperfect.map(|imperfect| self.lanes.pad(&imperfect.displacement));
+        let displacement = displacement.as_deref();
         let (p, size) = (self.degree(), low.row());
         matrix.clear();
         // A few slabs at a time, added up in their order.
@@ -246,7 +249,9 @@ impl SplineTube {
                 .par_iter()
                 .map(|slab| {
                     (0..slab.elements)
-                        .flat_map(|lane| self.coupled_pencil(low, slab, lane, load, &u))
+                        .flat_map(|lane| {
+                            self.coupled_pencil(low, (slab, lane), load, &u, displacement)
+                        })
                         .collect()
                 })
                 .collect();
@@ -298,14 +303,16 @@ impl SplineTube {
     fn coupled_pencil(
         &self,
         low: &LowHarmonics,
-        slab: &Slab,
-        lane: usize,
+        (slab, lane): (&Slab, usize),
         load: &Load,
         u: &[f64],
+        displacement: Option<&[f64]>,
     ) -> Vec<[Vec<f64>; 4]> {
         let (k, padded) = (self.sector.rings, self.lanes.padded);
         let row = self.wall.functions() * 3 * padded;
         let stretch = self.pencil_stretch(slab, lane, &low.middle, load);
+        let shape =
+            displacement.map(|u| self.pencil_shape(slab, lane, &low.points, &low.middle, u));
         let input = PencilInput {
             slab,
             lane,
@@ -314,6 +321,7 @@ impl SplineTube {
             points: self.wall.functions(),
             rings: &self.lanes,
             inverse_stretch: &stretch,
+            stress_free: shape.as_deref(),
             u: &u[(slab.first + lane) * row..][..(self.degree() + 1) * row],
         };
         let mut moduli = vec![0.0; POINTS[0] * POINTS[1] * AVERAGED * padded];

@@ -1,6 +1,6 @@
 //! Energy and residual of a slab: W and R = ∂W/∂u_cp.
 
-use super::kinematics::{Columns, Vector, turn_back};
+use super::kinematics::{Vector, turn_back};
 use super::slab::{SlabInput, contract_along, contract_through, gradients};
 use super::tables::Layer;
 use crate::material::Law;
@@ -94,6 +94,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'
                 let (inverse_along, inverse_around) = input.inverse_stretch[qz];
                 let inverse_along = inverse_along.load(simd);
                 let inverse_around = inverse_around.load(simd);
+                let along_point = (qz, [inverse_along, inverse_around]);
                 let growth = nil.like(1.0) / (inverse_along * inverse_around); // det Fp
                 let weight = slab.weight[qz].load(simd);
                 contract_along::<S, N>(simd, slab, qz, &u, &mut along);
@@ -102,13 +103,14 @@ fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'
                     let radius = layer.radius[qr];
                     contract_through::<S, N>(simd, layer, qr, &along, &mut through);
                     through_force.fill([zero; 3]);
-                    for point in around {
-                        let columns = Columns::new(point, radius, inverse_along, inverse_around);
+                    for (qs, point) in around.iter().enumerate() {
+                        let columns = input.columns(simd, along_point, [t, element], [qr, qs]);
                         let Fe = columns.elastic(point, radius, gradients(simd, point, &through));
                         let J = Lanes::store(Fe.determinant());
                         worst.note(J, |lane| [lane, t, element], qr);
 
                         let volume = weight.times(layer.weight[qr] * point.volume(radius)); // dV₀
+                        let volume = columns.volume(volume);
                         let grown = volume * growth;
                         let w = law.energy(&Fe);
                         energy = Real::mul_add(w, grown, energy);

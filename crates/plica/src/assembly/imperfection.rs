@@ -14,9 +14,11 @@
 //! two waves of n + 1 and n − 1 turns. The control points of each are as high as makes the spline
 //! draw it right in the sense of least squares: c_m of [`Sector::control_wave`].
 
-use super::SplineTube;
+use super::spline_tube::bases;
+use super::{Inverted, SplineTube};
 use crate::rings::Sector;
-use crate::tube::{Axial, End, Imperfection, Part, Push, Support, Tube, Wave};
+use crate::spline::{Basis, Values, through, transfer};
+use crate::tube::{Axial, End, Imperfection, Mode, Part, Push, Shape, Support, Tube, Wave};
 use std::f64::consts::PI;
 
 /// Distance from a held end, in D, over which a geometric imperfection that is the same all along
@@ -57,54 +59,208 @@ pub(super) fn end_face(tube: &Tube, sector: &Sector, end: End, r: &[f64]) -> Vec
     face
 }
 
-impl SplineTube {
-    /// u₀ of the stress-free shape X + u₀(X): control values numbered as unknowns are. None if the
-    /// tube has no imperfection of its geometry.
-    ///
-    /// u₀ is zero at fixed ends, so that a tube that is let go at rest finds its stress-free shape:
-    /// there u = u₀ is free of stress.
-    pub fn geometric_imperfection(&self) -> Option<Vec<f64>> {
-        let geometric = |imperfection: &&Imperfection| imperfection.of == Part::Geometry;
-        let imperfections = self.tube.imperfections.iter().filter(geometric);
-        let (k, m, z) = (self.sector.rings, self.row_size(), self.axial.greville());
-        let mut u: Option<Vec<f64>> = None;
-        for imperfection in imperfections {
-            let u = u.get_or_insert_with(|| vec![0.0; self.unknowns()]);
-            for wave in imperfection.shape.waves() {
-                let drawn = Drawn::new(wave, &self.sector);
-                for (row, &z) in u.chunks_exact_mut(m).zip(&z) {
-                    let size = imperfection.amplitude * wave.share * along(wave, &self.tube, z);
-                    for ring in 0..k {
-                        let [radial, around] = drawn.across(ring);
-                        for point in row.chunks_exact_mut(3 * k) {
-                            point[k + ring] += size * radial;
-                            point[2 * k + ring] += size * around;
-                        }
+/// u₀ of the stress-free shape X + u₀(X) of a tube with imperfections: control values numbered as
+/// unknowns are. None if none is of the geometry. `bases` are those along the tube and through the
+/// wall.
+pub(super) fn geometry(
+    tube: &Tube,
+    imperfections: &[Imperfection],
+    sector: &Sector,
+    bases: [&Basis; 2],
+) -> Option<Vec<f64>> {
+    let [axial, wall] = bases;
+    let (k, points) = (sector.rings, wall.functions());
+    let mut u: Option<Vec<f64>> = None;
+    for imperfection in imperfections.iter().filter(|i| i.of == Part::Geometry) {
+        let u = u.get_or_insert_with(|| vec![0.0; axial.functions() * points * 3 * k]);
+        for wave in imperfection.shape.waves() {
+            let drawn = Drawn::new(wave, sector);
+            let factors = axial
+                .greville()
+                .iter()
+                .map(|&z| along(wave, tube, z))
+                .collect();
+            let rows = u.chunks_exact_mut(points * 3 * k);
+            for (row, factor) in rows.zip(through(axial, factors, 1)) {
+                let size = imperfection.amplitude * wave.share * factor;
+                for ring in 0..k {
+                    let [radial, around] = drawn.across(ring);
+                    for point in row.chunks_exact_mut(3 * k) {
+                        point[k + ring] += size * radial;
+                        point[2 * k + ring] += size * around;
                     }
                 }
             }
         }
-        u
+        if let Shape::Mode(mode) = &imperfection.shape {
+            let own = DrawnMode::new(mode, tube);
+            let size = imperfection.amplitude / own.largest();
+            for (point, values) in u.chunks_exact_mut(3 * k).zip(own.on(bases, sector)) {
+                for ring in 0..k {
+                    let (sin, cos) = (mode.harmonic as f64 * sector.ring_angle(ring)).sin_cos();
+                    let around = if mode.harmonic == 0 { 1.0 } else { -sin };
+                    point[ring] += size * cos * values[0];
+                    point[k + ring] += size * cos * values[1];
+                    point[2 * k + ring] += size * around * values[2];
+                }
+            }
+        }
+    }
+    u
+}
+
+impl SplineTube {
+    /// u₀ of the stress-free shape X + u₀(X): control values numbered as unknowns are. None if the
+    /// tube has no imperfection of its geometry.
+    ///
+    /// Waves are zero at fixed ends, and other ends, or modes, are held where u₀ puts them, so that a
+    /// tube that is let go at rest finds its stress-free shape: there u = u₀ is free of stress.
+    pub fn geometric_imperfection(&self) -> Option<&[f64]> {
+        let imperfect = self.imperfect.as_ref();
+        imperfect.map(|imperfect| &imperfect.displacement[..])
+    }
+
+    /// Whether the stress-free shape of a tube with these imperfections is one.
+    ///
+    /// # Errors
+    /// [`Inverted`] where that is folded: det ∂(X + u₀)/∂X is not positive.
+    pub fn can_have(&self, imperfections: &[Imperfection]) -> Result<(), Inverted> {
+        let bases = [&self.axial, &self.wall];
+        let Some(u) = geometry(&self.tube, imperfections, &self.sector, bases) else {
+            return Ok(());
+        };
+        let perfect = Self {
+            imperfect: None,
+            ..self.clone()
+        };
+        perfect.forces(&self.tube.rest(), &u).map(drop)
     }
 
     /// Where to look for the tube at rest: nothing, or what imperfections displace, spread along
     /// the tube. The ends are held as they are at rest.
     pub fn start(&self) -> Vec<f64> {
-        let mut u = self
-            .geometric_imperfection()
-            .unwrap_or_else(|| vec![0.0; self.unknowns()]);
-        let mut held = vec![0.0; self.unknowns()];
+        let mut u = match self.geometric_imperfection() {
+            Some(u) => u.to_vec(),
+            None => vec![0.0; self.unknowns()],
+        };
+        // What ends are displaced from there.
+        let mut held = u.clone();
         self.impose(&self.tube.rest(), &mut held);
         let (m, z) = (self.row_size(), self.axial.greville());
-        let (first, last) = (&held[..m], &held[held.len() - m..]);
+        let from_shape = |row: usize| -> Vec<f64> {
+            let row = row * m..(row + 1) * m;
+            held[row.clone()]
+                .iter()
+                .zip(&u[row])
+                .map(|(h, u)| h - u)
+                .collect()
+        };
+        let (first, last) = (from_shape(0), from_shape(z.len() - 1));
         for (row, z) in z.iter().enumerate() {
             let x = z / self.tube.length;
             for i in 0..m {
                 u[row * m + i] += (1.0 - x) * first[i] + x * last[i];
             }
         }
+        self.impose(&self.tube.rest(), &mut u);
         u
     }
+}
+
+/// A mode as the splines of its own mesh draw it.
+struct DrawnMode<'a> {
+    mode: &'a Mode,
+    bases: [Basis; 2],
+    /// What the control values of a wave of n, |n − 1| and n + 1 turns are higher than the wave.
+    heights: [f64; 3],
+}
+
+/// Where the displacement of a mode is looked at: so many points to an element along the tube, and
+/// through the wall.
+const LOOKED_AT: [usize; 2] = [8, 4];
+
+impl<'a> DrawnMode<'a> {
+    fn new(mode: &'a Mode, tube: &Tube) -> Self {
+        let sector = Sector::new(mode.mesh.degree, mode.mesh.elements()[1], 1);
+        Self {
+            mode,
+            bases: bases(tube, &mode.mesh),
+            heights: heights(&sector, mode.harmonic),
+        }
+    }
+
+    /// The same displacement, by control values for waves of other heights. (r cos nψ, −θ sin nψ) is
+    /// ½ (r − θ) times a wave of n + 1 turns and ½ (r + θ) times one of n − 1, see above.
+    fn with_heights(&self, [z, r, t]: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+        let [axial, back, forth] = [0, 1, 2].map(|i| to[i] / self.heights[i]);
+        if self.mode.harmonic == 0 {
+            return [z, r * forth, t * forth];
+        }
+        let (forth, back) = (0.5 * (r - t) * forth, 0.5 * (r + t) * back);
+        [z * axial, back + forth, back - forth]
+    }
+
+    /// The largest displacement of a point of the wall.
+    fn largest(&self) -> f64 {
+        let [axial, wall] = &self.bases;
+        let points = wall.functions();
+        let places = |basis: &Basis, count: usize| -> Vec<Values> {
+            let last = basis.elements() * count;
+            (0..=last)
+                .map(|i| {
+                    let element = (i / count).min(basis.elements() - 1);
+                    let (from, to) = basis.element(element);
+                    let x = (i - element * count) as f64 / count as f64;
+                    basis.evaluate_in(element, from + (to - from) * x)
+                })
+                .collect()
+        };
+        let through = places(wall, LOOKED_AT[1]);
+        let mut largest = 0.0_f64;
+        for along in places(axial, LOOKED_AT[0]) {
+            for through in &through {
+                let mut u = [0.0; 3];
+                for (a, n) in along.value.iter().enumerate() {
+                    for (c, m) in through.value.iter().enumerate() {
+                        let point = (along.element + a) * points + through.element + c;
+                        for (u, x) in u.iter_mut().zip(&self.mode.values[3 * point..]) {
+                            *u += n * m * x;
+                        }
+                    }
+                }
+                let [z, r, t] = self.with_heights(u, [1.0; 3]);
+                // At a crest, or a quarter wave from it; of harmonic 0 all at once.
+                let size = match self.mode.harmonic {
+                    0 => (z * z + r * r + t * t).sqrt(),
+                    _ => z.hypot(r).max(t.abs()),
+                };
+                largest = largest.max(size);
+            }
+        }
+        largest
+    }
+
+    /// (z, r, θ) of the control points of a ring of another mesh.
+    fn on(&self, [axial, wall]: [&Basis; 2], sector: &Sector) -> Vec<[f64; 3]> {
+        let width = 3 * self.bases[1].functions();
+        let rows = transfer(&self.bases[0], axial, &self.mode.values, width);
+        let heights = heights(sector, self.mode.harmonic);
+        let mut out = vec![];
+        for row in rows.chunks_exact(width) {
+            let points = transfer(&self.bases[1], wall, row, 3);
+            let points = points.as_chunks::<3>().0.iter();
+            out.extend(points.map(|&point| match heights == self.heights {
+                true => point,
+                false => self.with_heights(point, heights),
+            }));
+        }
+        out
+    }
+}
+
+/// c_n, c_|n − 1| and c_n+1 of [`Sector::control_wave`].
+fn heights(sector: &Sector, n: usize) -> [f64; 3] {
+    [n, n.abs_diff(1), n + 1].map(|m| sector.control_wave(m))
 }
 
 /// A wave of unit height as the splines draw it.

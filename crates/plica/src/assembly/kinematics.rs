@@ -1,5 +1,6 @@
 //! From control points to the elastic deformation gradient, and back from its stress to forces.
 
+use super::stress_free::Departure;
 use super::tables::Around;
 use crate::rings::SlotValues;
 use crate::tensor::{Real, Tensor2};
@@ -13,12 +14,15 @@ pub type Vector<S> = [S; 3];
 /// - Fe along    = ∂x/∂ζ / θζ
 /// - Fe around   = (∂x/∂s / (R b) − ∂x/∂R a / (b |C|)) / θη
 /// - Fe outwards = ∂x/∂R / |C|
+///
+/// An imperfect wall's departs from that, see [`Departure`].
 #[derive(Clone, Copy)]
 pub struct Columns<S> {
     along: S,
     around: S,
     across: S,
     outwards: S,
+    departure: Option<Departure<S>>,
 }
 
 impl<S: Real> Columns<S> {
@@ -31,6 +35,23 @@ impl<S: Real> Columns<S> {
             around: inverse_around.times(1.0 / (radius * b)),
             across: inverse_around.times(-point.outwards / (b * point.radius)),
             outwards: inverse_along.like(1.0 / point.radius),
+            departure: None,
+        }
+    }
+
+    /// The same of an imperfect wall.
+    #[inline(always)]
+    pub fn measured_from(mut self, departure: Option<Departure<S>>) -> Self {
+        self.departure = departure;
+        self
+    }
+
+    /// A volume dV₀ of the perfect tube, as the wall has it where it is free of stress.
+    #[inline(always)]
+    pub fn volume(&self, volume: S) -> S {
+        match &self.departure {
+            Some(departure) => departure.volume(volume),
+            None => volume,
         }
     }
 
@@ -59,15 +80,22 @@ impl<S: Real> Columns<S> {
             Fe[i][1] = r[i] * self.outwards;
             Fe[i][2] = s[i].mul_add(self.around, r[i] * self.across);
         }
-        Tensor2(Fe)
+        match &self.departure {
+            Some(departure) => departure.onto(Tensor2(Fe)),
+            None => Tensor2(Fe),
+        }
     }
 
     /// The transpose of [`Columns::elastic`]: stresses on gradients over ζ, s and R.
     #[inline(always)]
     pub fn pulled_back(&self, P: &Tensor2<S>) -> [Vector<S>; 3] {
-        let mut q = P.0;
+        let P = match &self.departure {
+            Some(departure) => departure.back(*P).0,
+            None => P.0,
+        };
+        let mut q = P;
         for i in 0..3 {
-            let [along, outwards, around] = P.0[i];
+            let [along, outwards, around] = P[i];
             q[0][i] = along * self.along;
             q[1][i] = around * self.around;
             q[2][i] = around.mul_add(self.across, outwards * self.outwards);
@@ -79,6 +107,14 @@ impl<S: Real> Columns<S> {
     /// of 3×3 numbers, each scaled by `weight`.
     #[inline(always)]
     pub fn moduli(&self, A: &crate::material::Moduli<S>, weight: S) -> [[[S; 3]; 3]; 6] {
+        let seen;
+        let A = match &self.departure {
+            Some(departure) => {
+                seen = departure.moduli(A);
+                &seen
+            }
+            None => A,
+        };
         let (z, e, x, o) = (self.along, self.around, self.across, self.outwards);
         let (wz, we, wx, wo) = (weight * z, weight * e, weight * x, weight * o);
         let mut blocks = [[[weight; 3]; 3]; 6];

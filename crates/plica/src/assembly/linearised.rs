@@ -3,10 +3,12 @@
 use super::SplineTube;
 use super::forces::{SlabForces, Worst};
 use super::pencil::{
-    AVERAGED, Kept, PencilInput, kept_len, pencil_forces, pencil_keep, pencil_product, slab_offsets,
+    AVERAGED, Kept, PencilInput, kept_len, pencil_forces, pencil_keep, pencil_product,
+    pencil_stress_free, slab_offsets,
 };
 use super::spline_tube::{with_degree, with_law_and_degree};
-use super::tables::{Around, Slab};
+use super::stress_free::StressFree;
+use super::tables::{Around, Layer, Slab};
 use super::tangent::SlabTangent;
 use crate::material::Material;
 use crate::matrix::BlockBanded;
@@ -50,12 +52,14 @@ impl SplineTube {
         let element = functions.pow(3) * self.layers.len() * AVERAGED;
         let offsets: Vec<Vec<SlabTangent>> = (&self.slabs, &mut at.kept)
             .into_par_iter()
-            .map(|(slab, kept)| {
+            .enumerate()
+            .map(|(number, (slab, kept))| {
                 let len = kept_len(functions, self.layers.len(), self.lanes.vectors());
                 kept.resize(len * slab.elements, [0.0; 16]);
                 let mut averaged = vec![0.0; element * slab.elements];
                 for lane in 0..slab.elements {
-                    let input = self.pencil(slab, lane, &stretch[slab.first + lane], &u);
+                    let stretch = &stretch[slab.first + lane];
+                    let input = self.pencil((number, lane), stretch, &u);
                     let kept = &mut kept[lane * len..][..len];
                     let averaged = &mut averaged[lane * element..][..element];
                     with_law_and_degree!(self, pencil_keep, &input, kept, averaged);
@@ -74,12 +78,13 @@ impl SplineTube {
             .slabs
             .par_iter()
             .zip(&at.kept)
-            .map(|(slab, kept)| {
+            .enumerate()
+            .map(|(number, (slab, kept))| {
                 let mut out = vec![0.0; (slab.elements + self.degree()) * row];
                 let len = kept.len() / slab.elements;
                 for lane in 0..slab.elements {
                     let stretch = &at.stretch[slab.first + lane];
-                    let input = self.pencil(slab, lane, stretch, &v);
+                    let input = self.pencil((number, lane), stretch, &v);
                     let kept = &kept[lane * len..][..len];
                     let out = &mut out[lane * row..][..(self.degree() + 1) * row];
                     with_law_and_degree!(self, pencil_product, &input, kept, out);
@@ -93,7 +98,8 @@ impl SplineTube {
     }
 
     /// What [`SplineTube::forces`] wants of a slab.
-    pub(super) fn forces_by_pencils(&self, slab: &Slab, load: &Load, u: &[f64]) -> SlabForces {
+    pub(super) fn forces_by_pencils(&self, number: usize, load: &Load, u: &[f64]) -> SlabForces {
+        let slab = &self.slabs[number];
         let row = self.wall.functions() * 3 * self.lanes.padded;
         let mut residual = vec![0.0; (slab.elements + self.degree()) * row];
         let mut sum = SlabForces {
@@ -105,7 +111,7 @@ impl SplineTube {
         };
         for lane in 0..slab.elements {
             let stretch = self.pencil_stretch(slab, lane, &self.around, load);
-            let input = self.pencil(slab, lane, &stretch, u);
+            let input = self.pencil((number, lane), &stretch, u);
             let residual = &mut residual[lane * row..][..(self.degree() + 1) * row];
             let part = with_law_and_degree!(self, pencil_forces, &input, residual);
             sum.energy += part.energy;
@@ -170,14 +176,45 @@ impl SplineTube {
             });
     }
 
-    /// What a pencil kernel reads, at an element along the tube.
+    /// The stress-free shape at the points of a pencil, under displacements of the perfect tube.
+    pub(super) fn pencil_shape(
+        &self,
+        slab: &Slab,
+        lane: usize,
+        layers: &[Layer],
+        around: &[Around],
+        displacement: &[f64],
+    ) -> Vec<StressFree> {
+        let row = self.wall.functions() * 3 * self.lanes.padded;
+        let perfect = PencilInput {
+            slab,
+            lane,
+            layers,
+            around,
+            points: self.wall.functions(),
+            rings: &self.lanes,
+            inverse_stretch: &[],
+            stress_free: None,
+            u: &displacement[(slab.first + lane) * row..][..(self.degree() + 1) * row],
+        };
+        match self.degree() {
+            1 => pencil_stress_free::<2>(&perfect),
+            2 => pencil_stress_free::<3>(&perfect),
+            3 => pencil_stress_free::<4>(&perfect),
+            4 => pencil_stress_free::<5>(&perfect),
+            5 => pencil_stress_free::<6>(&perfect),
+            degree => unreachable!("degree {degree} is refused by SplineTube::new"),
+        }
+    }
+
+    /// What a pencil kernel reads, at an element along the tube: a slab's number, and a lane of it.
     fn pencil<'a>(
         &'a self,
-        slab: &'a Slab,
-        lane: usize,
+        (number, lane): (usize, usize),
         inverse_stretch: &'a [(Lanes, Lanes)],
         u: &'a [f64],
     ) -> PencilInput<'a> {
+        let slab = &self.slabs[number];
         let row = self.wall.functions() * 3 * self.lanes.padded;
         PencilInput {
             slab,
@@ -187,6 +224,11 @@ impl SplineTube {
             points: self.wall.functions(),
             rings: &self.lanes,
             inverse_stretch,
+            stress_free: self.imperfect.as_ref().map(|imperfect| {
+                let points = &imperfect.points[number];
+                let pencil = points.len() / slab.elements;
+                &points[lane * pencil..][..pencil]
+            }),
             u: &u[(slab.first + lane) * row..][..(self.degree() + 1) * row],
         }
     }

@@ -34,6 +34,7 @@ mod ring_drag;
 mod sample;
 mod slab;
 mod spline_tube;
+mod stress_free;
 mod supports;
 mod tables;
 mod tangent;

@@ -1,8 +1,8 @@
 //! The kernel's plain twin, which tests hold it against: the whole tube in Cartesian control
 //! points, one quadrature point after the other, every formula from its definition.
 //!
-//! It shares with the kernel the splines along z and through the wall, the quadrature rule and
-//! the law, which have tests of their own, and nothing else. Control point n = (a, c, j) lies at
+//! It shares with the kernel the splines along z and through the wall, the quadrature rule, the law and
+//! the control values of an imperfect geometry, which have tests of their own, and nothing else. Control point n = (a, c, j) lies at
 //! row a along the tube, point c through the wall, ring j around it.
 
 use super::SplineTube;
@@ -18,6 +18,8 @@ type Vector = [f64; 3];
 pub struct PlainTube<'a> {
     spline: &'a SplineTube,
     load: &'a Load,
+    /// δ of the control points of an imperfect geometry.
+    shape: Option<Vec<Vector>>,
 }
 
 /// The splines of an element at a point of it.
@@ -28,11 +30,12 @@ pub struct ElementPoint {
     gradient: Vec<Vector>,
     /// Reference position X.
     pub reference: Vector,
-    /// dV₀ per unit of (z, R, s).
+    /// Volume of the stress-free shape per unit of (z, R, s).
     volume: f64,
-    /// Unit vectors along, outwards and around at X, as columns.
+    /// Unit vectors along, outwards and around at X, as columns; turned with an imperfect wall.
     pub polar: Tensor2,
-    /// Fp⁻¹.
+    /// A⁻¹ (R Fp Rᵀ)⁻¹: strain is measured from X + δ(X), with A = ∂(X + δ)/∂X, and the directions of
+    /// Fp have turned by the rotation R nearest A. Both are one in a perfect tube.
     Fp_inverse: Tensor2,
     /// det Fp.
     growth: f64,
@@ -51,7 +54,16 @@ impl<'a> PlainTube<'a> {
     /// The plain twin of a tube whose sector is the whole circumference.
     pub fn new(spline: &'a SplineTube, load: &'a Load) -> Self {
         assert_eq!(spline.sector.rings, spline.sector.around);
-        Self { spline, load }
+        let perfect = Self {
+            spline,
+            load,
+            shape: None,
+        };
+        let shape = spline.geometric_imperfection();
+        Self {
+            shape: shape.map(|delta| perfect.cartesian(delta)),
+            ..perfect
+        }
     }
 
     /// The law of its wall.
@@ -180,7 +192,7 @@ impl<'a> PlainTube<'a> {
         let D = Tensor2(D);
         let volume = D.determinant();
         let G = D.cofactor().scaled(1.0 / volume); // D⁻ᵀ
-        let gradient = over.iter().map(|d| apply(&G, d)).collect();
+        let gradient: Vec<Vector> = over.iter().map(|d| apply(&G, d)).collect();
 
         let [_, x, y] = reference;
         let (cos, sin) = (x / x.hypot(y), y / x.hypot(y));
@@ -191,13 +203,26 @@ impl<'a> PlainTube<'a> {
             [0.0, 1.0, 0.0],
             [0.0, 0.0, 1.0 / theta_t],
         ]);
+        let mut A = Tensor2::IDENTITY;
+        if let Some(delta) = &self.shape {
+            for (&node, gradient) in self.element_nodes(element).iter().zip(&gradient) {
+                for i in 0..3 {
+                    for j in 0..3 {
+                        A.0[i][j] += delta[node][i] * gradient[j];
+                    }
+                }
+            }
+        }
+        let directions = rotation(&A).times(polar);
+        let A_inverse = A.cofactor().transpose().scaled(1.0 / A.determinant());
+        let shrink = directions.times(shrink).times(directions.transpose());
         ElementPoint {
             value,
             gradient,
             reference,
-            volume,
-            polar,
-            Fp_inverse: polar.times(shrink).times(polar.transpose()),
+            volume: volume * A.determinant(),
+            polar: directions,
+            Fp_inverse: A_inverse.times(shrink),
             growth: theta_z * theta_t,
         }
     }
@@ -350,6 +375,23 @@ impl<'a> PlainTube<'a> {
             }
         }
     }
+}
+
+/// The rotation nearest A: A U⁻¹ with U² = AᵀA, in the principal directions of U.
+fn rotation(A: &Tensor2) -> Tensor2 {
+    let C = A.transpose().times(*A);
+    let dense = faer::Mat::from_fn(3, 3, |i, j| C.0[i][j]);
+    let eigen = dense.self_adjoint_eigen(faer::Side::Lower).unwrap();
+    let (Q, squares) = (eigen.U(), eigen.S().column_vector());
+    let mut U_inverse = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            U_inverse[i][j] = (0..3)
+                .map(|k| Q[(i, k)] * Q[(j, k)] / squares[k].sqrt())
+                .sum();
+        }
+    }
+    A.times(Tensor2(U_inverse))
 }
 
 /// The cardinal B-spline of degree p, on the knots 0, 1, …, p + 1.

@@ -1,7 +1,8 @@
 //! Fields at a point of the wall.
 
 use super::SplineTube;
-use super::kinematics::{Columns, turn};
+use super::kinematics::{Columns, Vector, turn};
+use super::stress_free::Departure;
 use super::tables::Around;
 use crate::material::{Law, Material};
 use crate::tensor::Tensor2;
@@ -21,7 +22,7 @@ pub struct Point {
 /// What is found at a material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Reference position (z, x, y).
+    /// Reference position (z, x, y), in the perfect tube.
     pub reference: [f64; 3],
     /// Current position (z, x, y).
     pub position: [f64; 3],
@@ -47,29 +48,41 @@ impl SplineTube {
         let first_ring = (element as i64).rem_euclid(rings as i64) as usize;
         let point = Around::at(&self.sector, &self.circle, s, 1.0);
 
-        let (mut zeta, mut over_s, mut over_r) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-        let mut value = [0.0; 3];
-        for (a, (n, dn)) in axial.value.iter().zip(&axial.slope).enumerate() {
-            for (c, (m, dm)) in wall.value.iter().zip(&wall.slope).enumerate() {
-                for (r, slot) in point.slots.iter().enumerate() {
-                    let row = axial.element + a;
-                    let place = |i: usize| {
-                        row * self.row_size()
-                            + ((wall.element + c) * 3 + i) * rings
-                            + (first_ring + r) % rings
-                    };
-                    let u = [0, 1, 2].map(|i| u[place(i)]);
-                    value = turn(slot, 0, u.map(|x| n * m * x), value);
-                    zeta = turn(slot, 0, u.map(|x| dn * m * x), zeta);
-                    over_s = turn(slot, 1, u.map(|x| n * m * x), over_s);
-                    over_r = turn(slot, 0, u.map(|x| n * dm * x), over_r);
+        // Value, and gradients over ζ, s and R.
+        let displaced = |u: &[f64]| -> (Vector<f64>, [Vector<f64>; 3]) {
+            let (mut value, mut g) = ([0.0; 3], [[0.0; 3]; 3]);
+            for (a, (n, dn)) in axial.value.iter().zip(&axial.slope).enumerate() {
+                for (c, (m, dm)) in wall.value.iter().zip(&wall.slope).enumerate() {
+                    for (r, slot) in point.slots.iter().enumerate() {
+                        let row = axial.element + a;
+                        let place = |i: usize| {
+                            row * self.row_size()
+                                + ((wall.element + c) * 3 + i) * rings
+                                + (first_ring + r) % rings
+                        };
+                        let u = [0, 1, 2].map(|i| u[place(i)]);
+                        value = turn(slot, 0, u.map(|x| n * m * x), value);
+                        g[0] = turn(slot, 0, u.map(|x| dn * m * x), g[0]);
+                        g[1] = turn(slot, 1, u.map(|x| n * m * x), g[1]);
+                        g[2] = turn(slot, 0, u.map(|x| n * dm * x), g[2]);
+                    }
                 }
             }
-        }
+            (value, g)
+        };
 
+        let (value, gradients) = displaced(u);
         let (theta_z, theta_t) = self.tube.stretches(at.z, load);
-        let columns = Columns::new(&point, at.radius, 1.0 / theta_z, 1.0 / theta_t);
-        let Fe = columns.elastic(&point, at.radius, [zeta, over_s, over_r]);
+        let (inverse_along, inverse_around) = (1.0 / theta_z, 1.0 / theta_t);
+        let departure = self.imperfect.as_ref().map(|imperfect| {
+            let columns = Columns::new(&point, at.radius, 1.0, 1.0);
+            let (_, gradients) = displaced(&imperfect.displacement);
+            let A = columns.elastic(&point, at.radius, gradients);
+            Departure::of(A, inverse_along, inverse_around)
+        });
+        let columns = Columns::new(&point, at.radius, inverse_along, inverse_around);
+        let columns = columns.measured_from(departure);
+        let Fe = columns.elastic(&point, at.radius, gradients);
         let reference = [at.z, at.radius * point.circle.0, at.radius * point.circle.1];
         let position = [0, 1, 2].map(|i| reference[i] + value[i]);
         // From the element's frame to the laboratory.

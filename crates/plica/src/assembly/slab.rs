@@ -1,7 +1,8 @@
 //! What the slab kernels share: their input, and the sums that lead from control points to a
 //! quadrature point.
 
-use super::kinematics::{Vector, turn};
+use super::kinematics::{Columns, Vector, turn};
+use super::stress_free::StressFree;
 use super::tables::{Around, Layer, Slab};
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
@@ -18,6 +19,9 @@ pub struct SlabInput<'a> {
     pub rings: usize,
     /// 1/θζ and 1/θη at the quadrature points along the slab.
     pub inverse_stretch: &'a [(Lanes, Lanes)],
+    /// The stress-free shape at every (layer, element around, point along, point through, point
+    /// around), if it is not the perfect tube's.
+    pub stress_free: Option<&'a [StressFree]>,
     /// Displacements of the slab's rows, one after the other: (point, component, ring) in each.
     pub u: &'a [f64],
 }
@@ -31,6 +35,25 @@ impl SlabInput<'_> {
     /// Distinct rings of an element.
     pub fn slots(&self) -> usize {
         self.around[0].slots.len()
+    }
+
+    /// What leads from gradients to Fe at a point along (its 1/θζ and 1/θη), layer and element
+    /// around, point through and point around.
+    #[inline(always)]
+    pub fn columns<S: Simd>(
+        &self,
+        simd: S,
+        (qz, [inverse_along, inverse_around]): (usize, [f64x8<S>; 2]),
+        [t, element]: [usize; 2],
+        [qr, qs]: [usize; 2],
+    ) -> Columns<f64x8<S>> {
+        let (layer, points) = (&self.layers[t], self.around.len());
+        let radius = layer.radius[qr];
+        let columns = Columns::new(&self.around[qs], radius, inverse_along, inverse_around);
+        columns.measured_from(self.stress_free.map(|at| {
+            let at = &at[(((t * self.rings + element) * points + qz) * points + qr) * points + qs];
+            at.departure(simd, inverse_along, inverse_around)
+        }))
     }
 
     /// Where a component of a control point sits in its row.

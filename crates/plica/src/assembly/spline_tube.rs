@@ -2,9 +2,11 @@
 
 use super::drag::drag;
 use super::forces::{SlabForces, Worst, slab_forces};
+use super::imperfection::geometry;
 use super::pencil::RingLanes;
 use super::ring_drag::RingDrag;
 use super::slab::SlabInput;
+use super::stress_free::{StressFree, slab_stress_free};
 use super::supports::Supports;
 use super::tables::{Around, Layer, Slab};
 use super::tangent::{SlabTangent, slab_tangent};
@@ -15,6 +17,8 @@ use crate::spline::{Basis, Circle, gauss_legendre, graded_breakpoints};
 use crate::tensor::Lanes;
 use crate::tube::{Load, Mesh, Tube};
 use rayon::prelude::*;
+use std::borrow::Cow;
+use std::sync::Arc;
 
 /// A tube and the splines that carry its displacements.
 ///
@@ -39,6 +43,17 @@ pub struct SplineTube {
     pub(super) layers: Vec<Layer>,
     pub(super) around: Vec<Around>,
     pub(super) lanes: RingLanes,
+    pub(super) imperfect: Option<Arc<Imperfect>>,
+}
+
+/// An imperfect geometry.
+#[derive(Clone, Debug)]
+pub(super) struct Imperfect {
+    /// δ, from the perfect tube to the stress-free shape: control values numbered as unknowns are.
+    pub(super) displacement: Vec<f64>,
+    /// The shape at the quadrature points, by slab: of one ring as slab kernels read it, of more
+    /// pencil after pencil.
+    pub(super) points: Vec<Vec<StressFree>>,
 }
 
 /// Energy and residual at a state.
@@ -104,25 +119,22 @@ impl SplineTube {
     pub fn new(tube: &Tube, mesh: &Mesh, rings: usize) -> Self {
         let p = mesh.degree;
         assert!((1..=5).contains(&p), "degree {p} is not between 1 and 5");
-        let [along, around, through] = mesh.elements();
+        let around = mesh.elements()[1];
         let sector = Sector::new(p, around, rings);
         let circle = Circle::new(p, around);
-        let axial = Basis::open(
-            p,
-            &graded_breakpoints(tube.length, along, &mesh.refinements),
-        );
-        let radii = graded_breakpoints(tube.thickness, through, &[]);
-        let radii: Vec<f64> = radii.iter().map(|h| tube.inner_radius() + h).collect();
-        let wall = Basis::open(p, &radii);
+        let [axial, wall] = bases(tube, mesh);
+        let displacement = geometry(tube, &tube.imperfections, &sector, [&axial, &wall]);
         let control_radii: Vec<f64> = wall
             .greville()
             .iter()
             .map(|r| r * circle.control_radius)
             .collect();
-        let supports = Supports::new(tube, &sector, &axial.greville(), &control_radii);
+        let places = [axial.greville(), control_radii];
+        let supports = Supports::new(tube, &sector, &places, displacement.as_deref());
         let ring = Sector::new(p, around, 1);
-        let ring_supports = Supports::new(tube, &ring, &axial.greville(), &control_radii);
-        Self {
+        let of_ring = displacement.as_deref().map(|u| first_ring(u, rings));
+        let ring_supports = Supports::new(tube, &ring, &places, of_ring.as_deref());
+        let spline = Self {
             slabs: Slab::all(&axial),
             layers: Layer::all(&wall),
             around: Around::all(p, &sector, &circle),
@@ -134,19 +146,79 @@ impl SplineTube {
             wall,
             supports,
             ring_supports,
+            imperfect: None,
+        };
+        match displacement {
+            Some(displacement) => spline.imperfect(displacement),
+            None => spline,
         }
     }
 
-    /// The same tube with one ring to solve for: axisymmetric.
+    /// The same tube with one ring to solve for: axisymmetric. Where its geometry is not, it has that
+    /// of its first ring all around.
     pub fn of_one_ring(&self) -> Self {
         let sector = Sector::new(self.degree(), self.sector.around, 1);
-        Self {
+        let ring = Self {
             around: Around::all(self.degree(), &sector, &self.circle),
             lanes: RingLanes::new(1),
             supports: self.ring_supports.clone(),
             sector,
+            imperfect: None,
             ..self.clone()
+        };
+        match &self.imperfect {
+            Some(own) => ring.imperfect(first_ring(&own.displacement, self.sector.rings)),
+            None => ring,
         }
+    }
+
+    /// The tube with a stress-free shape that is displaced from its own.
+    pub(super) fn imperfect(mut self, displacement: Vec<f64>) -> Self {
+        let points = if self.sector.rings < FEW_RINGS {
+            let slabs = self.slabs.par_iter();
+            slabs
+                .map(|slab| self.slab_shape(slab, &displacement))
+                .collect()
+        } else {
+            let u = self.lanes.pad(&displacement);
+            let slabs = self.slabs.par_iter();
+            slabs
+                .map(|slab| {
+                    let pencils = 0..slab.elements;
+                    let shape =
+                        |lane| self.pencil_shape(slab, lane, &self.layers, &self.around, &u);
+                    pencils.flat_map(shape).collect()
+                })
+                .collect()
+        };
+        self.imperfect = Some(Arc::new(Imperfect {
+            displacement,
+            points,
+        }));
+        self
+    }
+
+    /// The stress-free shape as slab kernels read it, under displacements of the perfect tube.
+    fn slab_shape(&self, slab: &Slab, displacement: &[f64]) -> Vec<StressFree> {
+        let perfect = self.input(slab, (&[], None), displacement);
+        match self.degree() {
+            1 => slab_stress_free::<2>(&perfect),
+            2 => slab_stress_free::<3>(&perfect),
+            3 => slab_stress_free::<4>(&perfect),
+            4 => slab_stress_free::<5>(&perfect),
+            5 => slab_stress_free::<6>(&perfect),
+            degree => unreachable!("degree {degree} is refused by SplineTube::new"),
+        }
+    }
+
+    /// The stress-free shape of a slab as slab kernels read it, if it is not the perfect tube's.
+    fn shape_of_slab(&self, number: usize) -> Option<Cow<'_, [StressFree]>> {
+        let imperfect = self.imperfect.as_ref()?;
+        Some(if self.sector.rings < FEW_RINGS {
+            Cow::Borrowed(&imperfect.points[number])
+        } else {
+            Cow::Owned(self.slab_shape(&self.slabs[number], &imperfect.displacement))
+        })
     }
 
     /// The degree p.
@@ -198,16 +270,17 @@ impl SplineTube {
     /// Energy and residual of a state `u` under a load.
     pub fn forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
         let slabs: Vec<SlabForces> = if self.sector.rings < FEW_RINGS {
-            let forces = |slab| {
+            let forces = |(number, slab): (usize, &Slab)| {
                 let stretch = self.inverse_stretch(slab, load);
-                let input = self.input(slab, &stretch, u);
+                let shape = self.shape_of_slab(number);
+                let input = self.input(slab, (&stretch, shape.as_deref()), u);
                 with_law_and_degree!(self, slab_forces, &input)
             };
-            self.slabs.par_iter().map(forces).collect()
+            self.slabs.par_iter().enumerate().map(forces).collect()
         } else {
             let u = self.lanes.pad(u);
-            let forces = |slab| self.forces_by_pencils(slab, load, &u);
-            self.slabs.par_iter().map(forces).collect()
+            let forces = |number| self.forces_by_pencils(number, load, &u);
+            (0..self.slabs.len()).into_par_iter().map(forces).collect()
         };
 
         let repeats = self.sector.repeats();
@@ -282,12 +355,14 @@ impl SplineTube {
         let slab_bytes = 8 * (p + 1) * m * m * (8 + p);
         let together = (SLAB_MEMORY / slab_bytes).clamp(2, self.slabs.len().max(2));
         let mut before: Option<(usize, SlabTangent)> = None;
-        for slabs in self.slabs.chunks(together) {
+        for (chunk, slabs) in self.slabs.chunks(together).enumerate() {
             let mut parts: Vec<(usize, SlabTangent)> = slabs
                 .par_iter()
-                .map(|slab| {
+                .enumerate()
+                .map(|(number, slab)| {
                     let stretch = self.inverse_stretch(slab, load);
-                    let input = self.input(slab, &stretch, u);
+                    let shape = self.shape_of_slab(chunk * together + number);
+                    let input = self.input(slab, (&stretch, shape.as_deref()), u);
                     (
                         slab.first,
                         with_law_and_degree!(self, slab_tangent, &input, turns),
@@ -374,7 +449,7 @@ impl SplineTube {
     fn input<'a>(
         &'a self,
         slab: &'a Slab,
-        inverse_stretch: &'a [(Lanes, Lanes)],
+        (inverse_stretch, stress_free): (&'a [(Lanes, Lanes)], Option<&'a [StressFree]>),
         u: &'a [f64],
     ) -> SlabInput<'a> {
         let m = self.row_size();
@@ -386,9 +461,27 @@ impl SplineTube {
             points: self.wall.functions(),
             rings: self.sector.rings,
             inverse_stretch,
+            stress_free,
             u: &u[slab.first * m..(slab.first + rows) * m],
         }
     }
+}
+
+/// Bases along a tube, over z, and through its wall, over the reference radius.
+pub(super) fn bases(tube: &Tube, mesh: &Mesh) -> [Basis; 2] {
+    let [along, _, through] = mesh.elements();
+    let breakpoints = graded_breakpoints(tube.length, along, &mesh.refinements);
+    let radii = graded_breakpoints(tube.thickness, through, &[]);
+    let radii: Vec<f64> = radii.iter().map(|h| tube.inner_radius() + h).collect();
+    [
+        Basis::open(mesh.degree, &breakpoints),
+        Basis::open(mesh.degree, &radii),
+    ]
+}
+
+/// The unknowns of the first of several rings.
+fn first_ring(u: &[f64], rings: usize) -> Vec<f64> {
+    u.iter().step_by(rings).copied().collect()
 }
 
 /// Rings from which their elements share enough to be worked on as pencils.

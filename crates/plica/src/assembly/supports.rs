@@ -28,8 +28,14 @@ struct EndUnknown {
 }
 
 impl Supports {
-    /// The supports of a tube with control points at the axial positions `z` and radii `r`.
-    pub fn new(tube: &Tube, sector: &Sector, z: &[f64], r: &[f64]) -> Self {
+    /// The supports of a tube with control points at the axial positions `z` and radii `r`, whose
+    /// stress-free shape is displaced by `shape`: ends are held where they are free of stress.
+    pub fn new(
+        tube: &Tube,
+        sector: &Sector,
+        [z, r]: &[Vec<f64>; 2],
+        shape: Option<&[f64]>,
+    ) -> Self {
         let size = r.len() * 3 * sector.rings;
         let mut given = vec![false; z.len() * size];
         let mut ends = vec![];
@@ -45,12 +51,17 @@ impl Supports {
                     for ring in 0..sector.rings {
                         let unknown = row * size + (c * 3 + component) * sector.rings + ring;
                         given[unknown] = true;
+                        let mut shift = face[c * sector.rings + ring];
+                        for (i, shift) in shift.iter_mut().enumerate() {
+                            let own = row * size + (c * 3 + i) * sector.rings + ring;
+                            *shift += shape.map_or(0.0, |shape| shape[own]);
+                        }
                         ends.push(EndUnknown {
                             unknown,
                             end,
                             component,
                             radius,
-                            shift: face[c * sector.rings + ring],
+                            shift,
                         });
                     }
                 }

@@ -7,7 +7,6 @@
 //! 9 N⁴ (N + 5) along the tube: 7.2e4 multiply-adds for cubics, where multiplying out BᵀAB
 //! would cost 9e5.
 
-use super::kinematics::Columns;
 use super::slab::{SlabInput, contract_along, contract_through, gradients};
 use super::tables::Slab;
 use crate::material::Law;
@@ -100,13 +99,14 @@ fn kernel<S: Simd, L: Law, const N: usize>(
     // that go with (N', N'), (N', N), (N, N'), (N, N) along the tube.
     let mut wall = vec![[[zero; 4]; N]; pairs.len() * N * N * 9];
 
-    for layer in layers {
+    for (t, layer) in layers.iter().enumerate() {
         for element in 0..input.rings {
             input.gather::<S, N>(simd, layer, element, &mut u);
             for qz in 0..N {
                 let (inverse_along, inverse_around) = input.inverse_stretch[qz];
                 let inverse_along = inverse_along.load(simd);
                 let inverse_around = inverse_around.load(simd);
+                let along_point = (qz, [inverse_along, inverse_around]);
                 let weight = slab.weight[qz].load(simd) / (inverse_along * inverse_around);
                 contract_along::<S, N>(simd, slab, qz, &u, &mut along);
                 for entry in &mut wall {
@@ -116,10 +116,11 @@ fn kernel<S: Simd, L: Law, const N: usize>(
                     contract_through::<S, N>(simd, layer, qr, &along, &mut through);
                     turned.fill([[[[zero; 3]; 3]; 3]; 3]);
                     let radius = layer.radius[qr];
-                    for (point, turns) in around.iter().zip(turns) {
-                        let columns = Columns::new(point, radius, inverse_along, inverse_around);
+                    for (qs, (point, turns)) in around.iter().zip(turns).enumerate() {
+                        let columns = input.columns(simd, along_point, [t, element], [qr, qs]);
                         let Fe = columns.elastic(point, radius, gradients(simd, point, &through));
                         let grown = weight.times(layer.weight[qr] * point.volume(radius)); // det Fp dV₀
+                        let grown = columns.volume(grown);
                         let blocks = columns.moduli(&law.moduli(&Fe), grown);
                         for slots in turns {
                             for (turned, &(r, s)) in turned.iter_mut().zip(&pairs) {

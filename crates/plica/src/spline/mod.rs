@@ -27,4 +27,4 @@ pub use basis::{Basis, Values};
 pub use circle::{Circle, control_wave};
 pub use grading::{Refinement, graded_breakpoints};
 pub use quadrature::gauss_legendre;
-pub use transfer::transfer;
+pub use transfer::{through, transfer};

@@ -26,8 +26,9 @@ pub fn transfer(from: &Basis, to: &Basis, values: &[f64], width: usize) -> Vec<f
     through(to, curve, width)
 }
 
-/// The control values of the spline through these values at the Greville points of its basis.
-fn through(basis: &Basis, mut values: Vec<f64>, width: usize) -> Vec<f64> {
+/// The control values of the spline through `values` at the Greville points of its basis, `width`
+/// numbers for every function.
+pub fn through(basis: &Basis, mut values: Vec<f64>, width: usize) -> Vec<f64> {
     let p = basis.degree();
     // Collocation: row i holds N_j at Greville point i, for j = i − p to i + p.
     let mut matrix = vec![vec![0.0; 2 * p + 1]; basis.functions()];

@@ -12,8 +12,10 @@
 //! | φ₀ | angle of a crest | [`Wave::phase`] |
 //! | c | share of the wave in the shape | [`Wave::share`] |
 //! | g | factor along the tube | [`Axial::value`] |
+//!
+//! The geometry may also have the shape of a [`Mode`], a displacement in which a tube leaves its path.
 
-use super::{End, Random};
+use super::{End, Mesh, Random};
 use std::f64::consts::{PI, TAU};
 
 /// One imperfection of a tube.
@@ -56,6 +58,21 @@ pub enum Shape {
     Wave(Wave),
     /// Many, from the seed of a generator.
     Random(Random),
+    /// A displacement, of the geometry.
+    Mode(Mode),
+}
+
+/// A displacement (z cos nφ, r cos nφ, −θ sin nφ) that splines draw, whatever its size: an imperfect
+/// geometry is displaced by the amplitude where that is largest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// n.
+    pub harmonic: usize,
+    /// The mesh whose control points are displaced.
+    pub mesh: Mesh,
+    /// (z, r, θ) of every control point of one ring: row by row along the tube, and in a row point
+    /// by point through the wall; not all zero. For n = 0 the displacement itself.
+    pub values: Vec<f64>,
 }
 
 /// One wave around the tube, c g(z) cos n(φ − φ₀).
@@ -83,15 +100,16 @@ pub enum Axial {
 }
 
 impl Shape {
-    /// The waves that it is the sum of.
+    /// The waves that it is the sum of; none of a mode.
     pub fn waves(&self) -> &[Wave] {
         match self {
             Self::Wave(wave) => std::slice::from_ref(wave),
             Self::Random(random) => random.waves(),
+            Self::Mode(_) => &[],
         }
     }
 
-    /// f(φ, z), φ in radians, for a span of the tube in D.
+    /// f(φ, z), φ in radians, for a span of the tube in D; of a sum of waves.
     pub fn value(&self, phi: f64, z: f64, span: [f64; 2]) -> f64 {
         let waves = self.waves().iter();
         waves.map(|wave| wave.value(phi, z, span)).sum()

@@ -9,7 +9,7 @@ mod load;
 mod mesh;
 mod random;
 
-pub use imperfection::{Axial, Imperfection, Part, Push, Shape, Wave};
+pub use imperfection::{Axial, Imperfection, Mode, Part, Push, Shape, Wave};
 pub use load::{EndMotion, Load};
 pub use mesh::{Mesh, Symmetry};
 pub use random::Random;

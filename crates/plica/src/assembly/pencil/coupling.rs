@@ -1,6 +1,5 @@
 //! The moduli around a pencil, one by one.
 
-use super::super::kinematics::Columns;
 use super::{AVERAGED, PencilInput, gradients, slots, store, sum_along, sum_through};
 use crate::material::Law;
 use crate::tensor::LANES;
@@ -27,18 +26,14 @@ fn kernel<S: Simd, L: Law, const N: usize>(
     let mut out = out.chunks_exact_mut(AVERAGED * R);
     for qz in 0..input.slab.z.len() {
         sum_along::<S, N>(simd, input, qz, &mut along);
-        for layer in input.layers {
+        for (t, layer) in input.layers.iter().enumerate() {
             let (radius, point) = (layer.radius[0], &input.around[0]);
             sum_through::<S, N>(simd, input, layer, 0, &along, &mut through);
             let Some(out) = out.next() else { return };
             for v in 0..input.rings.vectors() {
-                let mask = input.rings.mask[v].load(simd);
-                let (inverse_along, inverse_around) = input.stretch(simd, qz, 0, v);
-                let columns = Columns::new(point, radius, inverse_along, inverse_around);
+                let (columns, [_, grown]) = input.columns(simd, qz, [t, 0], [v, 0]);
                 let g = gradients::<S, N>(simd, &slots[0], &through, W, v);
                 let Fe = columns.elastic(point, radius, g);
-                let weight = input.weight(qz) * layer.weight[0] * point.volume(radius);
-                let grown = mask * weight / (inverse_along * inverse_around);
                 let blocks = columns.moduli(&law.moduli(&Fe), grown);
                 for (b, block) in blocks.iter().enumerate() {
                     for j in 0..3 {

@@ -1,7 +1,7 @@
 //! Energy and residual of a pencil.
 
 use super::super::forces::Worst;
-use super::super::kinematics::{Columns, turn_back};
+use super::super::kinematics::turn_back;
 use super::{PencilInput, gradients, load, slots, store, sum_along, sum_through};
 use crate::material::Law;
 use crate::tensor::{LANES, Lanes, Real};
@@ -64,20 +64,15 @@ fn kernel<S: Simd, L: Law, const N: usize>(
                 let rows = &along[qz * 2 * row..][..2 * row];
                 sum_through::<S, N>(simd, input, layer, qr, rows, &mut through);
                 for v in 0..input.rings.vectors() {
-                    let mask = input.rings.mask[v].load(simd);
                     let mut pulled = [[[nil; 3]; 3]; N];
                     for qs in 0..N {
                         let point = &input.around[qs];
-                        let (inverse_along, inverse_around) = input.stretch(simd, qz, qs, v);
-                        let columns = Columns::new(point, radius, inverse_along, inverse_around);
+                        let (columns, [volume, grown]) = input.columns(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let Fe = columns.elastic(point, radius, g);
                         let J = Lanes::store(Fe.determinant());
                         worst.note(J, |lane| [0, t, v * LANES + lane], qr);
 
-                        let volume =
-                            mask.times(input.weight(qz) * layer.weight[qr] * point.volume(radius)); // dV₀
-                        let grown = volume / (inverse_along * inverse_around); // det Fp dV₀
                         let w = law.energy(&Fe);
                         energy = Real::mul_add(w, grown, energy);
                         energy_ungrown = Real::mul_add(w, volume, energy_ungrown);

@@ -1,6 +1,6 @@
 //! The tangent of a pencil without its matrix: what is kept of a state, and the product with it.
 
-use super::super::kinematics::{Columns, turn_back};
+use super::super::kinematics::turn_back;
 use super::{AVERAGED, PencilInput, gradients, load, slots, store, sum_along, sum_through};
 use crate::material::{self, Law};
 use crate::tensor::{LANES, Lanes, Real};
@@ -45,17 +45,15 @@ fn keep<S: Simd, L: Law, const N: usize>(
     let mut sums = vec![nil; N * AVERAGED];
     for qz in 0..N {
         sum_along::<S, N>(simd, input, qz, &mut along);
-        for layer in input.layers {
+        for (t, layer) in input.layers.iter().enumerate() {
             for qr in 0..N {
                 let radius = layer.radius[qr];
                 sum_through::<S, N>(simd, input, layer, qr, &along, &mut through);
                 sums.fill(nil);
                 for v in 0..input.rings.vectors() {
-                    let mask = input.rings.mask[v].load(simd);
                     for qs in 0..N {
                         let point = &input.around[qs];
-                        let (inverse_along, inverse_around) = input.stretch(simd, qz, qs, v);
-                        let columns = Columns::new(point, radius, inverse_along, inverse_around);
+                        let (columns, [_, grown]) = input.columns(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let Fe = columns.elastic(point, radius, g);
                         let state = law.keep(&Fe);
@@ -64,9 +62,6 @@ fn keep<S: Simd, L: Law, const N: usize>(
                                 *to = simd.narrow_f64x8(pair[0], pair[1]).into();
                             }
                         }
-                        let volume =
-                            mask.times(input.weight(qz) * layer.weight[qr] * point.volume(radius));
-                        let grown = volume / (inverse_along * inverse_around);
                         let blocks = columns.moduli(&law.moduli(&Fe), grown);
                         let sums = &mut sums[qs * AVERAGED..][..AVERAGED];
                         for (sums, block) in sums.chunks_exact_mut(9).zip(&blocks) {
@@ -131,17 +126,13 @@ fn product<S: Simd, L: Law, const N: usize>(
     for qz in 0..N {
         sum_along::<S, N>(simd, input, qz, &mut along);
         along_force.fill(0.0);
-        for layer in input.layers {
+        for (t, layer) in input.layers.iter().enumerate() {
             for qr in 0..N {
-                let radius = layer.radius[qr];
                 sum_through::<S, N>(simd, input, layer, qr, &along, &mut through);
                 for v in 0..input.rings.vectors() {
-                    let mask = input.rings.mask[v].load(simd);
                     let mut pulled = [[[nil; 3]; 3]; N];
                     for qs in 0..N {
-                        let point = &input.around[qs];
-                        let (inverse_along, inverse_around) = input.stretch(simd, qz, qs, v);
-                        let columns = Columns::new(point, radius, inverse_along, inverse_around);
+                        let (columns, [_, grown]) = input.columns(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let mut state: material::Kept<f64x8<S>> = [nil; 10];
                         if let Some(from) = kept.next() {
@@ -150,9 +141,6 @@ fn product<S: Simd, L: Law, const N: usize>(
                                 (pair[0], pair[1]) = wide;
                             }
                         }
-                        let volume =
-                            mask.times(input.weight(qz) * layer.weight[qr] * point.volume(radius));
-                        let grown = volume / (inverse_along * inverse_around);
                         let dP = law.change(&state, &columns.linear(g));
                         pulled[qs] = columns.pulled_back(&dP.scaled(grown));
                     }

@@ -19,6 +19,7 @@ mod average;
 mod coupling;
 mod forces;
 mod linear;
+mod stress_free;
 #[cfg(test)]
 mod tests;
 
@@ -26,8 +27,10 @@ pub use average::{AVERAGED, slab_offsets};
 pub use coupling::pencil_moduli;
 pub use forces::pencil_forces;
 pub use linear::{Kept, kept_len, pencil_keep, pencil_product};
+pub use stress_free::pencil_stress_free;
 
-use super::kinematics::{Vector, turn};
+use super::kinematics::{Columns, Vector, turn};
+use super::stress_free::StressFree;
 use super::tables::{Around, Layer, Slab};
 use crate::rings::SlotValues;
 use crate::tensor::{LANES, Lanes, Real};
@@ -47,6 +50,9 @@ pub struct PencilInput<'a> {
     /// 1/θζ and 1/θη: at the quadrature points along the element or, where they differ around the
     /// tube, at every (point along, point around, vector of elements).
     pub inverse_stretch: &'a [(Lanes, Lanes)],
+    /// The stress-free shape at every (point along, layer, point through, vector of elements, point
+    /// around), if it is not the perfect tube's.
+    pub stress_free: Option<&'a [StressFree]>,
     /// The p + 1 rows of control points, one after the other: (point, component) times R rings.
     pub u: &'a [f64],
 }
@@ -81,6 +87,32 @@ impl PencilInput<'_> {
         };
         let (along, around) = &self.inverse_stretch[at];
         (along.load(simd), around.load(simd))
+    }
+
+    /// What leads from gradients to Fe at a point along, layer and point through it, vector of
+    /// elements and point around them; and dV and det Fp dV there, zero in the lanes that are left
+    /// over.
+    #[inline(always)]
+    fn columns<S: Simd>(
+        &self,
+        simd: S,
+        qz: usize,
+        [t, qr]: [usize; 2],
+        [v, qs]: [usize; 2],
+    ) -> (Columns<f64x8<S>>, [f64x8<S>; 2]) {
+        let (layer, point) = (&self.layers[t], &self.around[qs]);
+        let (inverse_along, inverse_around) = self.stretch(simd, qz, qs, v);
+        let radius = layer.radius[qr];
+        let columns = Columns::new(point, radius, inverse_along, inverse_around);
+        let columns = columns.measured_from(self.stress_free.map(|at| {
+            let through = (qz * self.layers.len() + t) * layer.radius.len() + qr;
+            let at = &at[(through * self.rings.vectors() + v) * self.around.len() + qs];
+            at.departure(simd, inverse_along, inverse_around)
+        }));
+        let mask = self.rings.mask[v].load(simd);
+        let volume = mask.times(self.weight(qz) * layer.weight[qr] * point.volume(radius));
+        let volume = columns.volume(volume);
+        (columns, [volume, volume / (inverse_along * inverse_around)])
     }
 }
 

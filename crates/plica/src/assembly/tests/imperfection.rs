@@ -32,7 +32,13 @@ fn imperfect(ends: [Support; 2], of: Part, amplitude: f64, wave: Wave) -> Spline
 const COLON: Part = Part::End(End::Colon, Push::Across);
 
 /// Displacement (z, x, y) of a point of a tube at rest whose unknowns are `u`.
-fn displacement(tube: &SplineTube, u: &[f64], z: f64, radius: f64, angle: f64) -> [f64; 3] {
+pub(super) fn displacement(
+    tube: &SplineTube,
+    u: &[f64],
+    z: f64,
+    radius: f64,
+    angle: f64,
+) -> [f64; 3] {
     let at = tube.sample(&tube.tube.rest(), u, Point { z, radius, angle });
     [0, 1, 2].map(|i| at.position[i] - at.reference[i])
 }

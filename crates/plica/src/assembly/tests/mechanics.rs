@@ -59,7 +59,13 @@ fn a_tube_at_rest_has_its_radii_its_volume_and_no_residual() {
 }
 
 /// The unknowns of `x → Q x + t` after a displacement u, for a whole tube.
-fn carried(tube: &SplineTube, load: &Load, u: &[f64], Q: [[f64; 3]; 3], t: [f64; 3]) -> Vec<f64> {
+pub(super) fn carried(
+    tube: &SplineTube,
+    load: &Load,
+    u: &[f64],
+    Q: [[f64; 3]; 3],
+    t: [f64; 3],
+) -> Vec<f64> {
     let plain = PlainTube::new(tube, load);
     let mut vectors = plain.cartesian(u);
     for (node, u) in vectors.iter_mut().enumerate() {
@@ -71,7 +77,7 @@ fn carried(tube: &SplineTube, load: &Load, u: &[f64], Q: [[f64; 3]; 3], t: [f64;
 }
 
 /// A finite turn about an axis in the cross-section, then one about z.
-fn tilted() -> [[f64; 3]; 3] {
+pub(super) fn tilted() -> [[f64; 3]; 3] {
     let ((s, c), (v, w)) = (0.8_f64.sin_cos(), 0.6_f64.sin_cos());
     [[c, -s, 0.0], [w * s, w * c, -v], [v * s, v * c, w]]
 }

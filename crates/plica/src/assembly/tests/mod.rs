@@ -4,6 +4,7 @@ mod imperfection;
 mod mechanics;
 mod plain_twin;
 mod slabs;
+mod stress_free;
 mod supports;
 mod symmetry;
 

@@ -62,7 +62,7 @@ fn the_whole_tube_agrees_with_a_sector_that_is_not_axisymmetric() {
 }
 
 /// The displacement (z cos nφ, r cos nφ, −θ sin nφ) of a whole tube, from (z, r, θ) of one ring.
-fn harmonic(whole: &SplineTube, u: &[f64], n: usize) -> Vec<f64> {
+pub(super) fn harmonic(whole: &SplineTube, u: &[f64], n: usize) -> Vec<f64> {
     let rings = whole.sector.rings;
     let waves: Vec<(f64, f64)> = (0..rings)
         .map(|j| (n as f64 * whole.sector.ring_angle(j)).sin_cos())
