@@ -9,15 +9,17 @@ use std::path::Path;
 /// Larger than any case; smaller than the memory of any machine.
 const LARGEST: u64 = 1 << 20;
 
-/// The text of a case file and what it means; a state that it starts from is looked for from the
-/// folder of the file on.
+/// The text of a case file and what it means; files that it names are looked for from the folder of
+/// the file on.
 pub fn open(path: &Path) -> Result<(String, Plan), Failure> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    open_with(path, &|state| SavedState::read(&folder.join(state)))
+    open_with(path, &|wanted| {
+        SavedState::read(&folder.join(wanted.path()))
+    })
 }
 
-/// The same, with another way to the state that it starts from.
-pub fn open_with(path: &Path, state: &Open<'_>) -> Result<(String, Plan), Failure> {
+/// The same, with another way to the files that it names.
+pub fn open_with(path: &Path, named: &Open<'_>) -> Result<(String, Plan), Failure> {
     let trouble = |error| Failure::Files(format!("{}: {error}", path.display()));
     let size = std::fs::metadata(path).map_err(trouble)?.len();
     if size > LARGEST {
@@ -40,7 +42,7 @@ pub fn open_with(path: &Path, state: &Open<'_>) -> Result<(String, Plan), Failur
         let what = format!("{} is not text (a case is TOML, in UTF-8)", path.display());
         return Err(Failure::Usage(what));
     };
-    match case::read_with(&text, &stem(path), state) {
+    match case::read_with(&text, &stem(path), named) {
         Ok(plan) => Ok((text, plan)),
         Err(error) => Err(Failure::Case {
             path: path.to_owned(),

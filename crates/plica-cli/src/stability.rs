@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{case_file, console, threads};
+use plica::case::Wanted;
 use plica::draw::DrawError;
 use plica::report::{mode_pictures, stability_pictures};
 use plica::stability::{
@@ -28,10 +29,14 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
         };
         return Err(Failure::Usage(none.to_string()));
     }
-    // Where a run began is its own first state.
+    // Where a run began is its own first state; the modes of its imperfections it has kept.
     let begin = arguments.run.join("states/state-0000.safetensors");
     let case = arguments.run.join("case.toml");
-    let (_, plan) = case_file::open_with(&case, &|_| SavedState::read(&begin))?;
+    let own = |wanted: Wanted<'_>| match wanted {
+        Wanted::State(_) => SavedState::read(&begin),
+        Wanted::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
+    };
+    let (_, plan) = case_file::open_with(&case, &own)?;
     threads::limit(arguments.threads)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;

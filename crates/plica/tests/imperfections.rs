@@ -11,9 +11,9 @@ impl Observer for Nobody {
     fn working(&mut self, _: &str, _: f64) {}
 }
 
-/// Runs a case; state by state the length ratio, and how far the inner wall has moved in harmonic n
-/// since rest.
-fn growth(name: &str, case: &str, n: usize) -> Vec<(f64, f64)> {
+/// Runs a case; state by state the length ratio, and the wave of harmonic n by which the inner wall has
+/// moved since rest where that is largest: its parts in phase with cos nφ and with sin nφ.
+fn waves(name: &str, case: &str, n: usize) -> Vec<(f64, [f64; 2])> {
     let plan = plica::case::read(case, name).unwrap();
     let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
     let path = std::env::temp_dir().join(format!("plica-{name}-{}", std::process::id()));
@@ -31,18 +31,60 @@ fn growth(name: &str, case: &str, n: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
+/// The sizes of these waves.
+fn growth(name: &str, case: &str, n: usize) -> Vec<(f64, f64)> {
+    let waves = waves(name, case, n).into_iter();
+    waves.map(|(ratio, [x, y])| (ratio, x.hypot(y))).collect()
+}
+
 /// The largest wave of harmonic n in the radial control values of the innermost points.
-fn largest_wave(tube: &SplineTube, u: &[f64], n: usize) -> f64 {
+fn largest_wave(tube: &SplineTube, u: &[f64], n: usize) -> [f64; 2] {
     let k = tube.sector.rings;
     let wave = |row: &[f64]| {
         let radial = row[k..2 * k].iter().enumerate();
-        let (x, y) = radial.fold((0.0, 0.0), |sum, (j, u)| {
+        let sum = radial.fold([0.0, 0.0], |sum, (j, u)| {
             let (sin, cos) = (n as f64 * tube.sector.ring_angle(j)).sin_cos();
-            (sum.0 + u * cos, sum.1 + u * sin)
+            [sum[0] + u * cos, sum[1] + u * sin]
         });
-        2.0 / k as f64 * x.hypot(y)
+        sum.map(|x| 2.0 / k as f64 * x)
     };
-    u.chunks(tube.row_size()).map(wave).fold(0.0, f64::max)
+    let waves = u.chunks(tube.row_size()).map(wave);
+    let size = |[x, y]: &[f64; 2]| x.hypot(*y);
+    let largest = waves.max_by(|a, b| size(a).total_cmp(&size(b)));
+    largest.unwrap_or_default()
+}
+
+#[test]
+fn an_oval_wall_grows_to_the_side_to_which_it_is_oval() {
+    // A crest at 30°, and one across it.
+    for (name, degrees, side) in [("oval-30", 30.0_f64, 1.0), ("oval-120", 120.0, -1.0)] {
+        let case = format!(
+            "symmetry = {{ fold = 2 }}
+            [muscles.longitudinal]
+            direction = 'longitudinal'
+            zone = [0.5, 1.0]
+            [mesh]
+            control_points = {{ axial = 24, around = 16, thickness = 4 }}
+            [output]
+            profiles_every = 0
+            states_every = 0
+            [[stages]]
+            steps = 4
+            drive.longitudinal.length_ratio = 1.06
+            [[imperfections]]
+            of = 'geometry'
+            amplitude = 1e-4
+            shape = {{ wave = {{ harmonic = 2, phase_degrees = {degrees} }} }}"
+        );
+        let waves = waves(name, &case, 2);
+        let [x, y] = waves[4].1;
+        let (sin, cos) = 60.0_f64.to_radians().sin_cos();
+        // Along the crest, more and more.
+        let size = x.hypot(y);
+        assert!(side * (x * cos + y * sin) > 0.99 * size, "{waves:?}");
+        let before = waves[2].1;
+        assert!(size > 2.0 * before[0].hypot(before[1]), "{waves:?}");
+    }
 }
 
 /// A tube of coarse mesh whose colon end is imperfect in one harmonic, and what leads it on.

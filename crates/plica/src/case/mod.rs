@@ -51,25 +51,44 @@ use problem::Problems;
 use serde::Deserialize;
 use toml::de::{DeTable, Deserializer};
 
-/// Opens the saved state that a case names.
-pub type Open<'a> = dyn Fn(&str) -> Result<SavedState, SavedStateError> + 'a;
+/// Opens a file that a case names.
+pub type Open<'a> = dyn Fn(Wanted<'_>) -> Result<SavedState, SavedStateError> + 'a;
 
-/// Reads and checks the text of a case file that starts at rest. `name` is its title if it gives
+/// A file that a case names: its path as it stands there, which is meant from the folder of the case
+/// file on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted<'a> {
+    /// The state that it starts from.
+    State(&'a str),
+    /// The mode that an imperfection has the shape of, with its number from 1.
+    Mode(usize, &'a str),
+}
+
+impl<'a> Wanted<'a> {
+    /// The path.
+    pub fn path(self) -> &'a str {
+        match self {
+            Self::State(path) | Self::Mode(_, path) => path,
+        }
+    }
+}
+
+/// Reads and checks the text of a case file that names no other files. `name` is its title if it gives
 /// none: the name of the file without its ending.
 ///
 /// # Errors
 /// All problems that were found, in the order of the text. A text that is not TOML, or not shaped
 /// like a case, is not looked at any further.
 pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
-    let none = |_: &str| Err(std::io::Error::from(std::io::ErrorKind::NotFound).into());
+    let none = |_: Wanted<'_>| Err(std::io::Error::from(std::io::ErrorKind::NotFound).into());
     read_with(text, name, &none)
 }
 
-/// The same of a case that may start from a saved state: `open` gives that of a path as it stands in
-/// the case, which is meant from the folder of the case file on.
+/// The same of a case that may start from a saved state, or have the shape of modes, which `open`
+/// gives.
 ///
 /// # Errors
-/// As [`read`]; a state that cannot be opened, or is not one of the case's tube, is a problem too.
+/// As [`read`]; a file that cannot be opened, or is not one of the case's tube, is a problem too.
 pub fn read_with(text: &str, name: &str, open: &Open<'_>) -> Result<Plan, CaseError> {
     let root = DeTable::parse(text).map_err(|e| CaseError::from_toml(&e))?;
     let mut problems = Problems::default();

@@ -85,8 +85,9 @@ const CLOSING: &str = "
   `fold` divides those around; at most 20 million are solved for.
 - An imperfection has harmonics that the symmetry of the run allows (0 if axisymmetric, multiples of m in a
   fold) and that the mesh draws, at most a quarter of the control points around. Its amplitude is at most a quarter of the
-  wall's thickness, or half of a muscle's activity. An end is held, and displaced across only if it is fixed. An imperfect
-  geometry is not solved for yet.
+  wall's thickness, or half of a muscle's activity. An end is held, and displaced across only if it is fixed.
+- A mode that a geometry has the shape of is of a tube of the same length and thickness in D, on any mesh. All
+  imperfections of the geometry together leave a wall that is nowhere folded over.
 - A state to start from is of a tube of the same length and thickness in D. Muscles that it drives are there,
   with their names and directions; the others are at rest. It is axisymmetric, or repeats around the
   tube a multiple of as many times as the case does.

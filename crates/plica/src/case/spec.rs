@@ -192,11 +192,12 @@ pub(super) enum Push {
     Axial,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Shape {
     Wave(Wave),
     Random(Random),
+    Mode(String),
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]

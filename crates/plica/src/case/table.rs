@@ -87,23 +87,24 @@ pub const KEYS: &[Key] = &[
 
     key("imperfections", Tables, "", Or("[]"), ANY,
         "What is not as round or as even as it should be."),
-    key("imperfections[].of", Word(&["colon-end", "ileum-end"]), "", Always("\"colon-end\""), ANY,
-        "What is imperfect: where an end is held; or a muscle, as below."),
+    key("imperfections[].of", Word(&["colon-end", "ileum-end", "geometry"]), "", Always("\"colon-end\""), ANY,
+        "What is imperfect: where an end is held; the shape in which the wall is free of stress; or a muscle, as below."),
     key("imperfections[].of.muscle", Text, "", OrElse("", "\"circular\""), ANY,
         "`of = { muscle = \"circular\" }`: how strong a muscle is. Its stress-free stretch θ becomes 1 + (θ − 1)(1 + amplitude · shape)."),
     key("imperfections[].amplitude", Number, "length", Always("1e-4"), ANY,
-        "Size of the displacement where the shape is 1; of a muscle not a length, but a fraction of its activity."),
+        "Size of the displacement where the shape is 1, or where a mode is largest; of a muscle not a length, but a fraction of its activity."),
     key("imperfections[].direction", Word(&["across", "axial"]), "", OrElse("across", "\"across\""), ANY,
         "For an end: `\"across\"` in its plane, normal to the wall and around it so that no ring changes length; harmonic 1 shifts \
          the end sideways. `\"axial\"` along the axis; harmonic 1 tilts it."),
     key("imperfections[].shape", Choice, "", Always("{ wave = { harmonic = 1 } }"), ANY,
-        "How it is spread: `shape = { wave = { harmonic = 2 } }` or `shape = { random = { seed = 7 } }`."),
+        "How it is spread: `shape = { wave = { harmonic = 2 } }`, `shape = { random = { seed = 7 } }` or, of the geometry, \
+         `shape = { mode = \"…\" }`."),
     key("imperfections[].shape.wave.harmonic", Count, "", Always("1"), from(0.0).to(1024.0),
         "Waves around the tube, n in cos n(φ − φ₀). 0 is the same all around, 1 goes sideways, 2 is oval."),
     key("imperfections[].shape.wave.phase_degrees", Number, "degrees", Or("0.0"), from(-360.0).to(360.0),
         "φ₀, the angle of a crest."),
-    key("imperfections[].shape.wave.axial", Word(&["uniform", "half-sine"]), "", OrElse("uniform", "\"uniform\""), ANY,
-        "Factor along the zone of the muscle: one, or sin πx. Not for an end."),
+    key("imperfections[].shape.wave.axial", Word(&["uniform", "half-sine"]), "", OrElse("uniform; of the geometry half-sine", "\"uniform\""), ANY,
+        "Factor along the zone of the muscle, or the tube: one, or sin πx. Not for an end."),
     key("imperfections[].shape.wave.axial.zone", Zone, "length", OrElse("", "[0.5, 1.0]"), ANY,
         "`axial = { zone = [0.5, 1.0] }`: ½(1 − cos 2πx) over a zone, and nothing elsewhere."),
     key("imperfections[].shape.random.seed", Count, "", Always("7"), from(0.0).to(1e9),
@@ -111,7 +112,10 @@ pub const KEYS: &[Key] = &[
     key("imperfections[].shape.random.harmonics", Count, "", Or("4"), from(0.0).to(50.0),
         "Harmonics 0 to this around the tube, of those that the symmetry allows; all are as likely to be large."),
     key("imperfections[].shape.random.half_waves", Count, "", Or("4"), from(1.0).to(50.0),
-        "1 to this half-waves along the zone of the muscle. Not for an end."),
+        "1 to this half-waves along the zone of the muscle, or the tube. Not for an end."),
+    key("imperfections[].shape.mode", Text, "", OrElse("", "\"runs/tube/modes/mode-01-harmonic-2.safetensors\""), ANY,
+        "Path of a mode that `plica stability` has left in a run, from the folder of the case file on; for the geometry only. A \
+         mode of harmonic n has a crest at angle zero."),
 
     key("solver.scheme", Word(&["static", "newmark", "dragged"]), "", Or("\"static\""), ANY,
         "`\"static\"`: equilibrium after equilibrium, with relaxation where the path breaks off. `\"newmark\"`: the pseudo-time of \

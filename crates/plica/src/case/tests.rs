@@ -3,7 +3,7 @@
 use super::keys::{Given, Kind, Limit};
 use super::spec::*;
 use super::*;
-use crate::study::Layout;
+use crate::study::{Array, Layout};
 use crate::tube;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -31,12 +31,14 @@ fn base(key: &Key) -> Table {
         text += "[[mesh.refine]]\nzone = [0.5, 1.0]\n";
     }
     if key.path.starts_with("imperfections[]") {
-        let shape = match key.path.contains(".random") {
-            true => "random = { seed = 1 }",
-            false => "wave = { harmonic = 2 }",
+        let shape = match key.path {
+            "imperfections[].shape.mode" => "mode = 'mode'",
+            path if path.contains(".random") => "random = { seed = 1 }",
+            _ => "wave = { harmonic = 2 }",
         };
         let of = match key.path {
             "imperfections[].direction" => "'colon-end'",
+            "imperfections[].shape.mode" => "'geometry'",
             _ => "{ muscle = 'circular' }",
         };
         text = format!("symmetry = 'none'\n{text}")
@@ -87,12 +89,12 @@ fn read_with(key: &Key, literal: &str) -> Result<Plan, CaseError> {
     super::read_with(
         &marked.replace(&format!("\"{MARK}\""), literal),
         "case",
-        &|_| Ok(at_rest()),
+        &|_| Ok(state()),
     )
 }
 
-/// A state of the usual tube at rest.
-fn at_rest() -> SavedState {
+/// A state of the usual tube at rest, and an oval mode of it.
+fn state() -> SavedState {
     let layout = Layout {
         length: 3.0,
         thickness: 0.06,
@@ -116,7 +118,13 @@ fn at_rest() -> SavedState {
         },
         u: vec![0.0; layout.unknowns()],
         layout,
-        arrays: BTreeMap::new(),
+        arrays: [("mode", vec![4, 4, 3], 48), ("harmonic", vec![], 1)]
+            .map(|(name, shape, count)| (name.to_owned(), (shape, count)))
+            .map(|(name, (shape, count))| {
+                let values = vec![if count == 1 { 2.0 } else { 1.0 }; count];
+                (name, Array { shape, values })
+            })
+            .into(),
     }
 }
 
@@ -235,6 +243,12 @@ fn every_field_of_the_structs_is_in_the_table() {
                     harmonics: 2,
                     half_waves: Some(3),
                 }),
+            },
+            Imperfection {
+                of: Part::Geometry,
+                amplitude: 0.1,
+                direction: None,
+                shape: Shape::Mode(String::new()),
             },
         ],
         solver: Solver {

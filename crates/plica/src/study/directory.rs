@@ -1,6 +1,6 @@
 //! What a run leaves on disk.
 
-use super::{Row, SavedState, StudyError};
+use super::{NamedMode, Row, SavedState, StudyError};
 use serde::Serialize;
 use std::fs::{self, File};
 use std::io::Write;
@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
 /// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
 /// | `*.png` | pictures |
+/// | `imperfections/mode-NN.safetensors` | a mode that imperfection NN has the shape of |
 /// | `stability.csv`, `eigenvalues.csv`, `eigenpairs.csv`, `modes/` | what a test of stability found |
 #[derive(Debug)]
 pub struct RunDirectory {
@@ -219,6 +220,21 @@ impl RunDirectory {
         Ok(name)
     }
 
+    /// Where the mode is kept that an imperfection has the shape of; they are counted from 1.
+    pub fn imperfection(&self, number: usize) -> PathBuf {
+        self.path.join(imperfection(number))
+    }
+
+    /// Keeps the mode that an imperfection has the shape of.
+    pub fn write_imperfection(&self, mode: &NamedMode) -> Result<(), StudyError> {
+        let name = imperfection(mode.imperfection);
+        let bytes = mode.state.to_bytes().map_err(|source| StudyError::State {
+            path: self.path.join(&name),
+            source,
+        })?;
+        self.write(&name, &bytes)
+    }
+
     /// Writes a table of texts under a relative path, its first row the names of the columns.
     pub fn write_records(&self, name: &str, rows: Vec<Vec<String>>) -> Result<(), StudyError> {
         let trouble = |source| StudyError::File {
@@ -278,6 +294,7 @@ fn clear(path: &Path) -> Result<(), StudyError> {
             .chain(&pictures)
             .map(|name| path.join(name)),
     );
+    old.extend(modes(&path.join("imperfections")));
     for (folder, ending) in [("profiles", "csv"), ("states", STATE_ENDING)] {
         let mine = |file: &Path, ending| number_of_state(file, ending).is_some();
         old.extend(files(&path.join(folder)).filter(|f| mine(f, ending) || mine(f, "part")));
@@ -295,18 +312,28 @@ fn stability_files(path: &Path) -> Vec<PathBuf> {
         "stability.png",
         "mode.png",
     ];
-    let modes = files(&path.join("modes")).filter(|file| {
-        let name = file
-            .file_name()
-            .and_then(|name| name.to_str())
-            .unwrap_or_default();
-        name.starts_with("mode-") && name.ends_with(STATE_ENDING)
-    });
+    let modes = modes(&path.join("modes"));
     names
         .iter()
         .map(|name| path.join(name))
         .chain(modes)
         .collect()
+}
+
+/// The files of modes in a folder.
+fn modes(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+    files(folder).filter(|file| {
+        let name = file
+            .file_name()
+            .and_then(|name| name.to_str())
+            .unwrap_or_default();
+        name.starts_with("mode-") && name.ends_with(STATE_ENDING)
+    })
+}
+
+/// The relative path of the mode that an imperfection has the shape of.
+fn imperfection(number: usize) -> String {
+    format!("imperfections/mode-{number:02}.{STATE_ENDING}")
 }
 
 /// The files in a folder, if it is there.

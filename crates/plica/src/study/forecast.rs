@@ -4,7 +4,7 @@ use super::harmonic_tangent::HarmonicTangent;
 use super::{Plan, TubeProblem};
 use crate::assembly::SplineTube;
 use crate::solve::{Equilibrium, Scheme, Solver, Tangent};
-use crate::tube::Mesh;
+use crate::tube::{Imperfection, Mesh, Part};
 use std::time::Instant;
 
 /// The size and the cost of a study.
@@ -73,10 +73,16 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
         let [along, _, through] = mesh.elements();
         let points = along * through * (mesh.degree + 1).pow(3) * mesh.rings(plan.symmetry);
         let points = (points as f64 * 1.1) as u64;
+        let geometry = |imperfection: &Imperfection| imperfection.of == Part::Geometry;
+        // In single precision; and the stress-free shape in double.
+        let at_point = match plan.tube.imperfections.iter().any(geometry) {
+            true => 40 + 48,
+            false => 40,
+        };
         let harmonics = (rings / 2 + 2 * (mesh.degree as u64 + 1)) * banded(row / rings);
         let low = 3 * banded(HarmonicTangent::low_row(rings as usize) as u64);
         let vectors = 40 * 8 * mesh.axial as u64 * row;
-        return PROGRAM_BYTES + kept + 40 * points + harmonics + low + vectors;
+        return PROGRAM_BYTES + kept + at_point * points + harmonics + low + vectors;
     }
     let matrix = banded(row);
     // Tangent, its factor, the factor of the state, the drag matrix, the slabs before their sum.
@@ -94,14 +100,14 @@ fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
         ..mesh.clone()
     };
     let problem = TubeProblem::new(SplineTube::new(&plan.tube, &short, rings));
-    let (load, u) = (plan.tube.rest(), vec![0.0; problem.tube.unknowns()]);
+    let (load, u) = (plan.tube.rest(), problem.tube.start());
     let mut seconds = f64::INFINITY;
     for _ in 0..3 {
         let start = Instant::now();
         let solver = problem.tangent(&load, &u).into_shifted(0.0);
         let tangent = start.elapsed().as_secs_f64();
         let Ok(solver) = solver else { continue };
-        let mut b = u.clone();
+        let mut b = vec![0.0; u.len()];
         b[problem.tube.unknowns() / 2] = 1.0;
         let start = Instant::now();
         let iterations = solver.solve(&mut b, 1e-3);

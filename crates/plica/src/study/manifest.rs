@@ -19,6 +19,8 @@ pub struct Manifest {
     pub case_hash: String,
     /// The state that the run began from, as the case names it; none at rest.
     pub start_state: Option<String>,
+    /// The modes that imperfections have the shape of, as the case names them.
+    pub imperfection_modes: Vec<String>,
     /// Architecture and operating system.
     pub machine: String,
     /// Threads of the run.
@@ -53,6 +55,7 @@ impl Manifest {
             title: plan.title.clone(),
             case_hash: directory.case_hash().to_owned(),
             start_state: plan.start.as_ref().map(|start| start.file.clone()),
+            imperfection_modes: plan.modes.iter().map(|mode| mode.file.clone()).collect(),
             machine: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
             threads: rayon::current_num_threads(),
             length_unit: scale.length_name,

@@ -1,6 +1,6 @@
 //! What is to be computed: the checked content of a case file.
 
-use super::SavedState;
+use super::{NamedMode, SavedState};
 use crate::solve::Settings;
 use crate::tube::{Load, Mesh, Symmetry, Tube};
 
@@ -17,6 +17,8 @@ pub struct Plan {
     pub symmetry: Symmetry,
     /// Where the run begins, if not at rest.
     pub start: Option<Start>,
+    /// The modes that imperfections of the tube have the shape of, as the case names them.
+    pub modes: Vec<NamedMode>,
     /// Where the load goes, stage after stage.
     pub stages: Vec<Stage>,
     /// How states are found.

@@ -13,6 +13,7 @@ use crate::measure::{Departure, Face, Measures, Meridians, even};
 use crate::solve::{
     Equilibrium, Failure, Found, Method, Path, PathError, Step, Watch, newton, relaxation,
 };
+use crate::tube::{Mesh, Symmetry, Tube};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -26,6 +27,9 @@ pub fn run(
     fits(plan)?;
     let mut manifest = Manifest::begin(plan, directory);
     directory.write_manifest(&manifest)?;
+    for mode in &plan.modes {
+        directory.write_imperfection(mode)?;
+    }
 
     let rings = plan.mesh.rings(plan.symmetry);
     let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
@@ -163,7 +167,11 @@ fn settle(
     watch: &mut Relay<'_>,
 ) -> Result<(Vec<f64>, Step), PathError<Inverted>> {
     let Layout { mesh, rings, .. } = &start.state.layout;
-    let from = SplineTube::new(&plan.tube, mesh, *rings);
+    let perfect = Tube {
+        imperfections: vec![],
+        ..plan.tube.clone()
+    };
+    let from = SplineTube::new(&perfect, mesh, *rings);
     let mut u = prolong(&from, &problem.tube, &start.state.u);
     problem.impose(&start.load, &mut u);
     let (load, settings) = (&start.load, &plan.solver);
@@ -198,6 +206,17 @@ fn settle(
             },
         }),
     }
+}
+
+/// Where the imperfections of a tube fold its wall over, so that it is no wall any more; none if they
+/// do not.
+pub fn folded(tube: &Tube, mesh: &Mesh, symmetry: Symmetry) -> Option<Inverted> {
+    let perfect = Tube {
+        imperfections: vec![],
+        ..tube.clone()
+    };
+    let perfect = SplineTube::new(&perfect, mesh, mesh.rings(symmetry));
+    perfect.can_have(&tube.imperfections).err()
 }
 
 /// Refuses a study that the free memory of the machine does not hold, where the system tells

@@ -65,10 +65,11 @@ fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
 pub fn unstable_harmonics(problem: &TubeProblem, state: &State<Load>, harmonics: usize) -> String {
     let tube = &problem.tube;
     let (own, k) = (state.negative_pivots, tube.sector.rings);
-    let round = state
-        .u
-        .chunks_exact(k)
-        .all(|rings| rings.iter().all(|x| (x - rings[0]).abs() <= ROUND));
+    let round = |u: &[f64]| {
+        let mut rings = u.chunks_exact(k);
+        rings.all(|rings| rings.iter().all(|x| (x - rings[0]).abs() <= ROUND))
+    };
+    let round = round(&state.u) && tube.geometric_imperfection().is_none_or(round);
     let of_ring: Vec<f64> = state.u.iter().step_by(k).copied().collect();
     let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
     if !round || (twisted && k > 1) {

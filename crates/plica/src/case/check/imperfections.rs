@@ -3,10 +3,12 @@
 use super::super::problem::Problems;
 use super::super::spec::{self, Spec};
 use super::super::spelling::nearest;
+use super::super::{Open, Wanted};
 use super::stages::SMALLEST_STRETCH;
+use super::start::check_size;
 use super::tube::tidy;
 use super::zone;
-use crate::study::Stage;
+use crate::study::{NamedMode, Stage, folded};
 use crate::tube::{
     Axial, End, Imperfection, Mesh, Part, Push, Random, Shape, Support, Symmetry, Tube, Wave,
 };
@@ -16,28 +18,41 @@ const LARGEST_DISPLACEMENT: f64 = 0.25;
 /// Largest change of a muscle's activity.
 const LARGEST_CHANGE: f64 = 0.5;
 
-/// The imperfections of a tube.
+/// The imperfections of a tube, and the modes that they have the shape of.
 pub(super) fn imperfections(
     spec: &Spec,
     tube: &Tube,
-    mesh: &Mesh,
-    symmetry: Symmetry,
+    run: (&Mesh, Symmetry),
+    open: &Open<'_>,
     problems: &mut Problems,
-) -> Vec<Imperfection> {
-    let mut imperfections = vec![];
+) -> (Vec<Imperfection>, Vec<NamedMode>) {
+    let (mut imperfections, mut modes) = (vec![], vec![]);
     for (i, written) in spec.imperfections.iter().enumerate() {
         let path = format!("imperfections[{}]", i + 1);
         // Shapes of a part that does not exist cannot be told.
         let Some(of) = part(&path, written, tube, problems) else {
             continue;
         };
+        let amplitude = amplitude(&path, written, of, spec, tube, problems);
+        let shape = match &written.shape {
+            spec::Shape::Wave(written) => wave(&path, *written, of, spec, tube, run, problems),
+            spec::Shape::Random(written) => random(&path, *written, of, run, problems),
+            spec::Shape::Mode(file) => {
+                let wanted = Wanted::Mode(i + 1, file);
+                let Some((shape, mode)) = mode(&path, wanted, of, tube, run, open, problems) else {
+                    continue;
+                };
+                modes.push(mode);
+                shape
+            }
+        };
         imperfections.push(Imperfection {
             of,
-            amplitude: amplitude(&path, written, of, spec, tube, problems),
-            shape: shape(&path, written, of, spec, tube, (mesh, symmetry), problems),
+            amplitude,
+            shape,
         });
     }
-    imperfections
+    (imperfections, modes)
 }
 
 /// What is imperfect, if it can be.
@@ -58,8 +73,6 @@ fn part(
     match &written.of {
         spec::Part::ColonEnd => end(&key, written, End::Colon, tube.ends[0], problems),
         spec::Part::IleumEnd => end(&key, written, End::Ileum, tube.ends[1], problems),
-        // Its control values are there (SplineTube::geometric_imperfection), but no kernel
-        // measures strain from them; the table of keys does not have it.
         spec::Part::Geometry => Some(Part::Geometry),
         spec::Part::Muscle(name) => {
             let found = tube.muscles.iter().position(|muscle| muscle.name == *name);
@@ -140,64 +153,135 @@ fn amplitude(
     amplitude
 }
 
-/// The shape, in harmonics that the run has.
-fn shape(
+/// One wave, of a harmonic that the run has.
+fn wave(
     path: &str,
-    written: &spec::Imperfection,
+    wave: spec::Wave,
     of: Part,
     spec: &Spec,
     tube: &Tube,
     run: (&Mesh, Symmetry),
     problems: &mut Problems,
 ) -> Shape {
-    let end = matches!(of, Part::End(..));
-    match written.shape {
-        spec::Shape::Wave(wave) => {
-            let path = format!("{path}.shape.wave");
-            check_harmonic(&format!("{path}.harmonic"), wave.harmonic, run, problems);
-            let key = format!("{path}.axial");
-            if end && wave.axial.is_some() {
-                nothing_along(&key, problems);
-            }
-            let axial = match wave.axial {
-                None if of == Part::Geometry => Axial::HalfWaves(1),
-                None | Some(spec::Axial::Uniform) => Axial::Uniform,
-                Some(spec::Axial::HalfSine) => Axial::HalfWaves(1),
-                Some(spec::Axial::Zone(written)) => {
-                    let key = format!("{key}.zone");
-                    Axial::Zone(zone(&key, spec, written, tube.length, problems))
-                }
-            };
-            let phase = wave.phase_degrees.to_radians();
-            Shape::Wave(Wave::new(wave.harmonic, phase, axial))
+    let path = format!("{path}.shape.wave");
+    check_harmonic(&format!("{path}.harmonic"), wave.harmonic, run, problems);
+    let key = format!("{path}.axial");
+    if matches!(of, Part::End(..)) && wave.axial.is_some() {
+        nothing_along(&key, problems);
+    }
+    let axial = match wave.axial {
+        None if of == Part::Geometry => Axial::HalfWaves(1),
+        None | Some(spec::Axial::Uniform) => Axial::Uniform,
+        Some(spec::Axial::HalfSine) => Axial::HalfWaves(1),
+        Some(spec::Axial::Zone(written)) => {
+            let key = format!("{key}.zone");
+            Axial::Zone(zone(&key, spec, written, tube.length, problems))
         }
-        spec::Shape::Random(random) => {
-            let path = format!("{path}.shape.random");
-            let (mesh, symmetry) = run;
-            check_highest(
-                &format!("{path}.harmonics"),
-                random.harmonics,
-                run,
-                problems,
-            );
-            if end && random.half_waves.is_some() {
-                nothing_along(&format!("{path}.half_waves"), problems);
+    };
+    let phase = wave.phase_degrees.to_radians();
+    Shape::Wave(Wave::new(wave.harmonic, phase, axial))
+}
+
+/// A random shape, in harmonics that the run has.
+fn random(
+    path: &str,
+    random: spec::Random,
+    of: Part,
+    run: (&Mesh, Symmetry),
+    problems: &mut Problems,
+) -> Shape {
+    let path = format!("{path}.shape.random");
+    let (mesh, symmetry) = run;
+    let key = format!("{path}.harmonics");
+    check_highest(&key, random.harmonics, run, problems);
+    let end = matches!(of, Part::End(..));
+    if end && random.half_waves.is_some() {
+        nothing_along(&format!("{path}.half_waves"), problems);
+    }
+    let half_waves = random.half_waves.unwrap_or(spec::Random::usual_count());
+    let half_waves = if end {
+        0
+    } else {
+        half_waves.min(LARGEST_COUNT)
+    };
+    // Any number does where something was found wrong.
+    let harmonics = random.harmonics.min(mesh.around / 4).min(LARGEST_COUNT);
+    let fold = match symmetry {
+        Symmetry::Fold(m) => m.max(1),
+        Symmetry::Axisymmetric | Symmetry::None => 1,
+    };
+    Shape::Random(Random::new(random.seed, harmonics, half_waves, fold))
+}
+
+/// A mode, if it is one of this tube and of a harmonic that the run has.
+fn mode(
+    path: &str,
+    wanted: Wanted<'_>,
+    of: Part,
+    tube: &Tube,
+    (mesh, symmetry): (&Mesh, Symmetry),
+    open: &Open<'_>,
+    problems: &mut Problems,
+) -> Option<(Shape, NamedMode)> {
+    let key = format!("{path}.shape.mode");
+    let Wanted::Mode(imperfection, file) = wanted else {
+        return None;
+    };
+    if of != Part::Geometry {
+        let rule = "only an imperfect geometry can have the shape of a mode";
+        problems.key(&key, rule, Some("write of = \"geometry\"".into()));
+        return None;
+    }
+    let read = open(wanted).and_then(|state| Ok((state.mode()?, state)));
+    let (mode, state) = match read {
+        Ok(read) => read,
+        Err(error) => {
+            let cure = "give the path of a mode that plica stability has left in a run, \
+                 modes/mode-NN-harmonic-N.safetensors, from the case file on";
+            problems.value(&key, error.to_string(), Some(cure.into()));
+            return None;
+        }
+    };
+    let n = mode.harmonic;
+    let about_others = [
+        "symmetry.fold",
+        "tube.length",
+        "tube.thickness",
+        "tube.diameter",
+    ];
+    if problems.none_about(&about_others) {
+        check_size(&key, &state, tube, problems);
+        let most = mesh.around / 4;
+        let wrong = match symmetry {
+            Symmetry::Axisymmetric if n > 0 => {
+                Some("an axisymmetric run has harmonic 0 only".to_owned())
             }
-            let half_waves = random.half_waves.unwrap_or(spec::Random::usual_count());
-            let half_waves = if end {
-                0
-            } else {
-                half_waves.min(LARGEST_COUNT)
+            Symmetry::Fold(m) if m > 0 && !n.is_multiple_of(m) => {
+                Some(format!("the tube repeats {m} times around"))
+            }
+            _ => None,
+        };
+        if let Some(wrong) = wrong {
+            let rule = format!("is of harmonic {n}, and {wrong}");
+            let cure = match n {
+                0 | 1 => NO_SYMMETRY.to_owned(),
+                n => format!("use symmetry = {{ fold = {n} }}, or \"none\""),
             };
-            // Any number does where something was found wrong.
-            let harmonics = random.harmonics.min(mesh.around / 4).min(LARGEST_COUNT);
-            let fold = match symmetry {
-                Symmetry::Fold(m) => m.max(1),
-                Symmetry::Axisymmetric | Symmetry::None => 1,
-            };
-            Shape::Random(Random::new(random.seed, harmonics, half_waves, fold))
+            problems.value(&key, rule, Some(cure));
+        } else if n > most && problems.none_about(&["mesh.control_points.around"]) {
+            let around = mesh.around;
+            let rule = format!(
+                "is of harmonic {n}, and {around} control points around the tube draw at most {most}"
+            );
+            problems.value(&key, rule, Some(format!("try {} points around", 4 * n)));
         }
     }
+    let named = NamedMode {
+        imperfection,
+        file: file.to_owned(),
+        state,
+    };
+    Some((Shape::Mode(mode), named))
 }
 
 /// As in the table of keys.
@@ -248,6 +332,30 @@ fn check_highest(
         );
         let cure = format!("try {} points around", 4 * n);
         problems.value(key, rule, Some(cure));
+    }
+}
+
+/// Whether the imperfections of the geometry, all together, leave a wall.
+pub(super) fn check_wall(
+    spec: &Spec,
+    tube: &Tube,
+    (mesh, symmetry): (&Mesh, Symmetry),
+    problems: &mut Problems,
+) {
+    let of_geometry = |imperfection: &Imperfection| imperfection.of == Part::Geometry;
+    let Some(last) = tube.imperfections.iter().rposition(of_geometry) else {
+        return;
+    };
+    if !problems.is_empty() {
+        return;
+    }
+    if let Some(at) = folded(tube, mesh, symmetry) {
+        let [z, radius] = [at.z, at.radius].map(|x| tidy(x * spec.tube.diameter));
+        let rule = format!(
+            "with it the stress-free wall is folded over, near z = {z} and radius {radius}"
+        );
+        let key = format!("imperfections[{}].amplitude", last + 1);
+        problems.value(&key, rule, Some("make it smaller".into()));
     }
 }
 

@@ -33,8 +33,11 @@ pub(super) fn plan(spec: &Spec, name: &str, open: &Open<'_>, problems: &mut Prob
         .as_ref()
         .map_or(tube.rest(), |start| start.load.clone());
     let stages = stages::stages(spec, &tube, &begin, problems);
-    tube.imperfections = imperfections::imperfections(spec, &tube, &mesh, symmetry, problems);
+    let run = (&mesh, symmetry);
+    let (imperfections, modes) = imperfections::imperfections(spec, &tube, run, open, problems);
+    tube.imperfections = imperfections;
     imperfections::check_stretches(&tube, &stages, problems);
+    imperfections::check_wall(spec, &tube, run, problems);
     let solver = solver::settings(&spec.solver, problems);
     let title = spec.title.clone().unwrap_or_else(|| name.to_owned());
     Plan {
@@ -43,6 +46,7 @@ pub(super) fn plan(spec: &Spec, name: &str, open: &Open<'_>, problems: &mut Prob
         mesh,
         symmetry,
         start,
+        modes,
         stages,
         solver,
         output: Output {

@@ -1,8 +1,8 @@
 //! The state that a case starts from, and the load it brings.
 
-use super::super::Open;
 use super::super::problem::Problems;
 use super::super::spec::Spec;
+use super::super::{Open, Wanted};
 use super::stages::{check_held, check_stretch};
 use crate::activation::Direction;
 use crate::study::{Layout, SavedState, Start};
@@ -22,7 +22,7 @@ pub(super) fn start(
     problems: &mut Problems,
 ) -> Option<Start> {
     let file = spec.start.as_ref()?.state.clone();
-    let state = match open(&file) {
+    let state = match open(Wanted::State(&file)) {
         Ok(state) => state,
         Err(error) => {
             let cure =
@@ -36,13 +36,14 @@ pub(super) fn start(
         return None;
     }
     let before = problems.len();
-    check_size(&state, tube, problems);
+    check_size(KEY, &state, tube, problems);
     check_symmetry(&state.layout, mesh, symmetry, problems);
     let load = load(&state, tube, problems)?;
     (problems.len() == before).then_some(Start { file, load, state })
 }
 
-fn check_size(state: &SavedState, tube: &Tube, problems: &mut Problems) {
+/// Whether a state, or a mode, is of a tube of this size.
+pub(super) fn check_size(key: &str, state: &SavedState, tube: &Tube, problems: &mut Problems) {
     let Layout {
         length, thickness, ..
     } = state.layout;
@@ -54,7 +55,7 @@ fn check_size(state: &SavedState, tube: &Tube, problems: &mut Problems) {
         if (found - expected).abs() > ROUNDING * expected {
             let rule =
                 format!("is of a tube {found} D {what}, and this one is {expected} D {what}");
-            problems.value(KEY, rule, None);
+            problems.value(key, rule, None);
         }
     }
 }

@@ -87,6 +87,9 @@ pub enum SavedStateError {
         /// What is wrong with it.
         what: String,
     },
+    /// It is a state, and a mode is wanted.
+    #[error("this is a saved state, and no mode")]
+    NoMode,
     /// Its tube or mesh is none.
     #[error("its header makes no sense: {0}")]
     Header(&'static str),
