@@ -5,23 +5,40 @@ use super::newton::{EQUILIBRIUM, free_part};
 use super::operator::dot;
 use super::{Balance, Equilibrium, Failure, Found, Method, Settings, Solver, Tangent, Watch};
 
-/// Drag after a rejected step, over the drag before.
+/// Drag after a step along which the energy did not fall, over the drag before.
 const STIFFER: f64 = 8.0;
 /// Drag after an accepted step, over the drag before, at most and at least.
 const SOFTER: (f64, f64) = (0.5, 0.05);
+/// The energy's fall over the one that the tangent predicts: from the first on the drag may shrink,
+/// below the second it grows.
+const TRUSTED: (f64, f64) = (0.6, 0.25);
+/// How often a step is shortened before it is given up, and the most and the least that is left of
+/// it each time.
+const SHORTENINGS: usize = 4;
+const SHORTER: (f64, f64) = (0.5, 0.1);
+/// The largest displacement of the first step along a direction of negative curvature, if the solver
+/// had not come further, in D.
+const LEAP: f64 = 1e-3;
+/// The largest displacement that a step may have before it is shortened or made longer, in D: what a
+/// nearly singular tangent gives is as long as it likes.
+const LONGEST: f64 = 0.1;
 /// Drag above which a step no longer moves anything.
 const LARGEST_DRAG: f64 = 1e12;
 
 /// From `u`, which satisfies the supports: (K + α C) Δu = −R, backward Euler in pseudo-time. A step
-/// is taken if the matrix is positive definite, no element inverts and the energy falls; then the
-/// drag shrinks with the residual (switched evolution relaxation). Otherwise it grows: eightfold, or
-/// by twice what a direction of negative curvature lacks. This follows the tube down to the next
-/// equilibrium, whatever lies between. It is stable unless a symmetry of the start kept the tube
-/// on a saddle; the caller looks at the tangent there.
+/// is taken if the matrix is positive definite, no element inverts and the energy falls; if need be
+/// after it was shortened, which costs an evaluation of the energy and not another solve. Where the
+/// energy falls nearly as the tangent says, the drag then shrinks with the residual (switched
+/// evolution relaxation); where it falls much less, or a step was shortened, the drag grows; where it
+/// does not fall at all, it grows eightfold, and the step is solved for again. This follows the tube
+/// down to the next equilibrium, whatever lies between. It is stable unless a symmetry of the start
+/// kept the tube on a saddle; the caller looks at the tangent there.
 ///
-/// Away from a saddle a damped step is short. Where negative curvature was met and the step itself
-/// leads along such a direction, it is made longer, twofold each time, as long as the energy falls.
-/// So a tube leaves a saddle along its own motion, and never leaves its symmetry.
+/// Where a solver that iterates meets a direction of negative curvature, the step is what it had by
+/// then and that direction, along both of which the energy falls, made longer twofold as long as it
+/// does; the drag grows by twice what the direction lacks. A damped step that itself leads along
+/// negative curvature is made longer likewise. So a tube leaves a saddle along its own motion, and
+/// never leaves its symmetry.
 pub fn relaxation<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
@@ -73,20 +90,33 @@ pub fn relaxation<P: Equilibrium>(
             Err(down) => {
                 watch.iterated(down.iterations);
                 negative_curvature = true;
-                alpha = (2.0 * alpha).max(alpha + 2.0 * down.curvature.abs());
-                tangent = Some(K);
+                // Here the energy falls both where the solver came and along what it met.
+                let leapt = leap(problem, load, &u, &step, &down.direction, &forces);
+                alpha += 2.0 * down.curvature.abs();
+                if let Some((length, next, f)) = leapt {
+                    drag_work += forces.energy - f.energy;
+                    (u, forces) = (next, f);
+                    imbalance = forces.imbalance(given);
+                    accuracy = forcing.accuracy(imbalance);
+                    alpha *= stiffer(length);
+                    (refused, rejected) = (None, 0);
+                } else {
+                    (alpha, tangent) = (alpha * STIFFER, Some(K));
+                }
                 continue;
             }
         }
-        let next: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + s).collect();
-        match problem.forces(load, &next) {
-            Ok(f) if falls(&forces, &f, given) => {
-                let mut drag = vec![0.0; u.len()];
-                problem.drag(alpha, &step, &mut drag);
-                let work = dot(&drag, &step);
-                drag_work += work;
-                // s · K s = −R · s − α s · C s
-                let curved_down = negative_curvature && -dot(&forces.residual, &step) < work;
+        drop(solver);
+        let mut drag = vec![0.0; u.len()];
+        problem.drag(alpha, &step, &mut drag);
+        // α s · C s, and s · K s = −R · s − α s · C s.
+        let (slope, work) = (dot(&forces.residual, &step), dot(&drag, &step));
+        let predicted = 0.5 * (slope - work);
+        match shorten(problem, load, &u, &step, &forces, slope) {
+            Ok((length, next, f)) => {
+                drag_work += length * length * work;
+                let gain = (f.energy - forces.energy) / (length * predicted);
+                let curved_down = negative_curvature && length == 1.0 && -slope < work;
                 (u, forces) = if curved_down {
                     let (next, longer) = lengthen(problem, load, &u, step, (next, f.clone()));
                     drag_work += f.energy - longer.energy;
@@ -97,16 +127,23 @@ pub fn relaxation<P: Equilibrium>(
                 let before = imbalance;
                 imbalance = forces.imbalance(given);
                 accuracy = forcing.accuracy(imbalance);
-                alpha *= (imbalance / before).clamp(SOFTER.1, SOFTER.0);
+                let hidden = -predicted <= forces.rounding;
+                alpha *= if length == 1.0 && (gain >= TRUSTED.0 || hidden) {
+                    (imbalance / before).clamp(SOFTER.1, SOFTER.0)
+                } else if length < 1.0 || gain < TRUSTED.1 {
+                    stiffer(length)
+                } else {
+                    1.0
+                };
                 (refused, rejected) = (None, 0);
             }
             // Rounding keeps the residual where it is, with whatever drag.
-            Ok(_) if imbalance <= EQUILIBRIUM && rejected >= 3 => break,
-            Ok(_) => {
+            Err(None) if imbalance <= EQUILIBRIUM && rejected >= 3 => break,
+            Err(None) => {
                 rejected += 1;
                 (alpha, tangent) = (alpha * STIFFER, Some(K));
             }
-            Err(broken) => {
+            Err(Some(broken)) => {
                 refused = Some(Failure::Broken(broken));
                 (alpha, tangent) = (alpha * STIFFER, Some(K));
             }
@@ -118,6 +155,81 @@ pub fn relaxation<P: Equilibrium>(
         drag_work,
         iterations,
     })
+}
+
+/// Goes as far as an iterative solver came and on along the direction of negative curvature that it
+/// met, in which the energy falls too: at first as far again, or [`LEAP`], then twofold each time as
+/// long as the energy falls. The part of it that was left, and where that leads; none if the energy
+/// does not fall at all.
+fn leap<P: Equilibrium>(
+    problem: &P,
+    load: &P::Load,
+    u: &[f64],
+    step: &[f64],
+    direction: &[f64],
+    forces: &Balance,
+) -> Option<(f64, Vec<f64>, Balance)> {
+    let tau = largest(step).max(LEAP) / largest(direction);
+    let step: Vec<f64> = step
+        .iter()
+        .zip(direction)
+        .map(|(s, d)| s + tau * d)
+        .collect();
+    let slope = dot(&forces.residual, &step);
+    let (length, next, balance) = shorten(problem, load, u, &step, forces, slope).ok()?;
+    let (next, balance) = if length < 1.0 {
+        (next, balance)
+    } else {
+        lengthen(problem, load, u, step, (next, balance))
+    };
+    Some((length, next, balance))
+}
+
+/// What the drag grows by after a step that had to be shortened to this part of it, or that was too
+/// long as it was.
+fn stiffer(length: f64) -> f64 {
+    (0.5 / length).clamp(2.0, STIFFER)
+}
+
+/// Goes along a step as far as the energy falls, from its whole length down: how far, where that is,
+/// and the forces there. Where the energy rises, the parabola with its slope at the start and its
+/// value at the end says what to try next.
+///
+/// # Errors
+///
+/// How the shortest step that was tried is broken, if it is.
+fn shorten<P: Equilibrium>(
+    problem: &P,
+    load: &P::Load,
+    u: &[f64],
+    step: &[f64],
+    forces: &Balance,
+    slope: f64,
+) -> Result<(f64, Vec<f64>, Balance), Option<P::Broken>> {
+    let given = problem.given();
+    let (mut length, mut broken) = ((LONGEST / largest(step)).min(1.0), None);
+    for _ in 0..=SHORTENINGS {
+        let next: Vec<f64> = u.iter().zip(step).map(|(u, s)| u + length * s).collect();
+        let left = match problem.forces(load, &next) {
+            Ok(f) if falls(forces, &f, given) => return Ok((length, next, f)),
+            Ok(f) => {
+                broken = None;
+                let rise = f.energy - forces.energy - length * slope;
+                -0.5 * slope * length / rise
+            }
+            Err(b) => {
+                broken = Some(b);
+                SHORTER.0
+            }
+        };
+        // Not a number is neither.
+        length *= left.min(SHORTER.0).max(SHORTER.1);
+    }
+    Err(broken)
+}
+
+fn largest(step: &[f64]) -> f64 {
+    step.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
 /// Doubles a step from `u` as long as that lowers the energy beyond rounding; where it leads, at
