@@ -115,8 +115,8 @@ What a run leaves behind:
   states/         the states in full
   pictures        curves and walls (unless the case says otherwise)
 
-Ctrl-C or SIGTERM ends a run after the solve at hand, with everything written. A second Ctrl-C
-ends it at once.";
+Ctrl-C or SIGTERM ends a run after the solve or iteration at hand, with everything written. A second
+Ctrl-C ends it at once.";
 
 const STABILITY_EPILOGUE: &str = "\
 Every saved state of an axisymmetric run is tested against circumferential harmonics: 0 keeps the

@@ -1,8 +1,8 @@
 //! Conjugate gradients with a preconditioner, for matrices that are near positive definite and may
 //! turn out not to be (Hestenes and Stiefel 1952; the truncation is Steihaug's, 1983).
 
-use super::NegativeCurvature;
 use super::operator::{Operator, add, dot, hold};
+use super::{NegativeCurvature, Watch};
 
 /// What a step adds to the fall of the energy, relative to all before, where rounding takes over.
 const IDLE: f64 = f64::EPSILON * f64::EPSILON;
@@ -14,10 +14,10 @@ const IDLE_STEPS: usize = 10;
 ///
 /// It stops when the Euclidean norm of the residual is at most `accuracy` times that of b. That is
 /// the norm in which a state is accepted: to first order, the residual of A Δu = −R is what is left
-/// of R after the step. Short of that it stops after `iterations`, where rounding hides all
-/// progress, and where a number is no longer one. What it then leaves in `b` is still of use: each
-/// iterate x is the minimum of ½ x · A x − b · x over all directions so far, hence b · x > 0, and
-/// along x the energy falls.
+/// of R after the step. Short of that it stops after `iterations`, where the watch says so, where
+/// rounding hides all progress, and where a number is no longer one. What it then leaves in `b` is
+/// still of use: each iterate x is the minimum of ½ x · A x − b · x over all directions so far,
+/// hence b · x > 0, and along x the energy falls.
 ///
 /// β is that of Polak and Ribière, z · (r − r₋)/(z₋ · r₋), which forgives an M that is not quite
 /// the same each time, and rounding (Golub and Ye 1999); r − r₋ is a multiple of A p, at hand.
@@ -30,12 +30,13 @@ pub fn conjugate_gradients<O: Operator>(
     b: &mut [f64],
     accuracy: f64,
     iterations: usize,
+    watch: &mut dyn Watch,
 ) -> Result<usize, NegativeCurvature> {
     let given = operator.given();
     let mut r = b.to_vec();
     hold(given, &mut r);
     let mut x = vec![0.0; b.len()];
-    let outcome = iterate(operator, &mut r, &mut x, accuracy, iterations);
+    let outcome = iterate(operator, &mut r, &mut x, accuracy, iterations, watch);
     for i in 0..b.len() {
         if !given[i] {
             b[i] = x[i];
@@ -51,6 +52,7 @@ fn iterate<O: Operator>(
     x: &mut [f64],
     accuracy: f64,
     iterations: usize,
+    watch: &mut dyn Watch,
 ) -> Result<usize, NegativeCurvature> {
     let given = operator.given();
     let [mut z, mut Ap] = [vec![0.0; r.len()], vec![0.0; r.len()]];
@@ -98,13 +100,16 @@ fn iterate<O: Operator>(
         for (p, z) in p.iter_mut().zip(&z) {
             *p = z + beta * *p;
         }
+        if !watch.iterating() {
+            return Ok(done + 1);
+        }
     }
     Ok(iterations)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::reflected::Reflected;
+    use super::super::{Method, reflected::Reflected};
     use super::*;
 
     fn residual(operator: &Reflected, x: &[f64], b: &[f64]) -> f64 {
@@ -128,7 +133,7 @@ mod tests {
         for accuracy in [1e-1, 1e-4, 1e-8] {
             let b = waves(120);
             let mut x = b.clone();
-            let taken = conjugate_gradients(&operator, &mut x, accuracy, 1000).unwrap();
+            let taken = conjugate_gradients(&operator, &mut x, accuracy, 1000, &mut ()).unwrap();
             let left = residual(&operator, &x, &b);
             assert!(left <= 1.01 * accuracy, "{accuracy}: {left}");
             // No more than asked for, and quickly: M is within a factor 3 of A.
@@ -142,7 +147,7 @@ mod tests {
         let spectrum: Vec<f64> = (0..50).map(|i| [0.1, 2.0, 30.0][i % 3]).collect();
         let operator = Reflected::with_preconditioner(&spectrum, vec![1.0; 50]);
         let mut x = waves(50);
-        let taken = conjugate_gradients(&operator, &mut x, 1e-10, 1000).unwrap();
+        let taken = conjugate_gradients(&operator, &mut x, 1e-10, 1000, &mut ()).unwrap();
         assert_eq!(taken, 3);
     }
 
@@ -154,7 +159,7 @@ mod tests {
         let mut energies = vec![0.0];
         for iterations in 1..6 {
             let mut x = b.clone();
-            let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations).unwrap();
+            let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations, &mut ()).unwrap();
             assert_eq!(taken, iterations);
             assert!(dot(&b, &x) > 0.0);
             let mut Ax = vec![0.0; 80];
@@ -164,6 +169,32 @@ mod tests {
         assert!(energies.windows(2).all(|e| e[1] < e[0]), "{energies:?}");
     }
 
+    /// Someone who wants no more than so many iterations.
+    struct Stops(usize);
+
+    impl Watch for Stops {
+        fn solved(&mut self, _: Method, _: f64) -> bool {
+            self.0 > 0
+        }
+        fn iterating(&mut self) -> bool {
+            self.0 -= 1;
+            self.0 > 0
+        }
+    }
+
+    #[test]
+    fn a_long_solve_is_cut_off_when_the_watch_says_so() {
+        let spectrum: Vec<f64> = (0..80).map(|i| 1e-2 * 1.15_f64.powi(i)).collect();
+        let operator = Reflected::new(&spectrum, 10.0);
+        let solved = |iterations: usize, watch: &mut dyn Watch| {
+            let mut x = waves(80);
+            let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations, watch);
+            (taken.unwrap(), x)
+        };
+        assert!(solved(1000, &mut ()).0 > 30);
+        assert_eq!(solved(1000, &mut Stops(3)), solved(3, &mut ()));
+    }
+
     #[test]
     fn negative_curvature_is_met_and_measured_in_the_metric() {
         let mut spectrum: Vec<f64> = (0..100).map(|i| 0.1 + i as f64).collect();
@@ -171,7 +202,7 @@ mod tests {
         let operator = Reflected::new(&spectrum, 2.0);
         let b = waves(100);
         let mut x = b.clone();
-        let down = conjugate_gradients(&operator, &mut x, 1e-8, 1000).unwrap_err();
+        let down = conjugate_gradients(&operator, &mut x, 1e-8, 1000, &mut ()).unwrap_err();
         let [mut Ad, mut Cd] = [vec![0.0; 100], vec![0.0; 100]];
         let d = &down.direction;
         operator.apply(d, &mut Ad);
@@ -192,7 +223,7 @@ mod tests {
         let mut b = vec![0.0; 100];
         operator.apply(&waves(100), &mut b);
         let mut x = b.clone();
-        conjugate_gradients(&operator, &mut x, 1e-9, 1000).unwrap();
+        conjugate_gradients(&operator, &mut x, 1e-9, 1000, &mut ()).unwrap();
         assert!(residual(&operator, &x, &b) < 1.01e-9);
     }
 
@@ -205,7 +236,7 @@ mod tests {
         }
         let b = waves(30);
         let mut x = b.clone();
-        conjugate_gradients(&operator, &mut x, 1e-12, 1000).unwrap();
+        conjugate_gradients(&operator, &mut x, 1e-12, 1000, &mut ()).unwrap();
         for i in [0, 7, 29] {
             assert_eq!(x[i], b[i]);
             x[i] = 0.0;
@@ -222,16 +253,22 @@ mod tests {
         let operator = Reflected::new(&[1.0, 2.0, 3.0, 400.0, 1e-3], 2.0);
         // Nothing to solve.
         let mut x = vec![0.0; 5];
-        assert_eq!(conjugate_gradients(&operator, &mut x, 1e-3, 1000), Ok(0));
+        assert_eq!(
+            conjugate_gradients(&operator, &mut x, 1e-3, 1000, &mut ()),
+            Ok(0)
+        );
         // More asked for than rounding allows.
         let mut x = waves(5);
-        let taken = conjugate_gradients(&operator, &mut x, 0.0, 1000).unwrap();
+        let taken = conjugate_gradients(&operator, &mut x, 0.0, 1000, &mut ()).unwrap();
         assert!(taken < 100, "{taken}");
         let left = residual(&operator, &x, &waves(5));
         assert!(left < 1e-9, "{taken}: {left:e}");
         // Not a number.
         let mut x = vec![1.0, f64::NAN, 0.0, 0.0, 0.0];
-        assert_eq!(conjugate_gradients(&operator, &mut x, 1e-3, 1000), Ok(0));
+        assert_eq!(
+            conjugate_gradients(&operator, &mut x, 1e-3, 1000, &mut ()),
+            Ok(0)
+        );
         assert_eq!(x, [0.0; 5]);
     }
 }

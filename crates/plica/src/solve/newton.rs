@@ -44,7 +44,7 @@ pub fn newton<P: Equilibrium>(
             });
         }
         let mut step = free_part(&forces.residual, given, -1.0);
-        match solver.solve(&mut step, forcing.accuracy(imbalance)) {
+        match solver.solve(&mut step, forcing.accuracy(imbalance), watch) {
             Ok(inner) => watch.iterated(inner),
             Err(down) => {
                 watch.iterated(down.iterations);
@@ -65,6 +65,9 @@ pub fn newton<P: Equilibrium>(
         };
         let before = imbalance;
         imbalance = next_forces.imbalance(given);
+        if !watch.solved(Method::Newton, imbalance) {
+            return Err(Failure::Stopped);
+        }
         if before <= EQUILIBRIUM && length == 1.0 && imbalance > 0.5 * before {
             // Rounding keeps the residual where it is; the better of the two stays.
             if imbalance < before {
@@ -73,9 +76,6 @@ pub fn newton<P: Equilibrium>(
             break;
         }
         (u, forces) = (next, next_forces);
-        if !watch.solved(Method::Newton, imbalance) {
-            return Err(Failure::Stopped);
-        }
     }
     Ok(Found {
         u,

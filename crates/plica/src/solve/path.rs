@@ -374,7 +374,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                 tangent[i] = motion[i];
             }
         }
-        match solver.solve(&mut tangent, PREDICTION) {
+        match solver.solve(&mut tangent, PREDICTION, watch) {
             Ok(inner) => {
                 watch.iterated(inner);
                 Some(tangent)
@@ -450,6 +450,9 @@ impl Watch for Counted<'_> {
     fn iterated(&mut self, inner_iterations: usize) {
         self.inner_iterations += inner_iterations;
         self.watch.iterated(inner_iterations);
+    }
+    fn iterating(&mut self) -> bool {
+        self.watch.iterating()
     }
 }
 

@@ -179,4 +179,7 @@ impl Watch for Renamed<'_> {
     fn iterated(&mut self, inner_iterations: usize) {
         self.0.iterated(inner_iterations);
     }
+    fn iterating(&mut self) -> bool {
+        self.0.iterating()
+    }
 }

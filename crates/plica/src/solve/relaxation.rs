@@ -85,7 +85,7 @@ pub fn relaxation<P: Equilibrium>(
             continue;
         };
         let mut step = free_part(&forces.residual, given, -1.0);
-        match solver.solve(&mut step, accuracy) {
+        match solver.solve(&mut step, accuracy, watch) {
             Ok(inner) => watch.iterated(inner),
             Err(down) => {
                 watch.iterated(down.iterations);

@@ -156,6 +156,11 @@ pub trait Watch {
     fn solved(&mut self, method: Method, imbalance: f64) -> bool;
     /// A linear solve took so many iterations of its own; 0 if it was direct.
     fn iterated(&mut self, _inner_iterations: usize) {}
+    /// Asked after each iteration inside a linear solve; if false it is cut off there. Who says so
+    /// stops the solver too, when told of the solve.
+    fn iterating(&mut self) -> bool {
+        true
+    }
 }
 
 /// Nobody watches.

@@ -1,6 +1,7 @@
 //! The tangent stiffness as the drivers see it: something that multiplies, and that can be solved
 //! with once a drag is added.
 
+use super::Watch;
 use crate::matrix::{BlockBanded, Factor, Singular};
 use std::sync::Arc;
 
@@ -42,14 +43,20 @@ pub trait Solver {
     /// Solves (K + α C) x = b in place for the free unknowns, until the Euclidean norm of the
     /// residual is at most `accuracy` times that of b, or as far as it gets: what it then leaves is
     /// still a direction in which the energy falls. Entries of unknowns that supports give take no
-    /// part and stay as they are. A direct solver is exact, whatever the accuracy.
+    /// part and stay as they are. A direct solver is exact, whatever the accuracy; one that iterates
+    /// is cut off where the watch says so.
     ///
     /// Returns the iterations it took; 0 if it is direct.
     ///
     /// # Errors
     ///
     /// If it meets a direction of negative curvature. What is in `b` then is the iterate so far.
-    fn solve(&self, b: &mut [f64], accuracy: f64) -> Result<usize, NegativeCurvature>;
+    fn solve(
+        &self,
+        b: &mut [f64],
+        accuracy: f64,
+        watch: &mut dyn Watch,
+    ) -> Result<usize, NegativeCurvature>;
 }
 
 /// A direction d along which the energy is curved downwards: d · (K + α C) d ≤ 0.
@@ -112,7 +119,7 @@ impl Solver for Factor {
         Factor::negative_pivots(self)
     }
 
-    fn solve(&self, b: &mut [f64], _: f64) -> Result<usize, NegativeCurvature> {
+    fn solve(&self, b: &mut [f64], _: f64, _: &mut dyn Watch) -> Result<usize, NegativeCurvature> {
         Factor::solve(self, b);
         Ok(0)
     }

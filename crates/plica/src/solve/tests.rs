@@ -1,8 +1,8 @@
 //! The solver on energies of one or two unknowns, whose equilibria are known.
 
 use super::{
-    Balance, Direct, Equilibrium, Failure, Method, NegativeCurvature, Operator, Path, Scheme,
-    Settings, Solver, State, Tangent, Watch, conjugate_gradients, newton, relaxation,
+    Balance, Direct, Equilibrium, Failure, Method, NegativeCurvature, Operator, Path, PseudoTime,
+    Scheme, Settings, Solver, State, Tangent, Watch, conjugate_gradients, newton, relaxation,
 };
 use crate::matrix::{BlockBanded, Singular};
 use std::sync::Arc;
@@ -332,8 +332,13 @@ impl Solver for IteratedTangent {
     fn negative_pivots(&self) -> usize {
         0
     }
-    fn solve(&self, b: &mut [f64], accuracy: f64) -> Result<usize, NegativeCurvature> {
-        conjugate_gradients(self, b, accuracy, 100)
+    fn solve(
+        &self,
+        b: &mut [f64],
+        accuracy: f64,
+        watch: &mut dyn Watch,
+    ) -> Result<usize, NegativeCurvature> {
+        conjugate_gradients(self, b, accuracy, 100, watch)
     }
 }
 
@@ -368,6 +373,55 @@ fn a_path_by_iteration_leads_through_the_same_states() {
         assert_eq!(exact.inner_iterations, 0);
         assert!(step.inner_iterations >= step.iterations, "{step:?}");
         assert_at(other.state(), [one.state().u[0]]);
+    }
+}
+
+/// Someone who has seen enough after the first iteration inside a linear solve.
+#[derive(Default)]
+struct StopsWithin {
+    asked: usize,
+}
+
+impl Watch for StopsWithin {
+    fn solved(&mut self, _: Method, _: f64) -> bool {
+        self.asked == 0
+    }
+    fn iterating(&mut self) -> bool {
+        self.asked += 1;
+        false
+    }
+}
+
+#[test]
+fn whoever_cuts_off_a_linear_solve_stops_what_asked_for_it() {
+    let strut = Iterated(strut());
+    let settings = Settings::default();
+    let (load, off) = (2.5, vec![3.5, 1.0]);
+    let found = newton(
+        &strut,
+        &load,
+        off.clone(),
+        &settings,
+        &mut StopsWithin::default(),
+    );
+    assert_eq!(found.unwrap_err(), Failure::Stopped);
+    let found = relaxation(&strut, &load, off, &settings, &mut StopsWithin::default());
+    assert_eq!(found.unwrap_err(), Failure::Stopped);
+    for scheme in [Scheme::Static, Scheme::PseudoTime(PseudoTime::default())] {
+        let settings = Settings {
+            scheme,
+            ..Settings::default()
+        };
+        let mut path = Path::begin(&strut, 2.5, vec![4.0, 3.0_f64.sqrt()], settings).unwrap();
+        path.set_out(3.0);
+        // du/dt is cut off at first, then a step.
+        let mut watch = StopsWithin::default();
+        let error = path.advance(1.0, &mut watch).unwrap_err();
+        assert!(error.stopped(), "{error}");
+        assert!(watch.asked <= 2);
+        assert_eq!((path.reached(), path.state().load), (0.0, 2.5));
+        path.advance(1.0, &mut ()).unwrap();
+        assert_at(path.state(), [5.0, 2.0]);
     }
 }
 

@@ -298,4 +298,7 @@ impl Watch for Relay<'_> {
         self.observer.working(&what, self.fraction);
         !self.observer.stop()
     }
+    fn iterating(&mut self) -> bool {
+        !self.observer.stop()
+    }
 }

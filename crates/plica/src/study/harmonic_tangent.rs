@@ -4,7 +4,7 @@ use super::spare::Spare;
 use crate::assembly::{Linearised, LowHarmonics, RingDrag, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::rings::{Coupling, HarmonicSolver};
-use crate::solve::{NegativeCurvature, Operator, Solver, Tangent, conjugate_gradients};
+use crate::solve::{NegativeCurvature, Operator, Solver, Tangent, Watch, conjugate_gradients};
 use crate::tube::Load;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -321,7 +321,12 @@ impl Solver for HarmonicSystem {
         self.negative_pivots
     }
 
-    fn solve(&self, b: &mut [f64], accuracy: f64) -> Result<usize, NegativeCurvature> {
-        conjugate_gradients(self, b, accuracy, ITERATIONS)
+    fn solve(
+        &self,
+        b: &mut [f64],
+        accuracy: f64,
+        watch: &mut dyn Watch,
+    ) -> Result<usize, NegativeCurvature> {
+        conjugate_gradients(self, b, accuracy, ITERATIONS, watch)
     }
 }

@@ -3,7 +3,7 @@
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
 use crate::assembly::{Inverted, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
-use crate::solve::{Balance, Direct, Equilibrium, NegativeCurvature, Solver, Tangent};
+use crate::solve::{Balance, Direct, Equilibrium, NegativeCurvature, Solver, Tangent, Watch};
 use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -140,10 +140,15 @@ impl Solver for TubeSolver {
             Self::Harmonic(system) => system.negative_pivots(),
         }
     }
-    fn solve(&self, b: &mut [f64], accuracy: f64) -> Result<usize, NegativeCurvature> {
+    fn solve(
+        &self,
+        b: &mut [f64],
+        accuracy: f64,
+        watch: &mut dyn Watch,
+    ) -> Result<usize, NegativeCurvature> {
         match self {
-            Self::Direct(factor) => Solver::solve(factor, b, accuracy),
-            Self::Harmonic(system) => system.solve(b, accuracy),
+            Self::Direct(factor) => Solver::solve(factor, b, accuracy, watch),
+            Self::Harmonic(system) => system.solve(b, accuracy, watch),
         }
     }
 }

@@ -436,6 +436,9 @@ impl Watch for Relay<'_> {
     fn iterated(&mut self, inner_iterations: usize) {
         self.inner_iterations += inner_iterations;
     }
+    fn iterating(&mut self) -> bool {
+        !self.observer.stop()
+    }
     fn solved(&mut self, method: Method, imbalance: f64) -> bool {
         self.solves += 1;
         let what = format!(
