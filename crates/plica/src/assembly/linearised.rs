@@ -6,6 +6,7 @@ use super::pencil::{
     AVERAGED, Kept, PencilInput, kept_len, pencil_forces, pencil_keep, pencil_product,
     pencil_stress_free, slab_offsets,
 };
+use super::pressure::Pressed;
 use super::spline_tube::{with_degree, with_law_and_degree};
 use super::stress_free::StressFree;
 use super::tables::{Around, Layer, Slab};
@@ -24,6 +25,7 @@ pub struct Linearised {
     stretch: Vec<Vec<(Lanes, Lanes)>>,
     /// By slab.
     kept: Vec<Kept>,
+    pressed: Option<Pressed>,
     /// The tangent averaged over the rings; every unknown is free.
     pub average: Circulant,
 }
@@ -40,6 +42,7 @@ impl SplineTube {
 
     /// The same in the memory of another state's.
     pub fn linearise(&self, load: &Load, u: &[f64], at: &mut Linearised) {
+        at.pressed = self.pressed(load, u);
         let u = self.lanes.pad(u);
         let lanes = |slab: &Slab| {
             let of = |lane| self.pencil_stretch(slab, lane, &self.around, load);
@@ -68,10 +71,16 @@ impl SplineTube {
             })
             .collect();
         self.circulant(&offsets, &mut at.average);
+        if let Some(pressed) = &at.pressed {
+            self.add_average_pressure(pressed, &mut at.average);
+        }
     }
 
     /// y += factor · K v.
     pub fn product(&self, at: &Linearised, factor: f64, v: &[f64], y: &mut [f64]) {
+        if let Some(pressed) = &at.pressed {
+            self.pressure_product(pressed, factor, v, y);
+        }
         let v = self.lanes.pad(v);
         let row = self.wall.functions() * 3 * self.lanes.padded;
         let parts: Vec<Vec<f64>> = self

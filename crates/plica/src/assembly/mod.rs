@@ -4,7 +4,9 @@
 //!
 //! - energy    W = ∫ w(Fe) det Fp dV₀, over the grown volume;
 //! - residual  R = ∂W/∂u_cp = ∫ ∂N : P Fp⁻ᵀ det Fp dV₀;
-//! - tangent   K = ∂²W/∂u_cp² = ∫ ∂N : A : ∂N det Fp dV₀.
+//! - tangent   K = ∂²W/∂u_cp² = ∫ ∂N : A : ∂N det Fp dV₀;
+//!
+//! and to each what pressures on the walls add (`pressure`).
 //!
 //! | letter | meaning | Rust |
 //! |---|---|---|
@@ -30,6 +32,7 @@ mod linearised;
 mod pencil;
 #[cfg(test)]
 mod plain;
+mod pressure;
 mod ring_drag;
 mod sample;
 mod slab;

@@ -63,7 +63,9 @@ pub struct Forces {
     pub energy: f64,
     /// ∫ w dV₀ of the whole tube, over the ungrown volume.
     pub energy_ungrown: f64,
-    /// R of the sector, in E·D²: ∂W/∂u_cp of the whole tube over the number of repeats.
+    /// Π of the whole tube: W and the potential of the pressures, which is nothing at rest.
+    pub potential: f64,
+    /// R of the sector, in E·D²: ∂Π/∂u_cp of the whole tube over the number of repeats.
     pub residual: Vec<f64>,
     /// The forces in play: root of the sum of squares of what the elements add to R, before it
     /// cancels.
@@ -287,6 +289,7 @@ impl SplineTube {
         let mut forces = Forces {
             energy: 0.0,
             energy_ungrown: 0.0,
+            potential: 0.0,
             residual: vec![0.0; u.len()],
             in_play: 0.0,
             smallest_jacobian: f64::INFINITY,
@@ -316,6 +319,8 @@ impl SplineTube {
             }
         }
         forces.in_play = forces.in_play.sqrt();
+        forces.potential = forces.energy;
+        self.add_pressure(load, u, &mut forces);
         Ok(forces)
     }
 
@@ -392,6 +397,7 @@ impl SplineTube {
                 });
             before = parts.pop();
         }
+        self.add_pressure_tangent(load, u, turns, &mut matrix);
         matrix
     }
 

@@ -115,6 +115,7 @@ fn state() -> SavedState {
         load: tube::Load {
             muscles: vec![],
             ends: Default::default(),
+            pressures: Default::default(),
         },
         u: vec![0.0; layout.unknowns()],
         layout,

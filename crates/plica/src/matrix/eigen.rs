@@ -15,6 +15,8 @@ const LONGEST: usize = 160;
 const BETWEEN: usize = 6;
 /// Residual of a converged pair, relative to θ.
 const CONVERGED: f64 = 1e-10;
+/// How far apart eigenvalues are that rounding lets inertias tell, over the mean of all.
+const ROUNDING: f64 = 1e-13;
 /// Starting vectors that are tried; each adds what those before missed (all but one of several
 /// equal eigenvalues, for one).
 const STARTS: u64 = 3;
@@ -93,11 +95,7 @@ impl Pencil<'_> {
             return Some((0.0, factor));
         }
         // Down in strides that grow, from one that is small beside the eigenvalues' mean.
-        let diagonal = |m: &BlockBanded| -> f64 {
-            let free = (0..m.unknowns()).filter(|&i| !self.given[i]);
-            free.map(|i| m.entry(i, i)).sum()
-        };
-        let mean = (diagonal(self.a) / diagonal(self.b)).abs();
+        let mean = self.mean();
         let strides = (0..60).map(|n| -1e-9 * mean * 4_f64.powi(n));
         for shift in strides.filter(|shift| shift.is_finite() && *shift < 0.0) {
             if let Some(factor) = self.factor(shift).filter(|factor| negative(factor) == 0) {
@@ -105,6 +103,15 @@ impl Pencil<'_> {
             }
         }
         None
+    }
+
+    /// The size of the eigenvalues, on the average.
+    fn mean(&self) -> f64 {
+        let diagonal = |m: &BlockBanded| -> f64 {
+            let free = (0..m.unknowns()).filter(|&i| !self.given[i]);
+            free.map(|i| m.entry(i, i)).sum()
+        };
+        (diagonal(self.a) / diagonal(self.b)).abs()
     }
 
     /// B x on the free unknowns.
@@ -220,7 +227,8 @@ impl Pencil<'_> {
         let Some(last) = pairs.last() else {
             return true;
         };
-        let below = last.value - 1e-6 * (last.value - shift);
+        let apart = (1e-6 * (last.value - shift)).max(ROUNDING * self.mean());
+        let below = last.value - apart;
         let found = pairs.iter().filter(|pair| pair.value < below).count();
         self.factor(below)
             .is_some_and(|factor| factor.negative_pivots() == found)

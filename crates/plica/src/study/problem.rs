@@ -84,13 +84,14 @@ impl Equilibrium for TubeProblem {
     fn forces(&self, load: &Load, u: &[f64]) -> Result<Balance, Inverted> {
         let forces = self.tube.forces(load, u)?;
         // The solver sees one sector: its energy is that whose derivative the residual is.
-        let energy = forces.energy / self.tube.sector.repeats();
+        let [strain, energy] =
+            [forces.energy, forces.potential].map(|x| x / self.tube.sector.repeats());
         Ok(Balance {
             energy,
             residual: forces.residual,
             in_play: forces.in_play.max(self.at_rest),
             // Every point adds an energy density of rounding size.
-            rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * energy.abs(),
+            rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * strain.abs().max(energy.abs()),
         })
     }
     fn tangent(&self, load: &Load, u: &[f64]) -> TubeTangent {

@@ -10,7 +10,7 @@ mod mesh;
 mod random;
 
 pub use imperfection::{Axial, Imperfection, Mode, Part, Push, Shape, Wave};
-pub use load::{EndMotion, Load};
+pub use load::{EndMotion, Load, Pressure};
 pub use mesh::{Mesh, Symmetry};
 pub use random::Random;
 
@@ -63,11 +63,12 @@ impl Tube {
         Self::OUTER_RADIUS - self.thickness
     }
 
-    /// The load at rest: every muscle at ratio one, the ends where they are.
+    /// The load at rest: every muscle at ratio one, the ends where they are, no pressure.
     pub fn rest(&self) -> Load {
         Load {
             muscles: vec![1.0; self.muscles.len()],
             ends: [EndMotion::default(); 2],
+            pressures: [Pressure::default(); 2],
         }
     }
 

@@ -177,7 +177,7 @@ mod tests {
     use crate::activation::Direction;
     use crate::spline::Refinement;
     use crate::study::Layout;
-    use crate::tube::{EndMotion, Load, Mesh};
+    use crate::tube::{EndMotion, Load, Mesh, Pressure};
 
     /// A state whose numbers use all their bits.
     fn state() -> SavedState {
@@ -215,6 +215,13 @@ mod tests {
                     EndMotion {
                         displacement: -0.1,
                         twist: 1e-300,
+                    },
+                ],
+                pressures: [
+                    Pressure::default(),
+                    Pressure {
+                        follower: 1.0 / 11.0,
+                        dead: -1e-5,
                     },
                 ],
             },

@@ -5,7 +5,7 @@ use super::{Array, SavedState, SavedStateError};
 use crate::activation::Direction;
 use crate::spline::Refinement;
 use crate::study::Layout;
-use crate::tube::{EndMotion, Load, Mesh};
+use crate::tube::{EndMotion, Load, Mesh, Pressure};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -30,6 +30,10 @@ struct LoadHeader {
     muscles: Vec<MuscleHeader>,
     colon: EndHeader,
     ileum: EndHeader,
+    #[serde(default)]
+    inner_wall: PressureHeader,
+    #[serde(default)]
+    outer_wall: PressureHeader,
 }
 
 #[derive(Debug, Deserialize, Serialize)]
@@ -50,6 +54,12 @@ enum DirectionHeader {
 struct EndHeader {
     displacement: f64,
     twist_radians: f64,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+struct PressureHeader {
+    pressure: f64,
+    dead_pressure: f64,
 }
 
 #[derive(Debug, Deserialize, Serialize)]
@@ -89,6 +99,10 @@ impl SavedState {
             displacement: motion.displacement,
             twist_radians: motion.twist,
         };
+        let wall = |pressure: Pressure| PressureHeader {
+            pressure: pressure.follower,
+            dead_pressure: pressure.dead,
+        };
         let Layout {
             length,
             thickness,
@@ -116,6 +130,8 @@ impl SavedState {
                     .collect(),
                 colon: end(self.load.ends[0]),
                 ileum: end(self.load.ends[1]),
+                inner_wall: wall(self.load.pressures[0]),
+                outer_wall: wall(self.load.pressures[1]),
             },
             tube: TubeHeader { length, thickness },
             mesh: MeshHeader {
@@ -138,6 +154,10 @@ impl SavedState {
         let end = |end: EndHeader| EndMotion {
             displacement: end.displacement,
             twist: end.twist_radians,
+        };
+        let wall = |wall: PressureHeader| Pressure {
+            follower: wall.pressure,
+            dead: wall.dead_pressure,
         };
         let refinement = |r: &RefineHeader| Refinement {
             from: r.from,
@@ -182,6 +202,7 @@ impl SavedState {
             load: Load {
                 muscles: muscles.iter().map(|m| m.ratio).collect(),
                 ends: [end(header.load.colon), end(header.load.ileum)],
+                pressures: [wall(header.load.inner_wall), wall(header.load.outer_wall)],
             },
             muscles: muscles
                 .into_iter()

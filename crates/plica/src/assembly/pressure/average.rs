@@ -1,0 +1,86 @@
+//! What pressures add to the tangent averaged around the tube.
+
+use super::super::SplineTube;
+use super::volume::{sum, volume_blocks};
+use super::{Pressed, turned};
+use crate::rings::{Circulant, Turn};
+
+impl SplineTube {
+    /// Adds the part of the tangent that pressures have, averaged over the rings (see
+    /// [`slab_offsets`](super::super::pencil::slab_offsets)).
+    pub(in crate::assembly) fn add_average_pressure(&self, at: &Pressed, average: &mut Circulant) {
+        let (n, k) = (self.degree() + 1, self.sector.rings);
+        let turns: Vec<Vec<Turn>> = self
+            .around
+            .iter()
+            .map(|point| {
+                self.sector
+                    .unfolded_at(point.s)
+                    .iter()
+                    .map(Turn::from)
+                    .collect()
+            })
+            .collect();
+        for wall in &at.walls {
+            for along @ (slab, lane) in self.elements_along() {
+                // Between rings d apart: rows of control points a and b, components i and j.
+                let mut blocks_apart = vec![[[0.0; 3]; 3]; n * n * n];
+                for qz in 0..n {
+                    let rings = self.rings_at(wall, &at.u, along, qz);
+                    for (point, turns) in self.around.iter().zip(&turns) {
+                        let weight = slab.weight[qz].0[lane] * point.weight / k as f64;
+                        let mut blocks = [[[0.0; 3]; 3]; 6];
+                        for element in 0..k {
+                            let moved = self.surface(&rings, element, point);
+                            let place = sum(&wall.at_rest(point), &moved);
+                            let own = volume_blocks(&place, -wall.follower * weight);
+                            for (sum, own) in
+                                blocks.as_flattened_mut().iter_mut().zip(own.as_flattened())
+                            {
+                                for (sum, own) in sum.iter_mut().zip(own) {
+                                    *sum += own;
+                                }
+                            }
+                        }
+                        for r in 0..n {
+                            for s in r..n {
+                                let turned = turned(&blocks, &turns[r], &turns[s]);
+                                self.add_along(along, qz, &turned, |a, b, i, j, x| {
+                                    blocks_apart[((s - r) * n + a) * n + b][i][j] += x;
+                                });
+                            }
+                        }
+                    }
+                }
+                for d in 0..n {
+                    for b in 0..n {
+                        for a in b..n {
+                            let (own, mirrored) = (
+                                &blocks_apart[(d * n + a) * n + b],
+                                &blocks_apart[(d * n + b) * n + a],
+                            );
+                            for i in 0..3 {
+                                for j in 0..3 {
+                                    let value = match (d, (i == 2) != (j == 2)) {
+                                        (0, false) => own[i][j],
+                                        (0, true) => 0.0,
+                                        (_, false) => own[i][j] + mirrored[j][i],
+                                        (_, true) => own[i][j] - mirrored[j][i],
+                                    };
+                                    let place = (wall.point * 3 + i, wall.point * 3 + j);
+                                    average.offsets[d].add_at(
+                                        slab.first + lane + b,
+                                        a - b,
+                                        place.0,
+                                        place.1,
+                                        value,
+                                    );
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
