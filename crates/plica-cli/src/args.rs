@@ -67,7 +67,7 @@ pub struct StabilityArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=100))]
     pub harmonics: Option<u8>,
     /// Axisymmetric runs: width to which a critical value is bracketed, in what is driven (Lmax/L,
-    /// Dmin/D, or D) [default: 1e-4]
+    /// Dmin/D, or D; a fraction of a pressure) [default: 1e-4]
     #[arg(long, value_name = "X", value_parser = tolerance)]
     pub tolerance: Option<f64>,
     /// Three-dimensional runs: how many of the lowest eigenvalues and modes of each state [default: 3]

@@ -15,8 +15,8 @@ the default given here. A misspelt key is an error.
 Without `[units]` a case is in ratios: lengths in the unit of `tube.diameter`, results in diameters D
 and Young's moduli E. With it, lengths and stresses are in these units, in the file and in the results.
 
-`<name>` is a name of your own (`colon` and `ileum`, the two ends of the tube, are taken). In messages,
-members of a list are counted from one: `stages[2].steps`.
+`<name>` is a name of your own (`colon` and `ileum`, the two ends of the tube, and `inner-wall` and `outer-wall`
+are taken). In messages, members of a list are counted from one: `stages[2].steps`.
 ";
 
 const SECTIONS: &[(&str, &str)] = &[
@@ -81,6 +81,9 @@ const CLOSING: &str = "
 - Targets keep every stress-free stretch between 0.02 and 100, and the ends between 0.05 and 10 times
   their distance at rest. `diameter_ratio` drives a circular muscle, `length_ratio` a longitudinal one;
   a displacement needs a fixed or sliding end, a twist a fixed one.
+- A pressure is at most 10 E. A true one needs both ends held, and an end that slides in its plane: an imperfection along
+  the axis needs a fixed end there. (Where an end moves along the axis, the work of a true pressure depends on the way and on
+  what closes the end; a dead pressure knows no such thing.)
 - There are at least p + 1 control points along the tube and through the wall, and 2 p + 2 around it;
   `fold` divides those around; at most 20 million are solved for.
 - An imperfection has harmonics that the symmetry of the run allows (0 if axisymmetric, multiples of m in a

@@ -165,6 +165,8 @@ pub(super) struct Drive {
     pub length_ratio: Option<f64>,
     pub displacement: Option<f64>,
     pub twist_degrees: Option<f64>,
+    pub pressure: Option<f64>,
+    pub dead_pressure: Option<f64>,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]

@@ -84,6 +84,11 @@ pub const KEYS: &[Key] = &[
         "For `colon` or `ileum`: where along the axis the end is brought, from its place at rest. The end is fixed or sliding."),
     key("stages[].drive.<name>.twist_degrees", Number, "degrees", OrElse(BEFORE_0, "0.0"), from(-3600.0).to(3600.0),
         "For `colon` or `ileum`: how far the end is turned about the axis. The end is fixed."),
+    key("stages[].drive.<name>.pressure", Number, "stress", OrElse(BEFORE_0, "0.0"), ANY,
+        "For `inner-wall`, which it pushes outwards, or `outer-wall`, which it pushes inwards: true pressure, per area as it is and \
+         normal to the wall as it is. No end is free."),
+    key("stages[].drive.<name>.dead_pressure", Number, "stress", OrElse(BEFORE_0, "0.0"), ANY,
+        "For `inner-wall` or `outer-wall`: a dead load, per area at rest and normal to the wall at rest."),
 
     key("imperfections", Tables, "", Or("[]"), ANY,
         "What is not as round or as even as it should be."),

@@ -53,7 +53,11 @@ fn base(key: &Key) -> Table {
 /// The path of a key in the base case: the first member, the first name.
 fn path_in_base(key: &Key) -> String {
     let ends = key.path.ends_with(".displacement") || key.path.ends_with(".twist_degrees");
-    let name = if ends { "colon" } else { "circular" };
+    let name = match () {
+        () if ends => "colon",
+        () if key.path.ends_with("pressure") => "inner-wall",
+        () => "circular",
+    };
     key.path.replace("[]", "[1]").replace("<name>", name)
 }
 
@@ -165,6 +169,8 @@ fn every_field_of_the_structs_is_in_the_table() {
         length_ratio: Some(1.0),
         displacement: Some(0.0),
         twist_degrees: Some(0.0),
+        pressure: Some(0.0),
+        dead_pressure: Some(0.0),
     };
     let spec = Spec {
         title: Some("t".into()),

@@ -128,7 +128,7 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
             .iter()
             .map(|change| Rule {
                 at: change.critical,
-                label: format!("{:.4}", change.critical),
+                label: change.quantity.written(change.critical, 4),
             })
             .collect(),
         x_range: Some((ends[0], ends[1])),
@@ -160,6 +160,8 @@ fn label(quantity: Quantity, tube: &Tube) -> String {
         Quantity::DiameterRatio => "*D*_{min}/*D*".into(),
         Quantity::ColonDisplacement => "displacement of the colon end/*D*".into(),
         Quantity::IleumDisplacement => "displacement of the ileum end/*D*".into(),
+        Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
+        Quantity::DeadPressure(wall) => format!("dead *p*/*E* {}", ["inside", "outside"][wall]),
         Quantity::Muscle(_) => quantity.name(tube),
     }
 }
@@ -169,9 +171,9 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
     let tube = SplineTube::new(&plan.tube, &plan.mesh, 1);
     let meridian = Meridian::new(&tube, mode);
     let at = format!(
-        "{} = {:.4}",
+        "{} = {}",
         label(change.quantity, &plan.tube),
-        change.critical
+        change.quantity.written(change.critical, 4)
     );
     let n = mode.harmonic;
     let panel = |label: String, opening: Opening, amplitude: f64| Panel {

@@ -11,6 +11,10 @@ pub enum Abscissa {
     DiameterRatio,
     /// Displacement of the ileum end less that of the colon end.
     Stretch,
+    /// True pressure on the inner wall.
+    InnerPressure,
+    /// True pressure on the outer wall.
+    OuterPressure,
     /// The number of the state.
     Step,
 }
@@ -22,6 +26,8 @@ impl Abscissa {
             Self::LengthRatio => row.length_ratio,
             Self::DiameterRatio => row.diameter_ratio,
             Self::Stretch => row.ileum_displacement - row.colon_displacement,
+            Self::InnerPressure => row.inner_pressure.unwrap_or(0.0),
+            Self::OuterPressure => row.outer_pressure.unwrap_or(0.0),
             Self::Step => row.step as f64,
         }
     }
@@ -32,6 +38,8 @@ impl Abscissa {
             Self::LengthRatio => "*L*_{max}/*L*",
             Self::DiameterRatio => "*D*_{min}/*D*",
             Self::Stretch => "displacement of the ends, apart",
+            Self::InnerPressure => "pressure on the inner wall",
+            Self::OuterPressure => "pressure on the outer wall",
             Self::Step => "state",
         }
     }
@@ -57,6 +65,8 @@ impl<'a> Story<'a> {
             Abscissa::LengthRatio,
             Abscissa::DiameterRatio,
             Abscissa::Stretch,
+            Abscissa::InnerPressure,
+            Abscissa::OuterPressure,
         ];
         let tail = |quantity: Abscissa| {
             let others = quantities.iter().filter(move |&&other| other != quantity);

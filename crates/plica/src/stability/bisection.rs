@@ -79,8 +79,13 @@ impl Bisection<'_> {
             return Ok(());
         }
         let tube = &self.problem.tube.tube;
-        let width = (self.quantity.of(tube, &b.load) - self.quantity.of(tube, &a.load)).abs();
-        if width <= self.tolerance || halvings == 0 {
+        let [from, to] = [a, b].map(|point| self.quantity.of(tube, &point.load));
+        let unit = if self.quantity.is_pressure() {
+            from.abs().max(to.abs())
+        } else {
+            1.0
+        };
+        if (to - from).abs() <= self.tolerance * unit || halvings == 0 {
             let how = match self.way(a, b, watch)? {
                 (Way::Smooth, true) => How::Smooth,
                 (Way::Lost, _) => How::Unfollowed,

@@ -19,7 +19,7 @@ pub struct Request {
     /// Harmonics 0 to this.
     pub harmonics: usize,
     /// How close critical values are bracketed, in what is driven: Lmax/L, Dmin/D, or displacement
-    /// in D.
+    /// in D; of a pressure, as a fraction of it.
     pub tolerance: f64,
 }
 

@@ -5,6 +5,9 @@ use crate::tube::{Load, Tube};
 /// What adding up the targets of several muscles may leave of nothing.
 const ROUNDING: f64 = 1e-12;
 
+/// Where a pressure is, by its wall.
+const SIDES: [&str; 2] = ["inside", "outside"];
+
 /// A number that tells where along a path a load lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
@@ -18,6 +21,10 @@ pub enum Quantity {
     IleumDisplacement,
     /// The target of one muscle, where several change and their sum does not.
     Muscle(usize),
+    /// True pressure on the inner or the outer wall, in E.
+    Pressure(usize),
+    /// Dead pressure on the inner or the outer wall, in E.
+    DeadPressure(usize),
 }
 
 impl Quantity {
@@ -34,6 +41,10 @@ impl Quantity {
             Self::DiameterRatio,
             Self::IleumDisplacement,
             Self::ColonDisplacement,
+            Self::Pressure(0),
+            Self::Pressure(1),
+            Self::DeadPressure(0),
+            Self::DeadPressure(1),
         ];
         match most(&mut named.into_iter()) {
             Some((quantity, change)) if change > ROUNDING => quantity,
@@ -50,6 +61,8 @@ impl Quantity {
             Self::ColonDisplacement => load.ends[0].displacement,
             Self::IleumDisplacement => load.ends[1].displacement,
             Self::Muscle(m) => load.muscles[m],
+            Self::Pressure(wall) => load.pressures[wall].follower,
+            Self::DeadPressure(wall) => load.pressures[wall].dead,
         }
     }
 
@@ -61,6 +74,22 @@ impl Quantity {
             Self::ColonDisplacement => "colon displacement/D".into(),
             Self::IleumDisplacement => "ileum displacement/D".into(),
             Self::Muscle(m) => format!("ratio of {}", tube.muscles[m].name),
+            Self::Pressure(wall) => format!("pressure {}/E", SIDES[wall]),
+            Self::DeadPressure(wall) => format!("dead pressure {}/E", SIDES[wall]),
+        }
+    }
+
+    /// Whether it is a pressure, which has no size of its own as ratios have.
+    pub fn is_pressure(self) -> bool {
+        matches!(self, Self::Pressure(_) | Self::DeadPressure(_))
+    }
+
+    /// Its value in tables, with so many digits.
+    pub fn written(self, value: f64, digits: usize) -> String {
+        if self.is_pressure() {
+            format!("{value:.digits$e}")
+        } else {
+            format!("{value:.digits$}")
         }
     }
 }
@@ -100,6 +129,12 @@ mod tests {
         assert_eq!(to([0.5, 1.0, 1.0], 0.0), Quantity::DiameterRatio);
         assert_eq!(to([1.0, 1.1, 1.2], 0.0), Quantity::LengthRatio);
         assert_eq!(to([1.0, 1.0, 1.0], -0.2), Quantity::IleumDisplacement);
+        let mut load = tube.rest();
+        load.pressures[1].follower = 1e-5;
+        let pressure = Quantity::between(&tube, &tube.rest(), &load);
+        assert_eq!(pressure, Quantity::Pressure(1));
+        assert_eq!(pressure.name(&tube), "pressure outside/E");
+        assert_eq!(pressure.written(1.234e-5, 2), "1.23e-5");
         // What one muscle takes the other gives.
         assert_eq!(to([1.0, 1.5, 0.5], 0.0), Quantity::Muscle(1));
         let load = Load {

@@ -24,7 +24,7 @@ impl Change {
     /// The critical value with so many digits; a word where there is none.
     fn critical(&self, digits: usize) -> String {
         match self.how {
-            How::Smooth => format!("{:.digits$}", self.critical),
+            How::Smooth => self.quantity.written(self.critical, digits),
             How::Snap => "a snap".into(),
             How::Unfollowed => "unknown".into(),
         }
@@ -60,17 +60,25 @@ impl Stability {
         let width = self.changes.iter().map(stage).max().unwrap_or(0).max(5);
         // Digits that the tolerance leaves, and one more.
         let digits = (1.0 - self.tolerance.log10().floor()).clamp(3.0, 12.0) as usize;
-        let wide = digits + 3;
+        let pressures = self.changes.iter().any(|c| c.quantity.is_pressure());
+        let wide = digits + if pressures { 6 } else { 3 };
+        let names = self.changes.iter().map(|c| c.quantity.name(tube));
+        let at = names
+            .map(|name| name.chars().count())
+            .max()
+            .unwrap_or(0)
+            .max(6);
         let _ = writeln!(
             page,
-            "  {:<width$}  {:>8}  {:<24}  {:<8}  {:>8}  {:<6}  {:>wide$}  {:>wide$}  {:>wide$}",
+            "  {:<width$}  {:>8}  {:<24}  {:<8}  {:>8}  {:<at$}  {:>wide$}  {:>wide$}  {:>wide$}",
             "stage", "harmonic", "the tube", "", "unstable", "at", "critical", "from", "to",
         );
         for change in &self.changes {
-            let ([from, to], [before, after]) = (change.between, change.negative);
+            let [before, after] = change.negative;
+            let [from, to] = change.between.map(|x| change.quantity.written(x, digits));
             let _ = writeln!(
                 page,
-                "  {:<width$}  {:>8}  {:<24}  {:<8}  {:>8}  {:<6}  {:>wide$}  {from:>wide$.digits$}  {to:>wide$.digits$}",
+                "  {:<width$}  {:>8}  {:<24}  {:<8}  {:>8}  {:<at$}  {:>wide$}  {from:>wide$}  {to:>wide$}",
                 change.stage,
                 change.harmonic,
                 effect(change.harmonic),
@@ -81,10 +89,12 @@ impl Stability {
             );
         }
         let first = self.first_loss().map_or("none".into(), |change| {
-            let ([from, to], name) = (change.between, change.quantity.name(tube));
+            let name = change.quantity.name(tube);
+            let written = |x| change.quantity.written(x, digits);
+            let [from, to] = change.between.map(written);
             let place = match change.how {
-                How::Smooth => format!("{name} = {:.digits$}", change.critical),
-                how => format!("{name} = {from:.digits$} to {to:.digits$} ({})", how.name()),
+                How::Smooth => format!("{name} = {}", written(change.critical)),
+                how => format!("{name} = {from} to {to} ({})", how.name()),
             };
             let n = change.harmonic;
             format!("harmonic {n} ({}), at {place}", effect(n))
@@ -148,7 +158,9 @@ impl Stability {
         ];
         let mut rows = vec![header.map(str::to_owned).to_vec()];
         for (number, change) in (1..).zip(&self.changes) {
-            let ([from, to], [before, after]) = (change.between, change.negative);
+            let [before, after] = change.negative;
+            let written = |x| change.quantity.written(x, 9);
+            let [from, to] = change.between.map(written);
             rows.push(vec![
                 format!("{number}"),
                 change.stage.clone(),
@@ -156,9 +168,9 @@ impl Stability {
                 effect(change.harmonic),
                 change.verb().into(),
                 change.quantity.name(tube),
-                format!("{:.9}", change.critical),
-                format!("{from:.9}"),
-                format!("{to:.9}"),
+                written(change.critical),
+                from,
+                to,
                 format!("{before}"),
                 format!("{after}"),
                 change.how.name().into(),

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-/// An accepted state in numbers. Lengths in D and energies in E·D³, unless the case gives units;
-/// forces relative to the forces in play.
+/// An accepted state in numbers. Lengths in D, energies in E·D³ and pressures in E, unless the case
+/// gives units; forces relative to the forces in play.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Number of the state, from 0 (the tube at rest, or where it started).
@@ -22,6 +22,21 @@ pub struct Row {
     pub colon_twist_deg: f64,
     /// Twist of the ileum end.
     pub ileum_twist_deg: f64,
+    /// True pressure on the inner wall; none if the run has no pressures, as below.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inner_pressure: Option<f64>,
+    /// True pressure on the outer wall.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outer_pressure: Option<f64>,
+    /// Dead pressure on the inner wall, per area at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inner_dead_pressure: Option<f64>,
+    /// Dead pressure on the outer wall, per area at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outer_dead_pressure: Option<f64>,
+    /// Strain energy and the potential of the pressures, which is nothing at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub potential: Option<f64>,
     /// Strain energy W = ∫ w det Fp dV₀, over the grown volume.
     pub energy: f64,
     /// Strain energy ∫ w dV₀, over the ungrown volume, as some other programs report it.

@@ -29,6 +29,8 @@ pub struct Manifest {
     pub length_unit: String,
     /// Unit of energies in the tables.
     pub energy_unit: String,
+    /// Unit of pressures in the tables.
+    pub stress_unit: String,
     /// Seconds since 1970 at the start.
     pub started_unix: u64,
     /// Seconds since 1970 at the end; none while it runs.
@@ -60,6 +62,7 @@ impl Manifest {
             threads: rayon::current_num_threads(),
             length_unit: scale.length_name,
             energy_unit: scale.energy_name,
+            stress_unit: scale.stress_name,
             started_unix: now(),
             ended_unix: None,
             verdict: "running".into(),

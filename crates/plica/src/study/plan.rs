@@ -2,7 +2,7 @@
 
 use super::{NamedMode, SavedState};
 use crate::solve::Settings;
-use crate::tube::{Load, Mesh, Symmetry, Tube};
+use crate::tube::{Load, Mesh, Pressure, Symmetry, Tube};
 
 /// A whole study, checked and dimensionless.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,6 +78,15 @@ pub struct Units {
     pub diameter: f64,
     /// Young's modulus in the unit of stress.
     pub youngs_modulus: f64,
+}
+
+impl Plan {
+    /// Whether there is pressure on a wall at the start or in any stage.
+    pub fn is_pressed(&self) -> bool {
+        let start = self.start.iter().map(|start| &start.load);
+        let mut loads = start.chain(self.stages.iter().map(|stage| &stage.load));
+        loads.any(|load| load.pressures != [Pressure::default(); 2])
+    }
 }
 
 impl Default for Output {

@@ -290,6 +290,8 @@ impl<'a> Record<'a> {
         };
         let measures = Measures::of(tube, &state.load, &state.u);
         let (length, energy) = (self.scale.length, self.scale.energy);
+        let (pressed, [inner, outer]) = (self.plan.is_pressed(), state.load.pressures);
+        let pressure = |p: f64| pressed.then_some(self.scale.stress * p);
         let row = Row {
             step: self.rows.len(),
             stage: stage.to_owned(),
@@ -299,6 +301,11 @@ impl<'a> Record<'a> {
             ileum_displacement: length * state.load.ends[1].displacement,
             colon_twist_deg: state.load.ends[0].twist.to_degrees(),
             ileum_twist_deg: state.load.ends[1].twist.to_degrees(),
+            inner_pressure: pressure(inner.follower),
+            outer_pressure: pressure(outer.follower),
+            inner_dead_pressure: pressure(inner.dead),
+            outer_dead_pressure: pressure(outer.dead),
+            potential: pressed.then_some(energy * self.above_rounding(forces.potential)),
             energy: energy * self.above_rounding(forces.energy),
             energy_ungrown_volume: energy * self.above_rounding(forces.energy_ungrown),
             residual: state.imbalance,

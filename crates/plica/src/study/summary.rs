@@ -170,10 +170,22 @@ fn named(harmonic: &str) -> String {
 
 /// Where along the path a state lies.
 fn place(row: &Row) -> String {
-    format!(
+    let mut place = format!(
         "Lmax/L = {:.4}, Dmin/D = {:.4}",
         row.length_ratio, row.diameter_ratio
-    )
+    );
+    let pressures = [
+        ("inside", row.inner_pressure),
+        ("outside", row.outer_pressure),
+        ("dead inside", row.inner_dead_pressure),
+        ("dead outside", row.outer_dead_pressure),
+    ];
+    for (name, pressure) in pressures {
+        if let Some(pressure) = pressure.filter(|p| *p != 0.0) {
+            place += &format!(", pressure {name} {pressure:.4e}");
+        }
+    }
+    place
 }
 
 impl fmt::Display for Summary {

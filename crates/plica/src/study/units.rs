@@ -9,10 +9,14 @@ pub struct Scale {
     pub length: f64,
     /// Energy: E·D³ in joules times a power of ten.
     pub energy: f64,
+    /// Stress: E in the unit of the case.
+    pub stress: f64,
     /// Name of the unit of length.
     pub length_name: String,
     /// Name of the unit of energy.
     pub energy_name: String,
+    /// Name of the unit of stress.
+    pub stress_name: String,
 }
 
 impl Scale {
@@ -22,8 +26,10 @@ impl Scale {
             return Self {
                 length: 1.0,
                 energy: 1.0,
+                stress: 1.0,
                 length_name: "D".into(),
                 energy_name: "E D^3".into(),
+                stress_name: "E".into(),
             };
         };
         // Powers of ten of a metre and a pascal; their product is one of a joule.
@@ -50,8 +56,10 @@ impl Scale {
         Self {
             length: units.diameter,
             energy: units.youngs_modulus * units.diameter.powi(3) * 10_f64.powi(power - named),
+            stress: units.youngs_modulus,
             length_name: units.length.clone(),
             energy_name: energy_name.into(),
+            stress_name: units.stress.clone(),
         }
     }
 }

@@ -38,6 +38,7 @@ pub(super) fn plan(spec: &Spec, name: &str, open: &Open<'_>, problems: &mut Prob
     tube.imperfections = imperfections;
     imperfections::check_stretches(&tube, &stages, problems);
     imperfections::check_wall(spec, &tube, run, problems);
+    stages::check_planes(&tube, &stages, problems);
     let solver = solver::settings(&spec.solver, problems);
     let title = spec.title.clone().unwrap_or_else(|| name.to_owned());
     Plan {

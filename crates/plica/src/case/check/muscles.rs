@@ -2,6 +2,7 @@
 
 use super::super::problem::Problems;
 use super::super::spec::{self, Spec};
+use super::stages::{ENDS, WALLS};
 use super::{ROUNDING, zone};
 use crate::activation::{Direction, Muscle, Profile};
 
@@ -48,8 +49,8 @@ pub(super) fn muscles(spec: &Spec, length: f64, problems: &mut Problems) -> Vec<
 
 fn check_name(path: &str, name: &str, problems: &mut Problems) {
     let letter = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    if name == "colon" || name == "ileum" {
-        let rule = "the name of an end of the tube cannot be a muscle's";
+    if ENDS.contains(&name) || WALLS.contains(&name) {
+        let rule = "the name of an end or a wall of the tube cannot be a muscle's";
         problems.key(path, rule, Some("give the muscle another name".into()));
     } else if name.is_empty() || name.chars().count() > 40 || !name.chars().all(letter) {
         let rule = "a muscle's name must be letters, digits, - and _, at most 40 of them";

@@ -1,15 +1,19 @@
 //! The stages: what they drive, and whether a tube can follow.
 
 use super::super::problem::Problems;
-use super::super::spec::{Drive, Spec};
+use super::super::spec::{self, Drive, Spec};
 use super::super::spelling::nearest;
 use super::tube::tidy;
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
-use crate::tube::{Load, Support, Tube};
+use crate::tube::{Load, Part, Push, Support, Tube};
 
 /// The names of the ends, in the order of the load.
-const ENDS: [&str; 2] = ["colon", "ileum"];
+pub(super) const ENDS: [&str; 2] = ["colon", "ileum"];
+/// The names of the walls, in the order of the load.
+pub(super) const WALLS: [&str; 2] = ["inner-wall", "outer-wall"];
+/// Largest pressure, in E.
+const LARGEST_PRESSURE: f64 = 10.0;
 /// Smallest stress-free stretch that a wall is asked to take.
 pub(super) const SMALLEST_STRETCH: f64 = 0.02;
 /// Shortest and longest distance of the ends, over the length at rest.
@@ -84,12 +88,17 @@ enum Driven {
     Muscle(usize, Direction),
     /// The colon end or the ileum end.
     End(usize),
+    /// The inner wall or the outer wall.
+    Wall(usize),
 }
 
 impl Driven {
     fn find(name: &str, tube: &Tube) -> Option<Self> {
         if let Some(end) = ENDS.iter().position(|&end| end == name) {
             return Some(Self::End(end));
+        }
+        if let Some(wall) = WALLS.iter().position(|&wall| wall == name) {
+            return Some(Self::Wall(wall));
         }
         let m = tube.muscles.iter().position(|m| m.name == name)?;
         Some(Self::Muscle(m, tube.muscles[m].direction))
@@ -100,6 +109,7 @@ impl Driven {
             Self::Muscle(_, Direction::Circular) => &["diameter_ratio"],
             Self::Muscle(_, Direction::Longitudinal) => &["length_ratio"],
             Self::End(_) => &["displacement", "twist_degrees"],
+            Self::Wall(_) => &["pressure", "dead_pressure"],
         }
     }
 
@@ -108,6 +118,7 @@ impl Driven {
             Self::Muscle(_, Direction::Circular) => "a circular muscle",
             Self::Muscle(_, Direction::Longitudinal) => "a longitudinal muscle",
             Self::End(_) => "an end of the tube",
+            Self::Wall(_) => "a wall of the tube",
         }
     }
 }
@@ -123,7 +134,8 @@ fn apply(
     problems: &mut Problems,
 ) {
     let Some(driven) = Driven::find(name, tube) else {
-        let names = || tube.muscles.iter().map(|m| m.name.as_str()).chain(ENDS);
+        let muscles = || tube.muscles.iter().map(|m| m.name.as_str());
+        let names = || muscles().chain(ENDS).chain(WALLS);
         let cure = match nearest(name, names()) {
             Some(near) => format!("did you mean {near}?"),
             None => {
@@ -139,6 +151,8 @@ fn apply(
         ("length_ratio", drive.length_ratio),
         ("displacement", drive.displacement),
         ("twist_degrees", drive.twist_degrees),
+        ("pressure", drive.pressure),
+        ("dead_pressure", drive.dead_pressure),
     ];
     if written.iter().all(|(_, value)| value.is_none()) {
         let cure = format!("give {}", targets.join(" or "));
@@ -166,6 +180,65 @@ fn apply(
                 }
                 check_held(&key, target, tube.ends[e], problems);
             }
+            Driven::Wall(w) => {
+                let spec::Material::NeoHookean(law) = &spec.material;
+                let (wall, value) = (&mut load.pressures[w], value / law.youngs_modulus);
+                match target {
+                    "pressure" => wall.follower = value,
+                    _ => wall.dead = value,
+                }
+                check_pressure(&key, value, law.youngs_modulus, problems);
+                if target == "pressure" && value != 0.0 {
+                    check_closed(&key, tube, problems);
+                }
+            }
+        }
+    }
+}
+
+/// Whether a pressure, in E, is one that a wall may be put under.
+fn check_pressure(key: &str, pressure: f64, youngs_modulus: f64, problems: &mut Problems) {
+    let material = "material.neo-hookean.youngs_modulus";
+    if pressure.abs() > LARGEST_PRESSURE && problems.none_about(&[key, material]) {
+        let largest = tidy(LARGEST_PRESSURE * youngs_modulus);
+        let rule = format!("must be from -{largest} to {largest}, ten times Young's modulus");
+        problems.value(key, rule, None);
+    }
+}
+
+/// Whether the work of a true pressure depends on the state alone.
+pub(super) fn check_closed(key: &str, tube: &Tube, problems: &mut Problems) {
+    let free = tube.ends.iter().position(|end| *end == Support::Free);
+    if let Some(name) = free.map(|end| ENDS[end]) {
+        let rule = format!(
+            "the work of a true pressure depends on what closes an end that moves, and the {name} end is free"
+        );
+        let cure = "hold it, with \"sliding\" or \"fixed\" in [ends], or give dead_pressure";
+        problems.value(key, rule, Some(cure.into()));
+    }
+}
+
+/// Whether ends that slide under a true pressure stay in their planes.
+pub(super) fn check_planes(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
+    let pressed = |stage: &Stage| stage.load.pressures.iter().any(|p| p.follower != 0.0);
+    if !problems.is_empty() || !stages.iter().any(pressed) {
+        return;
+    }
+    for (i, imperfection) in tube.imperfections.iter().enumerate() {
+        let Part::End(end, Push::Axial) = imperfection.of else {
+            continue;
+        };
+        let slides = tube.ends[end as usize] == Support::Sliding;
+        let waves = imperfection.shape.waves();
+        if slides && waves.iter().any(|wave| wave.harmonic > 0) {
+            let rule =
+                "an end that slides out of its plane does not close a tube under true pressure";
+            let cure = "fix the end, or give dead_pressure in the stages";
+            problems.key(
+                &format!("imperfections[{}]", i + 1),
+                rule,
+                Some(cure.into()),
+            );
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::super::problem::Problems;
 use super::super::spec::Spec;
 use super::super::{Open, Wanted};
-use super::stages::{check_held, check_stretch};
+use super::stages::{check_closed, check_held, check_stretch};
 use crate::activation::Direction;
 use crate::study::{Layout, SavedState, Start};
 use crate::tube::{Load, Mesh, Symmetry, Tube};
@@ -111,6 +111,10 @@ fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Option<Load
         if motion.twist != 0.0 {
             check_held(KEY, "twist_degrees", support, problems);
         }
+    }
+    load.pressures = state.load.pressures;
+    if load.pressures.iter().any(|p| p.follower != 0.0) {
+        check_closed(KEY, tube, problems);
     }
     (problems.len() == before).then_some(load)
 }

@@ -30,9 +30,9 @@ struct LoadHeader {
     muscles: Vec<MuscleHeader>,
     colon: EndHeader,
     ileum: EndHeader,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "PressureHeader::is_none")]
     inner_wall: PressureHeader,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "PressureHeader::is_none")]
     outer_wall: PressureHeader,
 }
 
@@ -56,10 +56,16 @@ struct EndHeader {
     twist_radians: f64,
 }
 
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 struct PressureHeader {
     pressure: f64,
     dead_pressure: f64,
+}
+
+impl PressureHeader {
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 #[derive(Debug, Deserialize, Serialize)]
