@@ -191,3 +191,29 @@ fn a_tube_between_plates_turns_oval_before_it_wrinkles() {
         assert_near(&format!("harmonic {n}"), 0.1 * critical, strain, 1e-4);
     }
 }
+
+#[test]
+fn a_ring_under_dead_pressure_turns_oval_at_four_thirds_of_the_true_one() {
+    // 4 E I/r³ where the load keeps its direction, 3 E I/r³ where it follows a thin ring.
+    let tube = Tube {
+        thickness: 0.01,
+        ..tube(0.1, 0.3)
+    };
+    let problem = problem(&tube, [1, 60, 2], 1);
+    let middle = 0.5 - 0.5 * tube.thickness;
+    let bending = (tube.thickness / middle).powi(3) / 12.0 / (1.0 - 0.3 * 0.3);
+    let dead = Load {
+        pressures: [
+            Pressure::default(),
+            Pressure {
+                follower: 0.0,
+                dead: bending,
+            },
+        ],
+        ..tube.rest()
+    };
+    let critical = lost(&problem, &dead, 2, [3.9, 4.1]);
+    assert_near("dead", critical, 4.0, 0.03);
+    let critical = lost(&problem, &outside(&tube, bending), 2, [2.9, 3.1]);
+    assert_near("true", critical, 3.0, 0.03);
+}

@@ -63,3 +63,49 @@ fn a_pressed_tube_bends_sideways_at_euler_s_load() {
     );
     assert!((critical - 1.0).abs() < 0.02, "off by {:e}", critical - 1.0);
 }
+
+/// A thin ring between plates, free to shift and to turn: beside these motions, which meet no force, its
+/// lowest modes are those in which the wall is stretched, at λ = (1 + n²) E/(1 − ν²)/r² for n = 0 and 1; and under
+/// pressure they still are.
+#[test]
+fn rigid_motions_that_nothing_holds_are_no_modes() {
+    let (length, thickness, poisson_ratio) = (0.1, 0.01, 0.3);
+    let tube = Tube {
+        length,
+        thickness,
+        material: Material::NeoHookean(NeoHookean::new(1.0, poisson_ratio)),
+        muscles: vec![],
+        imperfections: vec![],
+        ends: [Support::Sliding; 2],
+    };
+    let mesh = Mesh {
+        axial: 4,
+        around: 60,
+        thickness: 5,
+        degree: 3,
+        refinements: vec![],
+    };
+    let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 1));
+    let harmonics = Harmonics::new(&problem.tube, 1);
+    let u = vec![0.0; problem.tube.unknowns()];
+    let mut path = Path::begin(&problem, tube.rest(), u, Settings::default()).unwrap();
+    let mut pressed = tube.rest();
+    pressed.pressures[1].follower = 1e-6;
+    path.set_out(pressed);
+    for t in [0.0, 1.0] {
+        path.advance(t, &mut ()).unwrap();
+        let tested = harmonics.test(&path.state().load, &path.state().u).unwrap();
+        for (n, tested) in tested.iter().enumerate() {
+            let middle = 0.5 - 0.5 * thickness;
+            let stretched = (1 + n * n) as f64 / (1.0 - poisson_ratio * poisson_ratio);
+            let expected = stretched / (middle * middle);
+            assert_eq!(tested.negative, 0);
+            let off = tested.lowest / expected - 1.0;
+            assert!(
+                off.abs() < 1e-3,
+                "harmonic {n}: {}, {expected}",
+                tested.lowest
+            );
+        }
+    }
+}

@@ -7,7 +7,7 @@ use super::pencil::RingLanes;
 use super::ring_drag::RingDrag;
 use super::slab::SlabInput;
 use super::stress_free::{StressFree, slab_stress_free};
-use super::supports::Supports;
+use super::supports::{Supports, left_by, motions_in_harmonic};
 use super::tables::{Around, Layer, Slab};
 use super::tangent::{SlabTangent, slab_tangent};
 use crate::material::Material;
@@ -351,6 +351,28 @@ impl SplineTube {
     pub fn given_in_harmonic(&self, n: usize) -> Vec<bool> {
         self.ring_supports
             .in_harmonic(n, &self.axial.greville(), &self.wall.greville())
+    }
+
+    /// For every unknown of one ring, whether an end gives it; nothing is pinned.
+    pub fn held_in_harmonics(&self) -> Vec<bool> {
+        self.ring_supports.held()
+    }
+
+    /// The small rigid motions of circumferential harmonic n that the ends leave, at an axisymmetric
+    /// state without twist: displacements as those of [`SplineTube::harmonic_tangent`].
+    pub fn rigid_motions_in_harmonic(&self, u: &[f64], n: usize) -> Vec<Vec<f64>> {
+        assert!(self.sector.rings == 1);
+        let (rows, points) = (self.axial.greville(), self.wall.greville());
+        let points: Vec<[f64; 2]> = u
+            .chunks_exact(3)
+            .enumerate()
+            .map(|(at, u)| {
+                let (row, point) = (at / points.len(), at % points.len());
+                let radius = points[point] * self.circle.control_radius;
+                [rows[row] + u[0], radius + u[1]]
+            })
+            .collect();
+        left_by(motions_in_harmonic(n, &points), &self.held_in_harmonics())
     }
 
     fn tangent_on(&self, load: &Load, u: &[f64], turns: &[Vec<Vec<Turn>>]) -> BlockBanded {

@@ -85,22 +85,24 @@ impl Supports {
         if n == 0 {
             return self.given.clone();
         }
-        let mut given = vec![false; self.given.len()];
-        for end in &self.ends {
-            given[end.unknown] = true;
-        }
-        if n == 1 {
-            let motion = |of: &dyn Fn(f64, f64) -> [f64; 3]| -> Vec<f64> {
-                z.iter()
-                    .flat_map(|&z| r.iter().flat_map(move |&r| of(z, r)))
-                    .collect()
-            };
-            let motions = vec![motion(&|_, _| [0.0, 1.0, 1.0]), motion(&|z, r| [-r, z, z])];
-            for pin in pins(motions, &given) {
-                given[pin] = true;
-            }
+        let mut given = self.held();
+        let points: Vec<[f64; 2]> = z
+            .iter()
+            .flat_map(|&z| r.iter().map(move |&r| [z, r]))
+            .collect();
+        for pin in pins(motions_in_harmonic(n, &points), &given) {
+            given[pin] = true;
         }
         given
+    }
+
+    /// For every unknown, whether an end gives it; loose motions are not pinned.
+    pub fn held(&self) -> Vec<bool> {
+        let mut held = vec![false; self.given.len()];
+        for end in &self.ends {
+            held[end.unknown] = true;
+        }
+        held
     }
 
     /// Writes the given unknowns of a load into `u`.
@@ -154,28 +156,50 @@ pub fn rigid_motions(sector: &Sector, z: &[f64], r: &[f64]) -> Vec<Vec<f64>> {
     motions
 }
 
-/// Elimination with full pivoting: first on the given unknowns, which stop the motions they can;
-/// each motion then left is stopped at the unknown where it is largest.
-fn pins(mut motions: Vec<Vec<f64>>, given: &[bool]) -> Vec<usize> {
+/// The small rigid motions of circumferential harmonic n of an axisymmetric tube without twist whose
+/// control points are at (z, r): along and about the axis; a shift sideways and a tilt.
+pub fn motions_in_harmonic(n: usize, points: &[[f64; 2]]) -> Vec<Vec<f64>> {
+    let motion = |of: &dyn Fn(f64, f64) -> [f64; 3]| -> Vec<f64> {
+        points.iter().flat_map(|&[z, r]| of(z, r)).collect()
+    };
+    match n {
+        0 => vec![
+            motion(&|_, _| [1.0, 0.0, 0.0]),
+            motion(&|_, r| [0.0, 0.0, r]),
+        ],
+        1 => vec![motion(&|_, _| [0.0, 1.0, 1.0]), motion(&|z, r| [-r, z, z])],
+        _ => vec![],
+    }
+}
+
+/// Each motion that the given unknowns leave is stopped at the unknown where it is largest.
+fn pins(motions: Vec<Vec<f64>>, given: &[bool]) -> Vec<usize> {
+    let mut motions = left_by(motions, given);
     let mut pins = vec![];
-    for only_given in [true, false] {
-        while let Some((m, i, size)) = largest(&motions, |i| !only_given || given[i]) {
-            if size < 1e-9 {
-                break;
-            }
-            let pivot = motions.swap_remove(m);
-            for motion in &mut motions {
-                let factor = motion[i] / pivot[i];
-                for (x, p) in motion.iter_mut().zip(&pivot) {
-                    *x -= factor * p;
-                }
-            }
-            if !only_given {
-                pins.push(i);
-            }
-        }
+    while let Some(i) = eliminate(&mut motions, |_| true) {
+        pins.push(i);
     }
     pins
+}
+
+/// The motions that the given unknowns do not stop; they are zero there.
+pub fn left_by(mut motions: Vec<Vec<f64>>, given: &[bool]) -> Vec<Vec<f64>> {
+    while eliminate(&mut motions, |i| given[i]).is_some() {}
+    motions
+}
+
+/// Takes the motion with the largest entry over some unknowns out of all others, and away; gives
+/// the unknown. None if there is no such entry.
+fn eliminate(motions: &mut Vec<Vec<f64>>, over: impl Fn(usize) -> bool) -> Option<usize> {
+    let (m, i, _) = largest(motions, over).filter(|(_, _, size)| *size >= 1e-9)?;
+    let pivot = motions.swap_remove(m);
+    for motion in motions {
+        let factor = motion[i] / pivot[i];
+        for (x, p) in motion.iter_mut().zip(&pivot) {
+            *x -= factor * p;
+        }
+    }
+    Some(i)
 }
 
 /// The largest entry of all motions over some unknowns: motion, unknown, size.

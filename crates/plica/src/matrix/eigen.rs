@@ -50,22 +50,41 @@ pub fn lowest_eigenpairs(
     given: &[bool],
     count: usize,
 ) -> Result<Vec<Eigenpair>, NoEigenpairs> {
-    let free = given.iter().filter(|given| !**given).count();
-    let (failed, count) = (NoEigenpairs { count }, count.min(free));
+    lowest_eigenpairs_beside(a, b, given, count, &[])
+}
+
+/// The same of the eigenpairs beside some that are known: `beside` holds independent vectors x with
+/// A x = 0, such as rigid motions.
+///
+/// # Errors
+/// Those of [`lowest_eigenpairs`].
+pub fn lowest_eigenpairs_beside(
+    a: &BlockBanded,
+    b: &BlockBanded,
+    given: &[bool],
+    count: usize,
+    beside: &[Vec<f64>],
+) -> Result<Vec<Eigenpair>, NoEigenpairs> {
+    let failed = NoEigenpairs { count };
     let pencil = Pencil { a, b, given };
-    let (shift, factor) = pencil.below_all().ok_or(failed)?;
-    let mut known: Vec<Eigenpair> = vec![];
+    let beside = pencil.orthonormal(beside);
+    let free = given.iter().filter(|given| !**given).count() - beside.len();
+    let count = count.min(free);
+    let (shift, factor) = pencil.below_all(!beside.is_empty()).ok_or(failed)?;
+    let mut found: Vec<Eigenpair> = vec![];
     for start in 0..STARTS {
-        let more = count.min(free - known.len());
-        known.extend(
+        let more = count.min(free - found.len());
+        let known = [&beside[..], &found].concat();
+        found.extend(
             pencil
                 .lanczos(shift, &factor, more, start, &known)
                 .unwrap_or_default(),
         );
-        known.sort_by(|a, b| a.value.total_cmp(&b.value));
-        if known.len() >= count && pencil.none_is_missed(shift, &known[..count]) {
-            known.truncate(count);
-            return Ok(known);
+        found.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let known = [&beside[..], &found[..count.min(found.len())]].concat();
+        if found.len() >= count && pencil.none_is_missed(shift, &known, found.get(count - 1)) {
+            found.truncate(count);
+            return Ok(found);
         }
     }
     Err(failed)
@@ -88,10 +107,11 @@ impl Pencil<'_> {
         shifted.factor().ok()
     }
 
-    /// A shift below all eigenvalues, zero if that will do.
-    fn below_all(&self) -> Option<(f64, Factor)> {
+    /// A shift below all eigenvalues; zero if that will do and is no eigenvalue.
+    fn below_all(&self, singular: bool) -> Option<(f64, Factor)> {
         let negative = |factor: &Factor| factor.negative_pivots();
-        if let Some(factor) = self.factor(0.0).filter(|factor| negative(factor) == 0) {
+        let at_zero = || self.factor(0.0).filter(|factor| negative(factor) == 0);
+        if let Some(factor) = (!singular).then(at_zero).flatten() {
             return Some((0.0, factor));
         }
         // Down in strides that grow, from one that is small beside the eigenvalues' mean.
@@ -103,6 +123,21 @@ impl Pencil<'_> {
             }
         }
         None
+    }
+
+    /// Vectors with A x = 0, made orthonormal in B.
+    fn orthonormal(&self, vectors: &[Vec<f64>]) -> Vec<Eigenpair> {
+        let mut pairs: Vec<Eigenpair> = vec![];
+        for vector in vectors {
+            let mut vector = vector.clone();
+            for pair in &pairs {
+                take_part(&mut vector, &pair.vector, &self.weigh(&pair.vector));
+            }
+            let norm = dot(&vector, &self.weigh(&vector)).sqrt();
+            vector.iter_mut().for_each(|x| *x /= norm);
+            pairs.push(Eigenpair { value: 0.0, vector });
+        }
+        pairs
     }
 
     /// The size of the eigenvalues, on the average.
@@ -222,9 +257,9 @@ impl Pencil<'_> {
         Some(pairs)
     }
 
-    /// Whether as many eigenvalues lie below the last pair as were found there.
-    fn none_is_missed(&self, shift: f64, pairs: &[Eigenpair]) -> bool {
-        let Some(last) = pairs.last() else {
+    /// Whether as many eigenvalues lie below the last pair as are known there.
+    fn none_is_missed(&self, shift: f64, pairs: &[Eigenpair], last: Option<&Eigenpair>) -> bool {
+        let Some(last) = last else {
             return true;
         };
         let apart = (1e-6 * (last.value - shift)).max(ROUNDING * self.mean());

@@ -9,4 +9,4 @@ mod eigen;
 pub use block_banded::{BlockBanded, Factor, Singular};
 pub use columns::Columns;
 pub use dense::multiply;
-pub use eigen::{Eigenpair, NoEigenpairs, lowest_eigenpairs};
+pub use eigen::{Eigenpair, NoEigenpairs, lowest_eigenpairs, lowest_eigenpairs_beside};

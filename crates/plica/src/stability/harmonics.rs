@@ -2,7 +2,9 @@
 
 use super::mass::harmonic_mass;
 use crate::assembly::SplineTube;
-use crate::matrix::{BlockBanded, Eigenpair, NoEigenpairs, lowest_eigenpairs};
+use crate::matrix::{
+    BlockBanded, Eigenpair, NoEigenpairs, lowest_eigenpairs, lowest_eigenpairs_beside,
+};
 use crate::tube::Load;
 use rayon::prelude::*;
 
@@ -16,15 +18,20 @@ pub struct Harmonics<'a> {
 #[derive(Clone, Debug)]
 struct Harmonic {
     mass: BlockBanded,
+    /// Held by the ends, or pinned against a rigid motion.
     given: Vec<bool>,
 }
+
+/// Residual, over the mean size of the tangent, up to which a rigid motion meets no force.
+const NEUTRAL: f64 = 1e-7;
 
 /// What is known of one harmonic at a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tested {
     /// Negative eigenvalues: 0 where the state is stable to it. A singular block counts as one.
     pub negative: usize,
-    /// The lowest eigenvalue of the tangent over the mass of unit density, in E/D².
+    /// The lowest eigenvalue of the tangent over the mass of unit density, in E/D². Rigid motions
+    /// that the ends leave, and that meet no force, are not counted.
     pub lowest: f64,
 }
 
@@ -62,17 +69,17 @@ impl<'a> Harmonics<'a> {
     /// [`NoEigenpairs`] where a lowest eigenvalue cannot be found.
     pub fn test(&self, load: &Load, u: &[f64]) -> Result<Vec<Tested>, NoEigenpairs> {
         let test = |(n, harmonic): (usize, &Harmonic)| {
-            let block = self.block(n, load, u);
-            let pairs = lowest_eigenpairs(&block, &harmonic.mass, &harmonic.given, 1)?;
+            let pairs = self.lowest(n, load, u, 1)?;
             Ok(Tested {
-                negative: harmonic.negative(block),
+                negative: harmonic.negative(self.block(n, load, u)),
                 lowest: pairs.first().map_or(f64::INFINITY, |pair| pair.value),
             })
         };
         self.harmonics.par_iter().enumerate().map(test).collect()
     }
 
-    /// The lowest eigenpairs of harmonic n at a state without twist. A vector holds, for every
+    /// The lowest eigenpairs of harmonic n at a state without twist, beside rigid motions that the
+    /// ends leave. A vector holds, for every
     /// control point, the amplitudes (z, r, θ) of a displacement (z cos nφ, r cos nφ, −θ sin nφ);
     /// for n = 0 the displacement (z, r, θ) itself.
     ///
@@ -86,7 +93,17 @@ impl<'a> Harmonics<'a> {
         count: usize,
     ) -> Result<Vec<Eigenpair>, NoEigenpairs> {
         let Harmonic { mass, given } = &self.harmonics[n];
-        lowest_eigenpairs(&self.block(n, load, u), mass, given, count)
+        let block = self.block(n, load, u);
+        let motions = self.tube.rigid_motions_in_harmonic(u, n);
+        let held = self.tube.held_in_harmonics();
+        if motions
+            .iter()
+            .all(|motion| is_neutral(&block, &held, motion))
+        {
+            lowest_eigenpairs_beside(&block, mass, &held, count, &motions)
+        } else {
+            lowest_eigenpairs(&block, mass, given, count)
+        }
     }
 
     fn block(&self, n: usize, load: &Load, u: &[f64]) -> BlockBanded {
@@ -95,6 +112,18 @@ impl<'a> Harmonics<'a> {
             n => self.tube.harmonic_tangent(load, u, n),
         }
     }
+}
+
+/// Whether a motion meets no force.
+fn is_neutral(block: &BlockBanded, held: &[bool], motion: &[f64]) -> bool {
+    let mut force = vec![0.0; motion.len()];
+    block.multiply_add(1.0, motion, &mut force);
+    let (mut forces, mut size) = (0.0, 0.0);
+    for i in (0..motion.len()).filter(|&i| !held[i]) {
+        forces += force[i] * force[i];
+        size += (block.entry(i, i) * motion[i]).powi(2);
+    }
+    forces <= NEUTRAL * NEUTRAL * size
 }
 
 impl Harmonic {
