@@ -35,14 +35,14 @@ pub struct LowHarmonics {
     pub highest: usize,
     /// Control values through the wall of 1, t, t²: point by point.
     pub through: Vec<[f64; THROUGH]>,
-    slabs: Vec<Slab>,
+    pub(super) slabs: Vec<Slab>,
     points: Vec<Layer>,
-    middle: [Around; 1],
+    pub(super) middle: [Around; 1],
     /// 1, t, t² at the points through the wall, and their slopes.
     wall: Vec<([f64; THROUGH], [f64; THROUGH])>,
     /// What the amplitudes (mode, component) displace in each element's frame, and its slope
     /// around: rows of (element, component).
-    waves: [Vec<f64>; 2],
+    pub(super) waves: [Vec<f64>; 2],
 }
 
 impl LowHarmonics {
@@ -237,12 +237,13 @@ impl SplineTube {
         u: &[f64],
         matrix: &mut BlockBanded,
     ) {
-        let u = self.lanes.pad(u);
         let imperfect = self.imperfect.as_ref();
         let displacement = imperfect.map(|imperfect| self.lanes.pad(&imperfect.displacement));
         let displacement = displacement.as_deref();
         let (p, size) = (self.degree(), low.row());
         matrix.clear();
+        self.add_coupled_pressure(low, load, u, matrix);
+        let u = self.lanes.pad(u);
         // A few slabs at a time, added up in their order.
         for slabs in low.slabs.chunks(4) {
             let parts: Vec<Vec<[Vec<f64>; 4]>> = slabs

@@ -193,6 +193,20 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
             "{rings}: {found} {exact}"
         );
 
+        // What pressures add.
+        let mut pressed = load.clone();
+        (pressed.pressures[0].follower, pressed.pressures[1].follower) = (-0.3, 0.7);
+        let at = tube.linearised(&pressed, &u);
+        tube.product(&at, -1.0, &v, &mut product);
+        let mut of_pressed = coupled.clone();
+        tube.coupled_tangent(&low, &pressed, &u, &mut of_pressed);
+        let exact = -dot(&v, &product);
+        let found = dot(&x, &multiplied(&of_pressed, &x)) - found;
+        assert!(
+            (found / exact - 1.0).abs() < 0.03,
+            "pressure, {rings}: {found} {exact}"
+        );
+
         let drag = tube.ring_drag();
         let mut metric = BlockBanded::zeros(coupled.blocks(), low.row(), 3);
         low.add_drag(&tube, &drag, 2.0, &mut metric);

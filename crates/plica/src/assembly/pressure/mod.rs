@@ -18,6 +18,7 @@
 //! nothing is lost to rounding.
 
 mod average;
+mod coupled;
 #[cfg(test)]
 mod tests;
 mod volume;

@@ -1,0 +1,88 @@
+//! What pressures add to the tangent on low harmonics.
+
+use super::super::coupling::LowHarmonics;
+use super::super::{SplineTube, tangent::Block};
+use super::volume::{sum, volume_blocks};
+use crate::matrix::BlockBanded;
+use crate::tube::Load;
+
+/// Quadrature points along an element, as the low harmonics have.
+const POINTS: usize = 2;
+
+impl SplineTube {
+    /// Adds the part of Eᵀ K E that pressures have (see [`SplineTube::coupled_tangent`]).
+    pub(in crate::assembly) fn add_coupled_pressure(
+        &self,
+        low: &LowHarmonics,
+        load: &Load,
+        u: &[f64],
+        matrix: &mut BlockBanded,
+    ) {
+        let (n, columns, point) = (self.degree() + 1, 3 * low.modes(), &low.middle[0]);
+        let [values, slopes] = &low.waves;
+        for wall in self.following_walls(load) {
+            // 1, t, t² at the wall.
+            let through = [1.0, if wall.point == 0 { -1.0 } else { 1.0 }, 1.0];
+            for slab in &low.slabs {
+                for (lane, qz) in (0..slab.elements * POINTS).map(|i| (i / POINTS, i % POINTS)) {
+                    let rings = self.rings_at(&wall, u, (slab, lane), qz);
+                    let weight = -wall.follower * slab.weight[qz].0[lane] * point.weight;
+                    // The parts that go with (N′, N) and (N, N) along the tube.
+                    let mut mixed = vec![0.0; columns * columns];
+                    let mut own = vec![0.0; columns * columns];
+                    for element in 0..self.sector.rings {
+                        let place =
+                            sum(&wall.at_rest(point), &self.surface(&rings, element, point));
+                        let [_, zs, zv, _, sv, _] = volume_blocks(&place, weight);
+                        let rows = 3 * element * columns..3 * (element + 1) * columns;
+                        let (value, slope) = (&values[rows.clone()], &slopes[rows]);
+                        add_form(value, &zs, slope, &mut mixed);
+                        add_form(value, &zv, value, &mut mixed);
+                        add_form(slope, &sv, value, &mut own);
+                    }
+                    for b in 0..n {
+                        let (value_b, slope_b) = self.along((slab, lane), qz, b);
+                        for a in b..n {
+                            let (value_a, slope_a) = self.along((slab, lane), qz, a);
+                            for x in 0..columns {
+                                for y in 0..columns {
+                                    let (at, across) = (x * columns + y, y * columns + x);
+                                    let entry = slope_a * value_b * mixed[at]
+                                        + value_a * slope_b * mixed[across]
+                                        + value_a * value_b * (own[at] + own[across]);
+                                    for (c, f) in through.iter().enumerate() {
+                                        for (d, g) in through.iter().enumerate() {
+                                            matrix.add_at(
+                                                slab.first + lane + b,
+                                                a - b,
+                                                c * columns + x,
+                                                d * columns + y,
+                                                f * g * entry,
+                                            );
+                                        }
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds Gᵀ B H of two matrices of three rows.
+fn add_form(G: &[f64], B: &Block<f64>, H: &[f64], out: &mut [f64]) {
+    let columns = G.len() / 3;
+    for x in 0..columns {
+        let mut row = [0.0; 3];
+        for j in 0..3 {
+            for i in 0..3 {
+                row[j] += G[i * columns + x] * B[i][j];
+            }
+        }
+        for (y, out) in out[x * columns..][..columns].iter_mut().enumerate() {
+            *out += row[0] * H[y] + row[1] * H[columns + y] + row[2] * H[2 * columns + y];
+        }
+    }
+}
