@@ -168,19 +168,23 @@ fn named(harmonic: &str) -> String {
     }
 }
 
+/// The pressures that a state is under, if its case has any.
+fn pressures(row: &Row) -> [(&'static str, Option<f64>); 4] {
+    [
+        ("inside", row.inner_pressure),
+        ("outside", row.outer_pressure),
+        ("dead inside", row.inner_dead_pressure),
+        ("dead outside", row.outer_dead_pressure),
+    ]
+}
+
 /// Where along the path a state lies.
 fn place(row: &Row) -> String {
     let mut place = format!(
         "Lmax/L = {:.4}, Dmin/D = {:.4}",
         row.length_ratio, row.diameter_ratio
     );
-    let pressures = [
-        ("inside", row.inner_pressure),
-        ("outside", row.outer_pressure),
-        ("dead inside", row.inner_dead_pressure),
-        ("dead outside", row.outer_dead_pressure),
-    ];
-    for (name, pressure) in pressures {
+    for (name, pressure) in pressures(row) {
         if let Some(pressure) = pressure.filter(|p| *p != 0.0) {
             place += &format!(", pressure {name} {pressure:.4e}");
         }
@@ -254,7 +258,11 @@ impl fmt::Display for Summary {
         for (i, (harmonic, rows)) in lost.iter().enumerate() {
             let name = if i == 0 { "unstable" } else { "" };
             let (first, last) = (rows[0], rows[rows.len() - 1]);
-            let span = if first.diameter_ratio == last.diameter_ratio {
+            let others = |row: &Row| {
+                let pressures = pressures(row).map(|(_, pressure)| pressure);
+                (row.diameter_ratio, pressures)
+            };
+            let span = if others(first) == others(last) {
                 format!(
                     "Lmax/L = {:.4} to {:.4}",
                     first.length_ratio, last.length_ratio
