@@ -115,7 +115,14 @@ pub fn relaxation<P: Equilibrium>(
         match shorten(problem, load, &u, &step, &forces, slope) {
             Ok((length, next, f)) => {
                 drag_work += length * length * work;
-                let gain = (f.energy - forces.energy) / (length * predicted);
+                // As far as rounding lets it be seen, and the step was not too long.
+                let trust = if length < 1.0 {
+                    0.0
+                } else if -predicted <= forces.rounding {
+                    1.0
+                } else {
+                    (f.energy - forces.energy) / predicted
+                };
                 let curved_down = negative_curvature && length == 1.0 && -slope < work;
                 (u, forces) = if curved_down {
                     let (next, longer) = lengthen(problem, load, &u, step, (next, f.clone()));
@@ -127,10 +134,9 @@ pub fn relaxation<P: Equilibrium>(
                 let before = imbalance;
                 imbalance = forces.imbalance(given);
                 accuracy = forcing.accuracy(imbalance);
-                let hidden = -predicted <= forces.rounding;
-                alpha *= if length == 1.0 && (gain >= TRUSTED.0 || hidden) {
+                alpha *= if trust >= TRUSTED.0 {
                     (imbalance / before).clamp(SOFTER.1, SOFTER.0)
-                } else if length < 1.0 || gain < TRUSTED.1 {
+                } else if trust < TRUSTED.1 {
                     stiffer(length)
                 } else {
                     1.0
