@@ -7,7 +7,7 @@ use plica::matrix::lowest_eigenpairs;
 use plica::solve::{Lowest, Path, Search, relaxation};
 use plica::stability::Harmonics;
 use plica::study::{Plan, TubeProblem};
-use plica::tube::Load;
+use plica::tube::{Load, Support};
 
 /// The main case on a coarse mesh.
 fn coarse(mesh: [usize; 3]) -> Plan {
@@ -37,29 +37,32 @@ fn lowest(problem: &TubeProblem, load: &Load, u: &[f64], wanted: usize) -> Lowes
 
 #[test]
 fn a_round_tube_has_the_eigenvalues_of_its_harmonics_each_twice() {
-    let plan = coarse([30, 12, 4]);
-    let (ring, whole) = (problem(&plan, 1), problem(&plan, 12));
-    let load = plan.tube.rest().towards(&plan.stages[0].load, 0.5);
-    let rest = vec![0.0; ring.tube.unknowns()];
-    let mut path = Path::begin(&ring, plan.tube.rest(), rest, plan.solver.clone()).unwrap();
-    path.set_out(load.clone());
-    for n in 1..=3 {
-        path.advance(f64::from(n) / 3.0, &mut ()).unwrap();
-    }
-    let one = &path.state().u;
-    let all: Vec<f64> = one.iter().flat_map(|&x| [x; 12]).collect();
+    for ends in [[Support::Fixed; 2], [Support::Free, Support::Sliding]] {
+        let mut plan = coarse([30, 12, 4]);
+        plan.tube.ends = ends;
+        let (ring, whole) = (problem(&plan, 1), problem(&plan, 12));
+        let load = plan.tube.rest().towards(&plan.stages[0].load, 0.5);
+        let rest = vec![0.0; ring.tube.unknowns()];
+        let mut path = Path::begin(&ring, plan.tube.rest(), rest, plan.solver.clone()).unwrap();
+        path.set_out(load.clone());
+        for n in 1..=3 {
+            path.advance(f64::from(n) / 3.0, &mut ()).unwrap();
+        }
+        let one = &path.state().u;
+        let all: Vec<f64> = one.iter().flat_map(|&x| [x; 12]).collect();
 
-    let harmonics = Harmonics::new(&ring.tube, 5);
-    let mut expected = vec![];
-    for n in 0..=5 {
-        let pairs = harmonics.lowest(n, &load, one, 4).unwrap();
-        let times = if n == 0 { 1 } else { 2 };
-        expected.extend(pairs.iter().flat_map(|pair| vec![pair.value; times]));
-    }
-    expected.sort_by(f64::total_cmp);
-    let found = lowest(&whole, &load, &all, 8);
-    for (value, exact) in found.values.iter().zip(&expected[..8]) {
-        assert!((value / exact - 1.0).abs() < 1e-6, "{value}, not {exact}");
+        let harmonics = Harmonics::new(&ring.tube, 5);
+        let mut expected = vec![];
+        for n in 0..=5 {
+            let pairs = harmonics.lowest(n, &load, one, 4).unwrap();
+            let times = if n == 0 { 1 } else { 2 };
+            expected.extend(pairs.iter().flat_map(|pair| vec![pair.value; times]));
+        }
+        expected.sort_by(f64::total_cmp);
+        let found = lowest(&whole, &load, &all, 8);
+        for (value, exact) in found.values.iter().zip(&expected[..8]) {
+            assert!((value / exact - 1.0).abs() < 1e-6, "{value}, not {exact}");
+        }
     }
 }
 

@@ -92,23 +92,15 @@ impl LowHarmonics {
     }
 
     /// For every unknown of harmonic n of the sector, numbered (row, function, component), whether a
-    /// support gives it. A single point that is pinned takes the first function along.
+    /// support gives it. A single point that is pinned takes all functions of its row along, so that
+    /// none of them moves it.
     pub fn given_in_harmonic(&self, tube: &SplineTube, n: usize) -> Vec<bool> {
         let points = tube.wall.functions();
         let given = tube.given_in_harmonic(n * (tube.sector.around / tube.sector.rings));
         let row = |row: &[bool]| {
-            let count = |i: usize| {
-                row.iter()
-                    .skip(i)
-                    .step_by(3)
-                    .filter(|given| **given)
-                    .count()
-            };
-            let given = [0, 1, 2].map(count);
-            (0..3 * THROUGH).map(move |at| {
-                let given = given[at % 3];
-                given == points || (given > 0 && at < 3)
-            })
+            let any = |i: usize| row.iter().skip(i).step_by(3).any(|given| *given);
+            let given = [0, 1, 2].map(any);
+            (0..3 * THROUGH).map(move |at| given[at % 3])
         };
         given.chunks_exact(3 * points).flat_map(row).collect()
     }

@@ -254,14 +254,23 @@ impl SplineTube {
         self.axial.functions() * self.row_size()
     }
 
-    /// For every unknown, whether a support gives it.
+    /// For every unknown, whether a support gives it: at a held end, or of one ring so that a loose
+    /// tube does not drift (of more see [`SplineTube::take_out_pins`]).
     pub fn given(&self) -> &[bool] {
         &self.supports.given
     }
 
-    /// Unknowns pinned so that a loose tube does not drift.
+    /// Displacements pinned so that a loose tube does not drift.
     pub fn anchors(&self) -> usize {
         self.supports.anchors
+    }
+
+    /// Takes the pinned displacements of a tube of many rings out of `u`, by orthogonal projection:
+    /// at one unknown of a ring for each rigid motion that the ends leave open, the mean over the
+    /// rings (along z, about z) or their cosine and sine (two shifts, two tilts). The rest of u stays
+    /// as it is; of one ring, all of it, for what is pinned is given.
+    pub fn take_out_pins(&self, u: &mut [f64]) {
+        self.supports.take_out_pins(u);
     }
 
     /// Writes what the ends prescribe under a load into `u`.
@@ -346,11 +355,10 @@ impl SplineTube {
         self.tangent_on(load, u, &rule.iter().map(turns).collect::<Vec<_>>())
     }
 
-    /// For every unknown of circumferential harmonic n, whether a support gives it or it is
-    /// pinned against a rigid motion of that harmonic.
+    /// For every unknown of circumferential harmonic n of the tube, whether a support gives it or it
+    /// is pinned against a rigid motion of that harmonic.
     pub fn given_in_harmonic(&self, n: usize) -> Vec<bool> {
-        self.ring_supports
-            .in_harmonic(n, &self.axial.greville(), &self.wall.greville())
+        self.supports.in_harmonic(n)
     }
 
     /// For every unknown of one ring, whether an end gives it; nothing is pinned.

@@ -1,18 +1,37 @@
-//! Which unknowns are given: held ends, and what keeps a loose tube from drifting.
+//! What is given: held ends, and what keeps a loose tube from drifting.
 
 use super::imperfection::end_face;
 use crate::rings::Sector;
 use crate::tube::{End, Load, Support, Tube};
+use std::f64::consts::TAU;
 
-/// The unknowns that are not free.
+/// The displacements that are not free.
+///
+/// What keeps a loose tube from drifting is of a single harmonic, 0 or 1, as rigid motions are: one
+/// unknown of a ring is pinned in that harmonic. Of one ring that is the unknown itself; of many it
+/// is the mean over the rings, or their cosine and their sine, while the rings stay free otherwise.
+/// So what is held is the same at every ring, and a tube that is held is block-circulant still.
 #[derive(Clone, Debug)]
 pub struct Supports {
-    /// For every unknown, whether it is given.
+    /// For every unknown, whether it is given: at the ends, and what is pinned if there is one ring.
     pub given: Vec<bool>,
-    /// Number of unknowns that were pinned so that a loose tube does not drift. They are as few
-    /// as there are rigid motions left, so that they carry no force.
+    /// What is pinned if there are many.
+    pins: Vec<Pin>,
+    /// The unknowns of a ring that are pinned in harmonics 0 and 1 of the tube.
+    pinned: [Vec<usize>; 2],
+    /// Number of displacements that are pinned so that a loose tube does not drift. They are as few
+    /// as there are rigid motions left, so that they carry no force in equilibrium.
     pub anchors: usize,
     ends: Vec<EndUnknown>,
+    rings: usize,
+}
+
+/// A wave over the rings that an unknown of a ring has no part in.
+#[derive(Clone, Debug)]
+struct Pin {
+    unknown: usize,
+    /// Of length one.
+    wave: Vec<f64>,
 }
 
 /// A given unknown of an end face.
@@ -67,42 +86,61 @@ impl Supports {
                 }
             }
         }
-        let pins = pins(rigid_motions(sector, z, r), &given);
-        for &pin in &pins {
-            given[pin] = true;
-        }
-        Self {
-            given,
-            anchors: pins.len(),
-            ends,
-        }
-    }
-
-    /// The given unknowns of circumferential harmonic n of an axisymmetric tube with control
-    /// points at `z` and `r`. The rigid motions of a harmonic other than 0 are, in its first, a
-    /// shift sideways and a tilt.
-    pub fn in_harmonic(&self, n: usize, z: &[f64], r: &[f64]) -> Vec<bool> {
-        if n == 0 {
-            return self.given.clone();
-        }
-        let mut given = self.held();
+        let rings = sector.rings;
+        let held = held(&ends, given.len(), rings);
+        let whole = rings == sector.around;
         let points: Vec<[f64; 2]> = z
             .iter()
             .flat_map(|&z| r.iter().map(move |&r| [z, r]))
             .collect();
-        for pin in pins(motions_in_harmonic(n, &points), &given) {
-            given[pin] = true;
+        let pinned = [0, 1].map(|n| pins_of(motions_in_harmonic(n, &points), &held));
+        let mut pins = vec![];
+        if rings == 1 {
+            for &unknown in &pinned[0] {
+                given[unknown] = true;
+            }
+        } else {
+            let of_harmonic = |n: usize| pinned[n].iter().flat_map(move |&at| waves(at, n, rings));
+            pins.extend(of_harmonic(0));
+            pins.extend(of_harmonic(1).filter(|_| whole));
+        }
+        Self {
+            anchors: if rings == 1 {
+                pinned[0].len()
+            } else {
+                pins.len()
+            },
+            given,
+            pins,
+            pinned,
+            ends,
+            rings,
+        }
+    }
+
+    /// The given unknowns of circumferential harmonic n of the tube, of one ring.
+    pub fn in_harmonic(&self, n: usize) -> Vec<bool> {
+        let mut given = self.held();
+        for &unknown in self.pinned.get(n).into_iter().flatten() {
+            given[unknown] = true;
         }
         given
     }
 
-    /// For every unknown, whether an end gives it; loose motions are not pinned.
+    /// For every unknown of a ring, whether an end gives it; loose motions are not pinned.
     pub fn held(&self) -> Vec<bool> {
-        let mut held = vec![false; self.given.len()];
-        for end in &self.ends {
-            held[end.unknown] = true;
+        held(&self.ends, self.given.len(), self.rings)
+    }
+
+    /// Takes what is pinned at many rings out of a displacement.
+    pub fn take_out_pins(&self, u: &mut [f64]) {
+        for Pin { unknown, wave } in &self.pins {
+            let u = &mut u[unknown * self.rings..][..self.rings];
+            let part: f64 = wave.iter().zip(&*u).map(|(w, u)| w * u).sum();
+            for (u, w) in u.iter_mut().zip(wave) {
+                *u -= part * w;
+            }
         }
-        held
     }
 
     /// Writes the given unknowns of a load into `u`.
@@ -121,39 +159,34 @@ impl Supports {
     }
 }
 
-/// The small rigid motions that the sector admits, one vector of unknowns each: along z and about
-/// z, and for the whole circumference also sideways and tilting.
-pub fn rigid_motions(sector: &Sector, z: &[f64], r: &[f64]) -> Vec<Vec<f64>> {
-    let (k, layers) = (sector.rings, r.len());
-    let motion = |field: &dyn Fn(f64, f64, f64) -> [f64; 3]| {
-        let mut u = vec![0.0; z.len() * r.len() * 3 * k];
-        for (a, &z) in z.iter().enumerate() {
-            for (c, &r) in r.iter().enumerate() {
-                for ring in 0..k {
-                    let value = field(z, r, sector.ring_angle(ring));
-                    for (i, value) in value.into_iter().enumerate() {
-                        u[((a * layers + c) * 3 + i) * k + ring] = value;
-                    }
-                }
-            }
-        }
-        u
-    };
-    let mut motions = vec![
-        motion(&|_, _, _| [1.0, 0.0, 0.0]),
-        motion(&|_, r, _| [0.0, 0.0, r]),
-    ];
-    if k == sector.around {
-        motions.push(motion(&|_, _, phi| [0.0, phi.cos(), -phi.sin()]));
-        motions.push(motion(&|_, _, phi| [0.0, phi.sin(), phi.cos()]));
-        motions.push(motion(&|z, r, phi| {
-            [-r * phi.cos(), z * phi.cos(), -z * phi.sin()]
-        }));
-        motions.push(motion(&|z, r, phi| {
-            [-r * phi.sin(), z * phi.sin(), z * phi.cos()]
-        }));
+/// For every unknown of a ring, whether an end gives it.
+fn held(ends: &[EndUnknown], unknowns: usize, rings: usize) -> Vec<bool> {
+    let mut held = vec![false; unknowns / rings];
+    for end in ends {
+        held[end.unknown / rings] = true;
     }
-    motions
+    held
+}
+
+/// The waves of harmonic n of k rings, at an unknown of a ring: the mean, or cosine and sine.
+fn waves(unknown: usize, n: usize, rings: usize) -> impl Iterator<Item = Pin> {
+    let wave = move |quarter: usize| {
+        let angle = |j: usize| TAU * (n * j) as f64 / rings as f64;
+        let value = |j| {
+            if quarter == 0 {
+                angle(j).cos()
+            } else {
+                angle(j).sin()
+            }
+        };
+        let wave: Vec<f64> = (0..rings).map(value).collect();
+        let length = wave.iter().map(|w| w * w).sum::<f64>().sqrt();
+        Pin {
+            unknown,
+            wave: wave.iter().map(|w| w / length).collect(),
+        }
+    };
+    (0..=n.min(1)).map(wave)
 }
 
 /// The small rigid motions of circumferential harmonic n of an axisymmetric tube without twist whose
@@ -173,7 +206,7 @@ pub fn motions_in_harmonic(n: usize, points: &[[f64; 2]]) -> Vec<Vec<f64>> {
 }
 
 /// Each motion that the given unknowns leave is stopped at the unknown where it is largest.
-fn pins(motions: Vec<Vec<f64>>, given: &[bool]) -> Vec<usize> {
+fn pins_of(motions: Vec<Vec<f64>>, given: &[bool]) -> Vec<usize> {
     let mut motions = left_by(motions, given);
     let mut pins = vec![];
     while let Some(i) = eliminate(&mut motions, |_| true) {

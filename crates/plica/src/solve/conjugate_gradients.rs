@@ -34,7 +34,7 @@ pub fn conjugate_gradients<O: Operator>(
 ) -> Result<usize, NegativeCurvature> {
     let given = operator.given();
     let mut r = b.to_vec();
-    hold(given, &mut r);
+    hold(operator, &mut r);
     let mut x = vec![0.0; b.len()];
     let outcome = iterate(operator, &mut r, &mut x, accuracy, iterations, watch);
     for i in 0..b.len() {
@@ -54,11 +54,10 @@ fn iterate<O: Operator>(
     iterations: usize,
     watch: &mut dyn Watch,
 ) -> Result<usize, NegativeCurvature> {
-    let given = operator.given();
     let [mut z, mut Ap] = [vec![0.0; r.len()], vec![0.0; r.len()]];
     let target = accuracy * dot(r, r).sqrt();
     operator.precondition(r, &mut z);
-    hold(given, &mut z);
+    hold(operator, &mut z);
     let mut p = z.clone();
     let mut rho = dot(r, &z);
     let (mut fall, mut idle_steps) = (0.0, 0);
@@ -69,7 +68,7 @@ fn iterate<O: Operator>(
             return Ok(done);
         }
         operator.apply(&p, &mut Ap);
-        hold(given, &mut Ap);
+        hold(operator, &mut Ap);
         let pAp = dot(&p, &Ap);
         if pAp <= 0.0 {
             operator.metric(&p, &mut z);
@@ -94,7 +93,7 @@ fn iterate<O: Operator>(
             0
         };
         operator.precondition(r, &mut z);
-        hold(given, &mut z);
+        hold(operator, &mut z);
         let beta = (-length * dot(&z, &Ap) / rho).max(0.0);
         rho = dot(r, &z);
         for (p, z) in p.iter_mut().zip(&z) {
@@ -246,6 +245,29 @@ mod tests {
         for i in 0..30 {
             assert!(operator.given[i] || (r[i] - b[i]).abs() < 1e-10);
         }
+    }
+
+    #[test]
+    fn what_is_pinned_takes_no_part() {
+        let spectrum: Vec<f64> = (0..30).map(|i| 1.0 + i as f64).collect();
+        let mut operator = Reflected::new(&spectrum, 2.0);
+        operator.given[7] = true;
+        let wave = |i| if i == 7 { 0.0 } else { 1.0 / 29.0_f64.sqrt() };
+        let pinned: Vec<f64> = (0..30).map(wave).collect();
+        operator.pinned = Some(pinned.clone());
+        let b = waves(30);
+        let mut x = b.clone();
+        conjugate_gradients(&operator, &mut x, 1e-12, 1000, &mut ()).unwrap();
+        assert_eq!(x[7], b[7]);
+        x[7] = 0.0;
+        assert!(dot(&x, &pinned).abs() < 1e-13);
+        // What is left is what the pin carries.
+        let mut r = vec![0.0; 30];
+        operator.apply(&x, &mut r);
+        add(-1.0, &b, &mut r);
+        assert!(dot(&r, &pinned).abs() > 0.1);
+        hold(&operator, &mut r);
+        assert!(r.iter().all(|r| r.abs() < 1e-10));
     }
 
     #[test]

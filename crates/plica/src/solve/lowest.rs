@@ -170,7 +170,7 @@ fn corrections<O: Operator>(operator: &O, x: &Basis, values: &[f64]) -> (Vec<f64
         let mut r = x.applied.column(j).to_vec();
         add(-value, x.measured.column(j), &mut r);
         operator.precondition(&r, &mut z);
-        hold(operator.given(), &mut z);
+        hold(operator, &mut z);
         squares.push(dot(&r, &z).max(0.0));
         corrections.push(&z);
     }
@@ -191,7 +191,7 @@ impl Basis {
             let mut images = vectors.clone();
             for j in 0..vectors.count() {
                 apply(vectors.column(j), images.column_mut(j));
-                hold(operator.given(), images.column_mut(j));
+                hold(operator, images.column_mut(j));
             }
             images
         };
@@ -206,7 +206,7 @@ impl Basis {
         let mut vectors = Columns::new(seeds.first()?.len());
         for seed in seeds {
             let mut seed = seed.clone();
-            hold(operator.given(), &mut seed);
+            hold(operator, &mut seed);
             vectors.push(&seed);
         }
         Some(Self::of(operator, vectors))
@@ -452,5 +452,20 @@ mod tests {
         assert_eq!([x[0], x[11], x[39]], [0.0; 3]);
         // Fewer directions: no lower.
         assert!(found.values[0] > 1.0);
+    }
+
+    #[test]
+    fn what_is_pinned_takes_no_part() {
+        let spectrum: Vec<f64> = (0..40).map(|i| 1.0 + i as f64).collect();
+        let mut operator = Reflected::new(&spectrum, 3.0);
+        // What is orthogonal to the lowest eigenvector in C: the others are left.
+        let free = lowest_of(&operator, &seeds(40, 2), &search(1));
+        let mut pinned = vec![0.0; 40];
+        operator.metric(&free.vectors[0], &mut pinned);
+        let size = dot(&pinned, &pinned).sqrt();
+        operator.pinned = Some(pinned.iter().map(|x| x / size).collect());
+        let found = lowest_of(&operator, &seeds(40, 3), &search(2));
+        assert!(dot(&found.vectors[0], &pinned).abs() < 1e-9);
+        assert_lowest(&operator, &found, &[2.0, 3.0]);
     }
 }

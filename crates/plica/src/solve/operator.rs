@@ -2,11 +2,14 @@
 
 /// A symmetric operator A on the free unknowns, with a preconditioner and a metric.
 ///
-/// Vectors hold every unknown; they come in with zeros where a support gives one, and what is
-/// written there does not count.
+/// Vectors hold every unknown; they come in with zeros where a support gives one and without what is
+/// pinned, and what is written there does not count.
 pub trait Operator {
     /// For every unknown, whether a support gives it.
     fn given(&self) -> &[bool];
+    /// Takes out of `v` what else must not move, by orthogonal projection: combinations of unknowns
+    /// that supports pin.
+    fn take_out_pins(&self, _v: &mut [f64]) {}
     /// `out` = A v.
     fn apply(&self, v: &[f64], out: &mut [f64]);
     /// `out` = M⁻¹ r with a symmetric, positive definite M that is near A.
@@ -15,11 +18,16 @@ pub trait Operator {
     fn metric(&self, v: &[f64], out: &mut [f64]);
 }
 
-/// Sets the entries of unknowns that supports give to zero.
-pub(super) fn hold(given: &[bool], v: &mut [f64]) {
-    for (x, _) in v.iter_mut().zip(given).filter(|(_, given)| **given) {
+/// Takes out of `v` all that supports hold: the unknowns that they give, and what they pin.
+pub(super) fn hold<O: Operator>(operator: &O, v: &mut [f64]) {
+    for (x, _) in v
+        .iter_mut()
+        .zip(operator.given())
+        .filter(|(_, given)| **given)
+    {
         *x = 0.0;
     }
+    operator.take_out_pins(v);
 }
 
 /// a · b, summed in order, so that it does not depend on threads.

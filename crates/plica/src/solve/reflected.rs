@@ -7,6 +7,8 @@ use super::operator::{Operator, add, dot};
 /// A x = ν C x has the eigenvalues ν, and M is near A but has other eigenvectors.
 pub struct Reflected {
     pub given: Vec<bool>,
+    /// A vector of length one.
+    pub pinned: Option<Vec<f64>>,
     spectrum: Vec<f64>,
     scales: Vec<f64>,
     /// Normals of the mirrors.
@@ -40,6 +42,7 @@ impl Reflected {
         };
         Self {
             given: vec![false; n],
+            pinned: None,
             spectrum: spectrum.to_vec(),
             scales: (0..n).map(|i| 1.0 + 0.5 * (2.0 * i as f64).sin()).collect(),
             mirrors: std::array::from_fn(mirror),
@@ -66,6 +69,12 @@ impl Reflected {
 impl Operator for Reflected {
     fn given(&self) -> &[bool] {
         &self.given
+    }
+    fn take_out_pins(&self, v: &mut [f64]) {
+        if let Some(pinned) = &self.pinned {
+            let part = dot(pinned, v);
+            add(-part, pinned, v);
+        }
     }
     fn apply(&self, v: &[f64], out: &mut [f64]) {
         out.copy_from_slice(v);

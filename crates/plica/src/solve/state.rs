@@ -4,6 +4,10 @@ use super::Tangent;
 use crate::matrix::Singular;
 
 /// An energy to be made stationary. Pure in (u, load): nothing remembers the last call.
+///
+/// Supports give single unknowns. Where they pin a combination of unknowns too, forces and drag come
+/// without their part along it, and so do the steps that a [`super::Solver`] finds: all that the
+/// drivers see lies in the space of what may move.
 pub trait Equilibrium {
     /// What drives it.
     type Load: Clone;
@@ -22,7 +26,7 @@ pub trait Equilibrium {
     fn forces(&self, load: &Self::Load, u: &[f64]) -> Result<Balance, Self::Broken>;
     /// Tangent stiffness K at a state.
     fn tangent(&self, load: &Self::Load, u: &[f64]) -> Self::Tangent;
-    /// y += factor · C v with the drag matrix C, every unknown free.
+    /// y += factor · C v with the drag matrix C, every unknown free that is not pinned.
     fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]);
 }
 
@@ -31,7 +35,7 @@ pub trait Equilibrium {
 pub struct Balance {
     /// The energy W.
     pub energy: f64,
-    /// R = ∂W/∂u, for every unknown.
+    /// R = ∂W/∂u, for every unknown, without its part along what is pinned.
     pub residual: Vec<f64>,
     /// The size of the forces whose balance R is; never zero.
     pub in_play: f64,

@@ -296,6 +296,9 @@ impl Operator for HarmonicSystem {
     fn given(&self) -> &[bool] {
         self.state.tube.tube.given()
     }
+    fn take_out_pins(&self, v: &mut [f64]) {
+        self.state.tube.tube.take_out_pins(v);
+    }
     fn apply(&self, v: &[f64], out: &mut [f64]) {
         let Linear { tube, at, .. } = &*self.state;
         out.fill(0.0);

@@ -82,7 +82,8 @@ impl Equilibrium for TubeProblem {
         from.towards(to, t)
     }
     fn forces(&self, load: &Load, u: &[f64]) -> Result<Balance, Inverted> {
-        let forces = self.tube.forces(load, u)?;
+        let mut forces = self.tube.forces(load, u)?;
+        self.tube.take_out_pins(&mut forces.residual);
         // The solver sees one sector: its energy is that whose derivative the residual is.
         let [strain, energy] =
             [forces.energy, forces.potential].map(|x| x / self.tube.sector.repeats());
@@ -106,7 +107,12 @@ impl Equilibrium for TubeProblem {
     fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         match &self.rings {
             Rings::One(drag) => drag.multiply_add(factor, v, y),
-            Rings::Many(tube) => tube.drag(factor, v, y),
+            Rings::Many(tube) => {
+                let mut force = vec![0.0; v.len()];
+                tube.drag(factor, v, &mut force);
+                self.tube.take_out_pins(&mut force);
+                y.iter_mut().zip(&force).for_each(|(y, f)| *y += f);
+            }
         }
     }
 }

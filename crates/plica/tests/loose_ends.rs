@@ -1,0 +1,142 @@
+//! Tubes of many rings whose ends leave rigid motions open.
+
+use plica::assembly::SplineTube;
+use plica::solve::{Integrator, Path, PseudoTime, Scheme, State};
+use plica::study::{Plan, TubeProblem};
+use plica::tube::{Axial, Imperfection, Load, Part, Shape, Support, Wave};
+
+/// Ends that leave something to pin, first; what fixed ones cost is what they are held against.
+const ENDS: [[Support; 2]; 4] = [
+    [Support::Sliding, Support::Sliding],
+    [Support::Free, Support::Sliding],
+    [Support::Free, Support::Free],
+    [Support::Fixed, Support::Free],
+];
+
+/// The main case on a coarse mesh, held in some way.
+fn plan(ends: [Support; 2], scheme: Scheme) -> Plan {
+    let text = include_str!("../../../cases/invagination.toml");
+    let mut plan = plica::case::read(text, "invagination").unwrap();
+    [plan.mesh.axial, plan.mesh.around, plan.mesh.thickness] = [24, 12, 4];
+    plan.tube.ends = ends;
+    plan.solver.scheme = scheme;
+    plan
+}
+
+fn problem(plan: &Plan, rings: usize) -> TubeProblem {
+    TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings))
+}
+
+/// Dmin/D = 0.85.
+fn contracted(plan: &Plan) -> Load {
+    plan.tube.rest().towards(&plan.stages[0].load, 0.2)
+}
+
+/// Energies and costs of two states: solves, and iterations inside them.
+fn states(plan: &Plan, rings: usize) -> Vec<(f64, usize, usize)> {
+    let problem = problem(plan, rings);
+    let rest = problem.tube.start();
+    let mut path = Path::begin(&problem, plan.tube.rest(), rest, plan.solver.clone()).unwrap();
+    path.set_out(contracted(plan));
+    [0.5, 1.0]
+        .map(|t| {
+            let step = path.advance(t, &mut ()).unwrap();
+            let state = path.state();
+            assert!(
+                state.imbalance <= plan.solver.tolerance,
+                "{}",
+                state.imbalance
+            );
+            let energy = state.energy / rings as f64;
+            (energy, step.iterations, step.inner_iterations)
+        })
+        .to_vec()
+}
+
+#[test]
+fn loose_tubes_in_three_dimensions_are_the_axisymmetric_ones_at_the_cost_of_fixed_ones() {
+    let dragged = |integrator| {
+        Scheme::PseudoTime(PseudoTime {
+            integrator,
+            drag: 1.0,
+            ramp: 2,
+            tolerance: 1e-3,
+            ..PseudoTime::default()
+        })
+    };
+    let schemes = [
+        (Scheme::Static, vec![12, 6]),
+        (dragged(Integrator::Newmark), vec![12]),
+        (dragged(Integrator::BackwardEuler), vec![4]),
+    ];
+    for (scheme, sectors) in schemes {
+        for rings in sectors {
+            for ends in ENDS {
+                let plan = plan(ends, scheme.clone());
+                let exact = states(&plan, 1);
+                let found = states(&plan, rings);
+                for ((energy, solves, inner), (exact, ..)) in found.iter().zip(&exact) {
+                    let error = energy / exact - 1.0;
+                    assert!(error.abs() < 1e-10, "{ends:?}, {rings} rings: {error:e}");
+                    // The preconditioner is the inverse, as it is with fixed ends.
+                    assert!(*inner <= solves + 2, "{ends:?}, {rings} rings: {found:?}");
+                }
+            }
+        }
+    }
+}
+
+/// What a loose tube comes to that starts displaced along z and sideways, its muscle stronger on some
+/// sides than on others.
+fn lopsided(ends: [Support; 2], harmonic: usize, rings: usize, shift: f64) -> State<Load> {
+    let mut plan = plan(ends, Scheme::Static);
+    plan.tube.imperfections.push(Imperfection {
+        of: Part::Muscle(0),
+        amplitude: 0.1,
+        shape: Shape::Wave(Wave {
+            harmonic,
+            phase: 0.3,
+            axial: Axial::Uniform,
+            share: 1.0,
+        }),
+    });
+    let problem = problem(&plan, rings);
+    let (tube, rest) = (&problem.tube, plan.tube.rest());
+    let mut start = tube.control_values(|_, _, ring| {
+        let (sin, cos) = tube.sector.ring_angle(ring).sin_cos();
+        [shift, shift * cos, -shift * sin]
+    });
+    tube.impose(&rest, &mut start);
+    let mut path = Path::begin(&problem, rest, start, plan.solver.clone()).unwrap();
+    path.set_out(contracted(&plan));
+    path.advance(1.0, &mut ()).unwrap();
+    let state = path.state().clone();
+    assert!(state.imbalance <= plan.solver.tolerance);
+
+    // With the forces that pins would have to carry.
+    let forces = tube.forces(&state.load, &state.u).unwrap();
+    let free = forces.residual.iter().zip(tube.given());
+    let squares = free.filter(|(_, given)| !**given).map(|(r, _)| r * r);
+    let left = squares.sum::<f64>().sqrt() / forces.in_play;
+    assert!(left <= 1.1 * plan.solver.tolerance, "{ends:?}: {left:e}");
+    state
+}
+
+#[test]
+fn what_is_pinned_of_a_tube_that_is_not_round_carries_no_force_wherever_it_is_pinned() {
+    use Support::{Free, Sliding};
+    let same = |one: &State<Load>, energy: f64| {
+        let rows = one
+            .u
+            .chunks_exact(12)
+            .flat_map(|u| u.iter().map(|x| (x - u[0]).abs()));
+        assert!(rows.fold(0.0, f64::max) > 5e-3);
+        let error = energy / one.energy - 1.0;
+        assert!(error.abs() < 1e-10, "{error:e}");
+    };
+    // Of harmonics 0 and 2 alone, shifts and tilts are nothing to pin.
+    let oval = lopsided([Sliding, Sliding], 2, 12, 0.0);
+    same(&oval, 2.0 * lopsided([Sliding, Sliding], 2, 6, 0.0).energy);
+    let bent = lopsided([Free, Free], 1, 12, 0.0);
+    same(&bent, lopsided([Free, Free], 1, 12, 4e-3).energy);
+}
