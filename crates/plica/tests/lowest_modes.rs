@@ -96,6 +96,8 @@ fn an_oval_tube_has_the_eigenvalues_of_its_assembled_tangent() {
         let (stiffness, mass) = (tube.tangent(&load, &u), tube.drag());
         let exact = lowest_eigenpairs(&stiffness, &mass, tube.given(), 4).unwrap();
         let found = lowest(&problem, &load, &u, 4);
+        // With harmonics coupled that so few rings do not resolve it took 140.
+        assert!(found.iterations < 60, "{}", found.iterations);
         for (value, exact) in found.values.iter().zip(exact.iter().map(|pair| pair.value)) {
             assert!((value / exact - 1.0).abs() < 1e-6, "{value}, not {exact}");
         }

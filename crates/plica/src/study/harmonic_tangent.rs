@@ -153,7 +153,7 @@ impl HarmonicTube {
 impl HarmonicTangent {
     /// Unknowns to a row of the matrix of low harmonics, of k rings; where it is needed.
     pub fn low_row(rings: usize) -> usize {
-        9 * (2 * HIGHEST.min((rings - 1) / 2) + 1)
+        9 * (2 * HIGHEST.min(LowHarmonics::resolved(rings)) + 1)
     }
 }
 
