@@ -37,7 +37,7 @@ fn lowest(problem: &TubeProblem, load: &Load, u: &[f64], wanted: usize) -> Lowes
 
 #[test]
 fn a_round_tube_has_the_eigenvalues_of_its_harmonics_each_twice() {
-    for ends in [[Support::Fixed; 2], [Support::Free, Support::Sliding]] {
+    for ends in [[Support::Fixed; 2], [Support::Fixed, Support::Free]] {
         let mut plan = coarse([30, 12, 4]);
         plan.tube.ends = ends;
         let (ring, whole) = (problem(&plan, 1), problem(&plan, 12));

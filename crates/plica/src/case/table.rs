@@ -86,7 +86,7 @@ pub const KEYS: &[Key] = &[
         "For `colon` or `ileum`: how far the end is turned about the axis. The end is fixed."),
     key("stages[].drive.<name>.pressure", Number, "stress", OrElse(BEFORE_0, "0.0"), ANY,
         "For `inner-wall`, which it pushes outwards, or `outer-wall`, which it pushes inwards: true pressure, per area as it is and \
-         normal to the wall as it is. No end is free."),
+         normal to the wall as it is. Needs both ends held (fixed or sliding)."),
     key("stages[].drive.<name>.dead_pressure", Number, "stress", OrElse(BEFORE_0, "0.0"), ANY,
         "For `inner-wall` or `outer-wall`: a dead load, per area at rest and normal to the wall at rest."),
 
@@ -119,7 +119,7 @@ pub const KEYS: &[Key] = &[
     key("imperfections[].shape.random.half_waves", Count, "", Or("4"), from(1.0).to(50.0),
         "1 to this half-waves along the zone of the muscle, or the tube. Not for an end."),
     key("imperfections[].shape.mode", Text, "", OrElse("", "\"runs/tube/modes/mode-01-harmonic-2.safetensors\""), ANY,
-        "Path of a mode that `plica stability` has left in a run, from the folder of the case file on; for the geometry only. A \
+        "Path of a mode that `plica stability` has left in an axisymmetric run, relative to the folder of the case file; for the geometry only. A \
          mode of harmonic n has a crest at angle zero."),
 
     key("solver.scheme", Word(&["static", "newmark", "dragged"]), "", Or("\"static\""), ANY,

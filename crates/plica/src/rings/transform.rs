@@ -3,7 +3,7 @@
 //! A vector of k rings is a matrix of k columns, one row for every unknown of a ring. Its
 //! coefficients on 1, cos φ, sin φ, cos 2φ, … are that matrix times a k × k one. For the tens of
 //! rings of a tube the dense product costs no more than a fast transform of so many short rows
-//! (1.3e7 multiply-adds at paper scale, 2 ms), keeps the rings of a harmonic side by side, and adds
+//! (2.6e7 multiply-adds at paper scale, 2 ms), keeps the rings of a harmonic side by side, and adds
 //! up in an order that never changes.
 
 use crate::matrix::multiply;

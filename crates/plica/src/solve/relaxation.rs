@@ -7,7 +7,8 @@ use super::{Balance, Equilibrium, Failure, Found, Method, Settings, Solver, Tang
 
 /// Drag after a step along which the energy did not fall, over the drag before.
 const STIFFER: f64 = 8.0;
-/// Drag after an accepted step, over the drag before, at most and at least.
+/// Drag after a step along which the energy fell as predicted, over the drag before, at most and at
+/// least.
 const SOFTER: (f64, f64) = (0.5, 0.05);
 /// The energy's fall over the one that the tangent predicts: from the first on the drag may shrink,
 /// below the second it grows.
@@ -19,10 +20,11 @@ const SHORTER: (f64, f64) = (0.5, 0.1);
 /// The largest displacement of the first step along a direction of negative curvature, if the solver
 /// had not come further, in D.
 const LEAP: f64 = 1e-3;
-/// The largest displacement that a step may have before it is shortened or made longer, in D: what a
-/// nearly singular tangent gives is as long as it likes.
+/// The largest displacement of a step, in D, a diameter's tenth: what a nearly singular tangent gives
+/// is as long as it likes, and beyond a larger one may lie another equilibrium than the next.
 const LONGEST: f64 = 0.1;
-/// Drag above which a step no longer moves anything.
+/// Drag, in E/D², above which a step no longer moves anything: forces are below E D², so no step is
+/// longer than 1e-12 D.
 const LARGEST_DRAG: f64 = 1e12;
 
 /// From `u`, which satisfies the supports: (K + α C) Δu = −R, backward Euler in pseudo-time. A step
@@ -36,9 +38,9 @@ const LARGEST_DRAG: f64 = 1e12;
 ///
 /// Where a solver that iterates meets a direction of negative curvature, the step is what it had by
 /// then and that direction, along both of which the energy falls, made longer twofold as long as it
-/// does; the drag grows by twice what the direction lacks. A damped step that itself leads along
-/// negative curvature is made longer likewise. So a tube leaves a saddle along its own motion, and
-/// never leaves its symmetry.
+/// does; the drag grows by twice what the direction lacks. If that failed, a damped step from there
+/// that itself leads along negative curvature is made longer likewise. So a tube leaves a saddle along
+/// its own motion, and its symmetry only by what rounding adds.
 pub fn relaxation<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
@@ -98,7 +100,9 @@ pub fn relaxation<P: Equilibrium>(
                     (u, forces) = (next, f);
                     imbalance = forces.imbalance(given);
                     accuracy = forcing.accuracy(imbalance);
-                    alpha *= stiffer(length);
+                    if length < 1.0 {
+                        alpha *= stiffer(length);
+                    }
                     (refused, rejected) = (None, 0);
                 } else {
                     (alpha, tangent) = (alpha * STIFFER, Some(K));
@@ -114,7 +118,6 @@ pub fn relaxation<P: Equilibrium>(
         let predicted = 0.5 * (slope - work);
         match shorten(problem, load, &u, &step, &forces, slope) {
             Ok((length, next, f)) => {
-                drag_work += length * length * work;
                 // As far as rounding lets it be seen, and the step was not too long.
                 let trust = if length < 1.0 {
                     0.0
@@ -124,13 +127,14 @@ pub fn relaxation<P: Equilibrium>(
                     (f.energy - forces.energy) / predicted
                 };
                 let curved_down = negative_curvature && length == 1.0 && -slope < work;
-                (u, forces) = if curved_down {
-                    let (next, longer) = lengthen(problem, load, &u, step, (next, f.clone()));
-                    drag_work += f.energy - longer.energy;
-                    (next, longer)
+                let (next, f) = if curved_down {
+                    lengthen(problem, load, &u, step, (next, f))
                 } else {
                     (next, f)
                 };
+                // The load stays: what the energy falls by is spent on drag.
+                drag_work += forces.energy - f.energy;
+                (u, forces) = (next, f);
                 let before = imbalance;
                 imbalance = forces.imbalance(given);
                 accuracy = forcing.accuracy(imbalance);
@@ -238,8 +242,8 @@ fn largest(step: &[f64]) -> f64 {
     step.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
-/// Doubles a step from `u` as long as that lowers the energy beyond rounding; where it leads, at
-/// first and then.
+/// Doubles a step from `u` as long as that lowers the energy beyond rounding and is not longer than
+/// [`LONGEST`]; where it leads, at first and then.
 fn lengthen<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
@@ -247,16 +251,17 @@ fn lengthen<P: Equilibrium>(
     mut step: Vec<f64>,
     (mut next, mut balance): (Vec<f64>, Balance),
 ) -> (Vec<f64>, Balance) {
-    loop {
+    while 2.0 * largest(&step) <= LONGEST {
         step.iter_mut().for_each(|s| *s *= 2.0);
         let further: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + s).collect();
         match problem.forces(load, &further) {
             Ok(b) if b.energy < balance.energy - balance.rounding => {
                 (next, balance) = (further, b);
             }
-            _ => return (next, balance),
+            _ => break,
         }
     }
+    (next, balance)
 }
 
 /// Whether the energy falls, or, where rounding hides that, the residual.

@@ -259,7 +259,9 @@ impl Linear {
             shift = f64::max(shift * SHIFT.1, SHIFT.0);
             found = factored(alpha + shift);
         }
-        let (factor, averaged) = found?;
+        let (mut factor, averaged) = found?;
+        // Whatever the drag left negative.
+        factor.make_positive();
         Ok(Block {
             factor,
             negative_pivots,

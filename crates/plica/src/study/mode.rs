@@ -29,6 +29,13 @@ impl SavedState {
         };
         let [axial, thickness, components, _] = self.layout.shape();
         let expected = [axial, thickness, components];
+        if mode.shape.len() == 4 {
+            let what =
+                "is of a three-dimensional run; a shape has one harmonic, as the modes that \
+                        plica stability finds of an axisymmetric run have"
+                    .into();
+            return Err(wrong("mode", what));
+        }
         if mode.shape != expected {
             let what = format!(
                 "has shape {:?}, and its mesh needs {expected:?}",

@@ -267,7 +267,6 @@ mod tests {
             energy(&coarse, &u),
             energy(&fine, &prolong(&coarse, &fine, &u)),
         );
-        println!("{a:e} {b:e} {:e}", b / a - 1.0);
         assert!((b / a - 1.0).abs() < 1e-12, "{:e}", b / a - 1.0);
     }
 

@@ -59,9 +59,10 @@ fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
 /// For an axisymmetric state without twist the harmonics 0 to `harmonics` are looked at, whatever
 /// the symmetry of the run: in an axisymmetric run 0 is the run's own tangent, all others are blocks
 /// of the whole tube's (1 tilts or shifts sideways, 2 turns oval, and so on). Of any other state only
-/// the run's own tangent is, whose eigenvalues cannot be told apart by harmonic and are listed as
-/// `any:count`: all of them in an axisymmetric run; else one, if the lowest eigenvalue is negative,
-/// and `unknown` if that could not be told in the iterations that it may take.
+/// the run's own tangent is, whose eigenvalues cannot be told apart by harmonic: of an axisymmetric
+/// run that is twisted `0:count` lists all of them; else `any:1` tells that the lowest is negative, and
+/// `unknown` that its sign did not show in the iterations that it may take, or was not looked for,
+/// `harmonics` being zero.
 pub fn unstable_harmonics(problem: &TubeProblem, state: &State<Load>, harmonics: usize) -> String {
     let tube = &problem.tube;
     let (own, k) = (state.negative_pivots, tube.sector.rings);
@@ -73,10 +74,10 @@ pub fn unstable_harmonics(problem: &TubeProblem, state: &State<Load>, harmonics:
     let of_ring: Vec<f64> = state.u.iter().step_by(k).copied().collect();
     let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
     if !round || (twisted && k > 1) {
-        let lost = if own == 0 && harmonics > 0 {
-            lowest_is_negative(problem, state)
-        } else {
-            Some(own > 0)
+        let lost = match own {
+            0 if harmonics == 0 => None,
+            0 => lowest_is_negative(problem, state),
+            _ => Some(true),
         };
         return match lost {
             Some(true) => format!("any:{}", own.max(1)),

@@ -162,8 +162,8 @@ fn named(harmonic: &str) -> String {
         "0" => "harmonic 0 (along or around the axis)".into(),
         "1" => "harmonic 1 (sideways)".into(),
         "2" => "harmonic 2 (oval)".into(),
-        "any" => "within the symmetry".into(),
-        "unknown" => "something, or to nothing: not told".into(),
+        "any" => "its own lowest mode".into(),
+        "unknown" => "something or to nothing, not known".into(),
         n => format!("harmonic {n} ({n} lobes)"),
     }
 }
@@ -173,8 +173,8 @@ fn pressures(row: &Row) -> [(&'static str, Option<f64>); 4] {
     [
         ("inside", row.inner_pressure),
         ("outside", row.outer_pressure),
-        ("dead inside", row.inner_dead_pressure),
-        ("dead outside", row.outer_dead_pressure),
+        ("dead, inside", row.inner_dead_pressure),
+        ("dead, outside", row.outer_dead_pressure),
     ]
 }
 
