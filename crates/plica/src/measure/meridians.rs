@@ -66,31 +66,32 @@ impl<'a> Meridians<'a> {
             Face::Inner => self.tube.tube.inner_radius(),
         };
         let at = |z: f64, angle: f64| Point { z, radius, angle };
-        // exp(iω) where rings may be turned against where they were, and the radius that is drawn there.
+        // exp(iω) where rings may be turned against where they were, and the radius there, now and
+        // at rest.
         let turned = |&z: &f64| {
             let (tube, u) = self.mean.as_ref()?;
             let sample = tube.sample(self.load, u, at(z, 0.0));
             let ([_, x, y], [_, x0, y0]) = (sample.position, sample.reference);
             let (size, drawn) = (x.hypot(y), x0.hypot(y0));
             Some(if size > 0.0 {
-                (x / size, y / size, drawn)
+                [x / size, y / size, size, drawn]
             } else {
-                (1.0, 0.0, drawn)
+                [1.0, 0.0, size, drawn]
             })
         };
-        let turned: Vec<Option<(f64, f64, f64)>> = reference_z.iter().map(turned).collect();
+        let turned: Vec<Option<[f64; 4]>> = reference_z.iter().map(turned).collect();
         let wall = |&angle: &f64| {
             let (sin, cos) = angle.sin_cos();
-            let point = |(&z, turned): (&f64, &Option<(f64, f64, f64)>)| {
+            let point = |(&z, turned): (&f64, &Option<[f64; 4]>)| {
                 let sample = self.tube.sample(self.load, self.u, at(z, angle));
                 let [z, x, y] = sample.position;
                 match turned {
                     None => (z, x.hypot(y)),
-                    Some((c, s, drawn)) => {
+                    &Some([c, s, size, drawn]) => {
                         // Splines draw a circle with waves of their own, which are no departure.
-                        let round = drawn / sample.reference[1].hypot(sample.reference[2]);
+                        let at_rest = sample.reference[1].hypot(sample.reference[2]);
                         let radius = x * (c * cos - s * sin) + y * (s * cos + c * sin);
-                        (z, round * radius)
+                        (z, radius - size * (at_rest / drawn - 1.0))
                     }
                 }
             };
