@@ -7,11 +7,10 @@ use plica::study::SavedState;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// An empty directory of one test.
+/// An empty directory of one test, with a place for cases.
 fn scratch(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(path.join("cases")).unwrap();
+    let path = common::scratch(name);
+    fs::create_dir(path.join("cases")).unwrap();
     path
 }
 

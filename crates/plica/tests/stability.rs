@@ -8,36 +8,46 @@ use plica::study::TubeProblem;
 use plica::tube::{Mesh, Support, Tube};
 use std::f64::consts::PI;
 
-/// A long tube, pressed together between its fixed ends, bends at Euler's load: at the strain
-/// ε = 4π² I/(A L²), less what shear adds, ε/(1 + ε E/(κG)) with κ = ½ for a thin ring (Timoshenko and
-/// Gere 1961).
-#[test]
-fn a_pressed_tube_bends_sideways_at_euler_s_load() {
-    let (length, thickness, poisson_ratio) = (30.0, 0.06, 0.3);
+/// A passive tube, axisymmetric, on a mesh of so many control points.
+fn passive(
+    [length, thickness, poisson_ratio]: [f64; 3],
+    ends: Support,
+    [axial, around, through]: [usize; 3],
+) -> TubeProblem {
     let tube = Tube {
         length,
         thickness,
         material: Material::NeoHookean(NeoHookean::new(1.0, poisson_ratio)),
         muscles: vec![],
         imperfections: vec![],
-        ends: [Support::Fixed; 2],
+        ends: [ends; 2],
     };
     let mesh = Mesh {
-        axial: 63,
-        around: 12,
-        thickness: 4,
+        axial,
+        around,
+        thickness: through,
         degree: 3,
         refinements: vec![],
     };
+    TubeProblem::new(SplineTube::new(&tube, &mesh, 1))
+}
+
+/// A long tube, pressed together between its fixed ends, bends at Euler's load: at the strain
+/// ε = 4π² I/(A L²), less what shear adds, ε/(1 + ε E/(κG)) with κ = ½ for a thin ring (Timoshenko and
+/// Gere 1961).
+#[test]
+fn a_pressed_tube_bends_sideways_at_euler_s_load() {
+    let (length, thickness, poisson_ratio) = (30.0, 0.06, 0.3);
     let inner = 0.5 - thickness;
     let gyration = (0.25 + inner * inner) / 4.0; // I/A
     let euler = 4.0 * PI * PI * gyration / (length * length);
     let shear = 2.0 * (1.0 + poisson_ratio) / 0.5; // E/(κG)
     let expected = euler / (1.0 + euler * shear);
 
-    let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 1));
+    let size = [length, thickness, poisson_ratio];
+    let problem = passive(size, Support::Fixed, [63, 12, 4]);
     let harmonics = Harmonics::new(&problem.tube, 3);
-    let (rest, u) = (tube.rest(), vec![0.0; problem.tube.unknowns()]);
+    let (rest, u) = (problem.tube.tube.rest(), vec![0.0; problem.tube.unknowns()]);
     let mut path = Path::begin(&problem, rest.clone(), u, Settings::default()).unwrap();
     let mut pressed = rest;
     pressed.ends[1].displacement = -1.2 * expected * length;
@@ -70,26 +80,13 @@ fn a_pressed_tube_bends_sideways_at_euler_s_load() {
 #[test]
 fn rigid_motions_that_nothing_holds_are_no_modes() {
     let (length, thickness, poisson_ratio) = (0.1, 0.01, 0.3);
-    let tube = Tube {
-        length,
-        thickness,
-        material: Material::NeoHookean(NeoHookean::new(1.0, poisson_ratio)),
-        muscles: vec![],
-        imperfections: vec![],
-        ends: [Support::Sliding; 2],
-    };
-    let mesh = Mesh {
-        axial: 4,
-        around: 60,
-        thickness: 5,
-        degree: 3,
-        refinements: vec![],
-    };
-    let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 1));
+    let size = [length, thickness, poisson_ratio];
+    let problem = passive(size, Support::Sliding, [4, 60, 5]);
+    let rest = problem.tube.tube.rest();
     let harmonics = Harmonics::new(&problem.tube, 1);
     let u = vec![0.0; problem.tube.unknowns()];
-    let mut path = Path::begin(&problem, tube.rest(), u, Settings::default()).unwrap();
-    let mut pressed = tube.rest();
+    let mut path = Path::begin(&problem, rest.clone(), u, Settings::default()).unwrap();
+    let mut pressed = rest;
     pressed.pressures[1].follower = 1e-6;
     path.set_out(pressed);
     for t in [0.0, 1.0] {

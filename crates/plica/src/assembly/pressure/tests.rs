@@ -121,6 +121,15 @@ fn a_tube_that_swells_evenly_sweeps_a_shell() {
     );
 }
 
+/// Degrees, elements and rings: whole tubes, folds, and one ring.
+const TUBES: [(usize, [usize; 3], usize); 5] = [
+    (3, [9, 2, 6], 6),
+    (3, [9, 2, 6], 3),
+    (3, [9, 2, 6], 1),
+    (2, [4, 1, 7], 7),
+    (1, [3, 2, 8], 4),
+];
+
 /// Both kinds on both walls.
 fn all(tube: &SplineTube) -> Load {
     let pressure = |follower, dead| Pressure { follower, dead };
@@ -129,13 +138,7 @@ fn all(tube: &SplineTube) -> Load {
 
 #[test]
 fn the_forces_of_pressures_are_the_slopes_of_their_potential() {
-    for (degree, elements, rings) in [
-        (3, [9, 2, 6], 6),
-        (3, [9, 2, 6], 3),
-        (3, [9, 2, 6], 1),
-        (2, [4, 1, 7], 7),
-        (1, [3, 2, 8], 4),
-    ] {
+    for (degree, elements, rings) in TUBES {
         let TubeAndLoad { tube, .. } = tube_and_load(degree, elements, rings);
         let (load, u, v) = (all(&tube), wavy(&tube), direction(&tube));
         let exact = dot(&alone(&tube, &load, &u).residual, &v) * tube.sector.repeats();
@@ -152,13 +155,7 @@ fn the_forces_of_pressures_are_the_slopes_of_their_potential() {
 
 #[test]
 fn the_tangent_of_pressures_is_the_slope_of_their_forces() {
-    for (degree, elements, rings) in [
-        (3, [9, 2, 6], 6),
-        (3, [9, 2, 6], 3),
-        (3, [9, 2, 6], 1),
-        (2, [4, 1, 7], 7),
-        (1, [3, 2, 8], 4),
-    ] {
+    for (degree, elements, rings) in TUBES {
         let TubeAndLoad { tube, .. } = tube_and_load(degree, elements, rings);
         let (load, u, v) = (all(&tube), wavy(&tube), direction(&tube));
         // The forces are quadratic.
