@@ -60,8 +60,10 @@ fn main() {
         let mut b = vec![0.0; u.len()];
         let product = median(|| at.multiply_add(1.0, &u, &mut b));
         let mut iterations = 0;
-        let solve =
-            median(|| iterations = solver.solve(&mut b.clone(), 1e-3, &mut ()).unwrap_or(0));
+        let solve = median(|| {
+            let solved = solver.solve(&mut b.clone(), 1e-3, &mut ());
+            iterations = solved.map_or(0, |solved| solved.iterations);
+        });
         let step = residual + tangent + factor + solve;
         println!(
             "{:>13} {:>9} {residual:>9.4} {tangent:>9.4} {factor:>9.4} {solve:>9.4} {iterations:>5} \

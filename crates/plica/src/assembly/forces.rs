@@ -5,7 +5,7 @@ use super::slab::{SlabInput, contract_along, contract_through, gradients};
 use super::tables::Layer;
 use crate::material::Law;
 use crate::tensor::{Lanes, Real};
-use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f64x8};
 
 /// What a slab adds to the energy and the residual.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +37,12 @@ impl Worst {
     /// Keeps the smallest det Fe, and its point; one that is not a number counts as smallest.
     /// `element` names the element of a lane.
     #[inline(always)]
-    pub fn note(&mut self, J: Lanes, element: impl Fn(usize) -> [usize; 3], qr: usize) {
+    pub fn note<S: Simd>(&mut self, J: f64x8<S>, element: impl Fn(usize) -> [usize; 3], qr: usize) {
+        // Hardly ever is there a smaller one; what is not a number is not greater either.
+        if J.simd_ge(J.like(self.jacobian)).all_true() {
+            return;
+        }
+        let J = Lanes::store(J);
         let smallest = J.min();
         if smallest >= self.jacobian || self.jacobian.is_nan() {
             return;
@@ -106,8 +111,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'
                     for (qs, point) in around.iter().enumerate() {
                         let columns = input.columns(simd, along_point, [t, element], [qr, qs]);
                         let Fe = columns.elastic(point, radius, gradients(simd, point, &through));
-                        let J = Lanes::store(Fe.determinant());
-                        worst.note(J, |lane| [lane, t, element], qr);
+                        worst.note(Fe.determinant(), |lane| [lane, t, element], qr);
 
                         let volume = weight.times(layer.weight[qr] * point.volume(radius)); // dV₀
                         let volume = columns.volume(volume);

@@ -2,7 +2,7 @@
 //! turn out not to be (Hestenes and Stiefel 1952; the truncation is Steihaug's, 1983).
 
 use super::operator::{Operator, add, dot, hold};
-use super::{NegativeCurvature, Watch};
+use super::{NegativeCurvature, Solved, Watch};
 
 /// What a step adds to the fall of the energy, relative to all before, where rounding takes over.
 const IDLE: f64 = f64::EPSILON * f64::EPSILON;
@@ -10,7 +10,7 @@ const IDLE: f64 = f64::EPSILON * f64::EPSILON;
 const IDLE_STEPS: usize = 10;
 
 /// Solves A x = b in place for the free unknowns; the other entries of `b` stay as they are.
-/// Returns the iterations that it took, each of which applies A and M⁻¹ once.
+/// Each iteration applies A and M⁻¹ once.
 ///
 /// It stops when the Euclidean norm of the residual is at most `accuracy` times that of b. That is
 /// the norm in which a state is accepted: to first order, the residual of A Δu = −R is what is left
@@ -31,7 +31,7 @@ pub fn conjugate_gradients<O: Operator>(
     accuracy: f64,
     iterations: usize,
     watch: &mut dyn Watch,
-) -> Result<usize, NegativeCurvature> {
+) -> Result<Solved, NegativeCurvature> {
     let given = operator.given();
     let mut r = b.to_vec();
     hold(operator, &mut r);
@@ -53,19 +53,28 @@ fn iterate<O: Operator>(
     accuracy: f64,
     iterations: usize,
     watch: &mut dyn Watch,
-) -> Result<usize, NegativeCurvature> {
+) -> Result<Solved, NegativeCurvature> {
+    let size = dot(r, r).sqrt();
+    let target = accuracy * size;
+    let ended = |iterations, reached| {
+        Ok(Solved {
+            iterations,
+            reached,
+        })
+    };
+    if size == 0.0 {
+        return ended(0, true);
+    }
     let [mut z, mut Ap] = [vec![0.0; r.len()], vec![0.0; r.len()]];
-    let target = accuracy * dot(r, r).sqrt();
     operator.precondition(r, &mut z);
     hold(operator, &mut z);
     let mut p = z.clone();
     let mut rho = dot(r, &z);
     let (mut fall, mut idle_steps) = (0.0, 0);
     for done in 0..iterations {
-        // Not a number is neither above the target nor positive.
-        let goes_on = dot(r, r).sqrt() > target && rho > 0.0 && idle_steps < IDLE_STEPS;
-        if !goes_on {
-            return Ok(done);
+        // Not a number is not positive.
+        if rho.is_nan() || rho <= 0.0 || idle_steps >= IDLE_STEPS {
+            return ended(done, false);
         }
         operator.apply(&p, &mut Ap);
         hold(operator, &mut Ap);
@@ -80,10 +89,14 @@ fn iterate<O: Operator>(
         }
         let length = rho / pAp;
         if !length.is_finite() {
-            return Ok(done + 1);
+            return ended(done + 1, false);
         }
         add(length, &p, x);
         add(-length, &Ap, r);
+        let reached = dot(r, r).sqrt() <= target;
+        if reached || !watch.iterating() {
+            return ended(done + 1, reached);
+        }
         // Twice what ½ x · A x − b · x falls by.
         let step_fall = length * rho;
         fall += step_fall;
@@ -99,11 +112,8 @@ fn iterate<O: Operator>(
         for (p, z) in p.iter_mut().zip(&z) {
             *p = z + beta * *p;
         }
-        if !watch.iterating() {
-            return Ok(done + 1);
-        }
     }
-    Ok(iterations)
+    ended(iterations, false)
 }
 
 #[cfg(test)]
@@ -136,8 +146,13 @@ mod tests {
             let left = residual(&operator, &x, &b);
             assert!(left <= 1.01 * accuracy, "{accuracy}: {left}");
             // No more than asked for, and quickly: M is within a factor 3 of A.
-            assert!(taken > before && taken < 60, "{accuracy}: {taken}");
-            before = taken;
+            let Solved {
+                iterations,
+                reached,
+            } = taken;
+            assert!(reached && iterations > before, "{accuracy}: {taken:?}");
+            assert!(iterations < 60, "{accuracy}: {taken:?}");
+            before = iterations;
         }
     }
 
@@ -147,7 +162,11 @@ mod tests {
         let operator = Reflected::with_preconditioner(&spectrum, vec![1.0; 50]);
         let mut x = waves(50);
         let taken = conjugate_gradients(&operator, &mut x, 1e-10, 1000, &mut ()).unwrap();
-        assert_eq!(taken, 3);
+        let expected = Solved {
+            iterations: 3,
+            reached: true,
+        };
+        assert_eq!(taken, expected);
     }
 
     #[test]
@@ -159,7 +178,11 @@ mod tests {
         for iterations in 1..6 {
             let mut x = b.clone();
             let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations, &mut ()).unwrap();
-            assert_eq!(taken, iterations);
+            let cut_off = Solved {
+                iterations,
+                reached: false,
+            };
+            assert_eq!(taken, cut_off);
             assert!(dot(&b, &x) > 0.0);
             let mut Ax = vec![0.0; 80];
             operator.apply(&x, &mut Ax);
@@ -190,7 +213,7 @@ mod tests {
             let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations, watch);
             (taken.unwrap(), x)
         };
-        assert!(solved(1000, &mut ()).0 > 30);
+        assert!(solved(1000, &mut ()).0.iterations > 30);
         assert_eq!(solved(1000, &mut Stops(3)), solved(3, &mut ()));
     }
 
@@ -277,19 +300,25 @@ mod tests {
         let mut x = vec![0.0; 5];
         assert_eq!(
             conjugate_gradients(&operator, &mut x, 1e-3, 1000, &mut ()),
-            Ok(0)
+            Ok(Solved {
+                iterations: 0,
+                reached: true
+            })
         );
         // More asked for than rounding allows.
         let mut x = waves(5);
         let taken = conjugate_gradients(&operator, &mut x, 0.0, 1000, &mut ()).unwrap();
-        assert!(taken < 100, "{taken}");
+        assert!(taken.iterations < 100 && !taken.reached, "{taken:?}");
         let left = residual(&operator, &x, &waves(5));
-        assert!(left < 1e-9, "{taken}: {left:e}");
+        assert!(left < 1e-9, "{taken:?}: {left:e}");
         // Not a number.
         let mut x = vec![1.0, f64::NAN, 0.0, 0.0, 0.0];
         assert_eq!(
             conjugate_gradients(&operator, &mut x, 1e-3, 1000, &mut ()),
-            Ok(0)
+            Ok(Solved {
+                iterations: 0,
+                reached: false
+            })
         );
         assert_eq!(x, [0.0; 5]);
     }

@@ -51,4 +51,4 @@ pub use pseudo_time::pseudo_time;
 pub use relaxation::relaxation;
 pub use settings::{Integrator, PseudoTime, Scheme, Settings};
 pub use state::{Balance, Equilibrium, Failure, Found, Method, State, Watch};
-pub use tangent::{Direct, NegativeCurvature, Solver, Tangent};
+pub use tangent::{Direct, NegativeCurvature, Solved, Solver, Tangent};

@@ -10,13 +10,18 @@ pub const EQUILIBRIUM: f64 = 1e-6;
 /// Armijo's condition: the fraction of the predicted fall of the energy that a step must reach.
 const SUFFICIENT: f64 = 1e-4;
 
+/// Linear systems in a row that may not be solved as exactly as was asked for. Truncated steps lead
+/// down, but creep; a drag makes the systems easier.
+const UNSOLVED: usize = 2;
+
 /// Halvings of a step before it counts as leading nowhere.
 const HALVINGS: usize = 7;
 
 /// From `u`, which satisfies the supports: K Δu = −R (Okino et al. 2025, Eq. (14)) until the
 /// residual is within the tolerance. The tangent must be positive definite all the way, as far as
 /// the solver tells, and every step must lower the energy, so what is found is a minimum. A solver
-/// that iterates is asked for no more accuracy than each step is worth.
+/// that iterates is asked for no more accuracy than each step is worth; where it does not reach
+/// that twice in a row, Newton gives up.
 pub fn newton<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
@@ -28,7 +33,7 @@ pub fn newton<P: Equilibrium>(
     let mut forces = problem.forces(load, &u).map_err(Failure::Broken)?;
     let mut imbalance = forces.imbalance(given);
     let mut forcing = Forcing::new(settings.tolerance);
-    let mut iterations = 0;
+    let (mut iterations, mut unsolved) = (0, 0);
     while imbalance > settings.tolerance || imbalance.is_nan() {
         if iterations == settings.newton_iterations {
             return Err(Failure::NotConverged {
@@ -45,7 +50,17 @@ pub fn newton<P: Equilibrium>(
         }
         let mut step = free_part(&forces.residual, given, -1.0);
         match solver.solve(&mut step, forcing.accuracy(imbalance), watch) {
-            Ok(inner) => watch.iterated(inner),
+            Ok(solved) => {
+                watch.iterated(solved.iterations);
+                let enough = solved.reached || imbalance <= EQUILIBRIUM;
+                unsolved = if enough { 0 } else { unsolved + 1 };
+                if unsolved == UNSOLVED {
+                    return Err(Failure::Unsolved {
+                        iterations,
+                        imbalance,
+                    });
+                }
+            }
             Err(down) => {
                 watch.iterated(down.iterations);
                 return Err(Failure::Indefinite { negative_pivots: 1 });

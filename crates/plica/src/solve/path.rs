@@ -22,7 +22,7 @@ pub struct Path<'a, P: Equilibrium> {
     settings: Settings,
     state: State<P::Load>,
     /// Solves with the tangent stiffness of the state, unless that is singular. It may be as large as
-    /// everything else, so it is let go once du/dt is known, and made again if another is asked for.
+    /// everything else, so it is let go before another state is looked for, and made again if asked for.
     solver: Option<SolverOf<P>>,
     /// du/dt at the state, or that there is none, once it has been asked for.
     tangent: Option<Option<Vec<f64>>>,
@@ -123,6 +123,16 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         &self.state
     }
 
+    /// What solves with the tangent stiffness of the last accepted state, without drag; none where that
+    /// is singular.
+    pub fn solver(&mut self) -> Option<&SolverOf<P>> {
+        if self.solver.is_none() {
+            let State { load, u, .. } = &self.state;
+            self.solver = self.problem.tangent(load, u).into_shifted(0.0).ok();
+        }
+        self.solver.as_ref()
+    }
+
     /// Sets out on a leg from where the path is to a load.
     pub fn set_out(&mut self, to: P::Load) {
         (self.from, self.to, self.t) = (self.state.load.clone(), to, 0.0);
@@ -184,8 +194,11 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                     None
                 }
             };
-            // Shorter steps help a tangent that leads too far, not one that leads away.
+            // Shorter steps help a tangent that leads too far, not one that leads away or is hard
+            // to solve with.
+            let unsolved = |(_, failed): &(_, _)| matches!(failed, Failure::Unsolved { .. });
             let halve_first = self.state.negative_pivots == 0
+                && !tried.iter().any(unsolved)
                 && halvings < NEWTON_HALVINGS.min(self.settings.halvings);
             let stopped = |tried: &[(_, _)]| {
                 tried
@@ -232,6 +245,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         }
         let load = self.load_at(t);
         let start = self.predict(t, &load, tangent.as_deref());
+        self.solver = None;
         let found = newton(self.problem, &load, start, &self.settings, watch)
             .inspect_err(|failed| step.iterations += spent(failed))?;
         let behind = tangent.map(|tangent| Behind {
@@ -260,6 +274,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             let tangent = self.tangent(watch);
             start = self.predict(t, &load, tangent.as_deref());
         }
+        self.solver = None;
         let found = relaxation(self.problem, &load, start, &self.settings, watch)
             .inspect_err(|failed| step.iterations += spent(failed))?;
         self.accept(t, load, found, step);
@@ -292,6 +307,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             inner_iterations: 0,
             drag_work: 0.0,
         };
+        self.solver = None;
         let (load, settings) = (self.load_at(t), &self.settings);
         let fail = |method, failed, step| PathError {
             tried: vec![(method, failed)],
@@ -331,20 +347,15 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     /// known to be unstable.
     fn tangent(&mut self, watch: &mut dyn Watch) -> Option<Vec<f64>> {
         if self.tangent.is_none() {
-            if self.solver.is_none() {
-                let State { load, u, .. } = &self.state;
-                self.solver = self.problem.tangent(load, u).into_shifted(0.0).ok();
-            }
             self.tangent = Some(self.solve_for_tangent(watch));
-            self.solver = None;
         }
         self.tangent.clone().flatten()
     }
 
     /// K du/dt = −∂R/∂t, the supports moving as they do.
     fn solve_for_tangent(&mut self, watch: &mut dyn Watch) -> Option<Vec<f64>> {
+        self.solver()?;
         let (problem, given, u) = (self.problem, self.problem.given(), &self.state.u);
-        let solver = self.solver.as_ref()?;
         // Central difference in t; the residual is smooth in the load.
         let at = |t: f64| {
             let load = self.load_at(t);
@@ -374,9 +385,10 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                 tangent[i] = motion[i];
             }
         }
+        let solver = self.solver.as_ref()?;
         match solver.solve(&mut tangent, PREDICTION, watch) {
-            Ok(inner) => {
-                watch.iterated(inner);
+            Ok(solved) => {
+                watch.iterated(solved.iterations);
                 Some(tangent)
             }
             Err(down) => {
@@ -429,9 +441,9 @@ impl<'a, P: Equilibrium> Path<'a, P> {
 /// Linear solves that a failure cost, as far as it tells.
 fn spent<B: std::error::Error>(failure: &Failure<B>) -> usize {
     match failure {
-        Failure::NoDescent { iterations, .. } | Failure::NotConverged { iterations, .. } => {
-            *iterations
-        }
+        Failure::NoDescent { iterations, .. }
+        | Failure::NotConverged { iterations, .. }
+        | Failure::Unsolved { iterations, .. } => *iterations,
         Failure::Indefinite { .. } => 1,
         _ => 0,
     }

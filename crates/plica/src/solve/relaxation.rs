@@ -32,7 +32,8 @@ const LARGEST_DRAG: f64 = 1e12;
 /// after it was shortened, which costs an evaluation of the energy and not another solve. Where the
 /// energy falls nearly as the tangent says, the drag then shrinks with the residual (switched
 /// evolution relaxation); where it falls much less, or a step was shortened, the drag grows; where it
-/// does not fall at all, it grows eightfold, and the step is solved for again. This follows the tube
+/// does not fall at all, it grows eightfold, and the step is solved for again. It grows eightfold, too,
+/// where a solver that iterates did not come as far as it was to. This follows the tube
 /// down to the next equilibrium, whatever lies between. It is stable unless a symmetry of the start
 /// kept the tube on a saddle; the caller looks at the tangent there.
 ///
@@ -87,8 +88,11 @@ pub fn relaxation<P: Equilibrium>(
             continue;
         };
         let mut step = free_part(&forces.residual, given, -1.0);
-        match solver.solve(&mut step, accuracy, watch) {
-            Ok(inner) => watch.iterated(inner),
+        let reached = match solver.solve(&mut step, accuracy, watch) {
+            Ok(solved) => {
+                watch.iterated(solved.iterations);
+                solved.reached || imbalance <= EQUILIBRIUM
+            }
             Err(down) => {
                 watch.iterated(down.iterations);
                 negative_curvature = true;
@@ -109,7 +113,7 @@ pub fn relaxation<P: Equilibrium>(
                 }
                 continue;
             }
-        }
+        };
         drop(solver);
         let mut drag = vec![0.0; u.len()];
         problem.drag(alpha, &step, &mut drag);
@@ -138,7 +142,9 @@ pub fn relaxation<P: Equilibrium>(
                 let before = imbalance;
                 imbalance = forces.imbalance(given);
                 accuracy = forcing.accuracy(imbalance);
-                alpha *= if trust >= TRUSTED.0 {
+                alpha *= if !reached {
+                    STIFFER
+                } else if trust >= TRUSTED.0 {
                     (imbalance / before).clamp(SOFTER.1, SOFTER.0)
                 } else if trust < TRUSTED.1 {
                     stiffer(length)

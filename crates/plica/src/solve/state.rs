@@ -129,6 +129,16 @@ pub enum Failure<B: std::error::Error> {
         /// Residual reached.
         imbalance: f64,
     },
+    /// The linear systems were not solved as exactly as was asked for.
+    #[error(
+        "linear systems are hard to solve here (residual {imbalance:.1e} after {iterations} solves)"
+    )]
+    Unsolved {
+        /// Linear solves so far.
+        iterations: usize,
+        /// Residual reached.
+        imbalance: f64,
+    },
     /// The iterations ran out.
     #[error("not in equilibrium after {iterations} solves (residual {imbalance:.1e})")]
     NotConverged {

@@ -46,8 +46,6 @@ pub trait Solver {
     /// part and stay as they are. A direct solver is exact, whatever the accuracy; one that iterates
     /// is cut off where the watch says so.
     ///
-    /// Returns the iterations it took; 0 if it is direct.
-    ///
     /// # Errors
     ///
     /// If it meets a direction of negative curvature. What is in `b` then is the iterate so far.
@@ -56,7 +54,17 @@ pub trait Solver {
         b: &mut [f64],
         accuracy: f64,
         watch: &mut dyn Watch,
-    ) -> Result<usize, NegativeCurvature>;
+    ) -> Result<Solved, NegativeCurvature>;
+}
+
+/// What a linear solve took, and whether it came as far as it was to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Solved {
+    /// Iterations; 0 of a direct solver.
+    pub iterations: usize,
+    /// Whether the residual is as small as was asked for. If not it was cut off, or rounding allows no
+    /// better.
+    pub reached: bool,
 }
 
 /// A direction d along which the energy is curved downwards: d · (K + α C) d ≤ 0.
@@ -119,8 +127,11 @@ impl Solver for Factor {
         Factor::negative_pivots(self)
     }
 
-    fn solve(&self, b: &mut [f64], _: f64, _: &mut dyn Watch) -> Result<usize, NegativeCurvature> {
+    fn solve(&self, b: &mut [f64], _: f64, _: &mut dyn Watch) -> Result<Solved, NegativeCurvature> {
         Factor::solve(self, b);
-        Ok(0)
+        Ok(Solved {
+            iterations: 0,
+            reached: true,
+        })
     }
 }

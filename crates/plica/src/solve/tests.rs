@@ -2,7 +2,8 @@
 
 use super::{
     Balance, Direct, Equilibrium, Failure, Method, NegativeCurvature, Operator, Path, PseudoTime,
-    Scheme, Settings, Solver, State, Tangent, Watch, conjugate_gradients, newton, relaxation,
+    Scheme, Settings, Solved, Solver, State, Tangent, Watch, conjugate_gradients, newton,
+    relaxation,
 };
 use crate::matrix::{BlockBanded, Singular};
 use std::sync::Arc;
@@ -337,7 +338,7 @@ impl Solver for IteratedTangent {
         b: &mut [f64],
         accuracy: f64,
         watch: &mut dyn Watch,
-    ) -> Result<usize, NegativeCurvature> {
+    ) -> Result<Solved, NegativeCurvature> {
         conjugate_gradients(self, b, accuracy, 100, watch)
     }
 }

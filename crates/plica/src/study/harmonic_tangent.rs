@@ -4,7 +4,9 @@ use super::spare::Spare;
 use crate::assembly::{Linearised, LowHarmonics, RingDrag, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::rings::{Coupling, HarmonicSolver};
-use crate::solve::{NegativeCurvature, Operator, Solver, Tangent, Watch, conjugate_gradients};
+use crate::solve::{
+    NegativeCurvature, Operator, Solved, Solver, Tangent, Watch, conjugate_gradients,
+};
 use crate::tube::Load;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -48,7 +50,9 @@ struct Linear {
     at: Linearised,
     /// Whether the state is the same at every ring.
     symmetric: bool,
-    /// The tangent on low harmonics, where the state couples them.
+    /// Whether the state couples low harmonics.
+    couples: bool,
+    /// The tangent on them, unless it was used up.
     coupled: Option<BlockBanded>,
 }
 
@@ -59,7 +63,8 @@ pub struct HarmonicSystem {
     alpha: f64,
     /// None only while it is dropped.
     preconditioner: Option<HarmonicSolver>,
-    negative_pivots: usize,
+    /// Of the averaged block of each harmonic of the sector.
+    negative_pivots: Vec<usize>,
 }
 
 impl Drop for Linear {
@@ -121,6 +126,7 @@ impl HarmonicTube {
                 tube: self.clone(),
                 at,
                 symmetric: differs <= SYMMETRIC,
+                couples: coupled.is_some(),
                 coupled,
             }),
         }
@@ -166,31 +172,43 @@ impl Tangent for HarmonicTangent {
     }
 
     fn shifted(&self, alpha: f64) -> Result<HarmonicSystem, Singular> {
-        let Linear {
-            tube,
-            symmetric,
-            coupled,
-            ..
-        } = &*self.state;
+        let Linear { tube, coupled, .. } = &*self.state;
+        let copy = coupled.as_ref().map(|coupled| {
+            let mut matrix = tube.low_matrix();
+            matrix.copy_from(coupled);
+            matrix
+        });
+        self.system(alpha, copy)
+    }
+
+    fn into_shifted(mut self, alpha: f64) -> Result<HarmonicSystem, Singular> {
+        match Arc::get_mut(&mut self.state) {
+            Some(alone) => {
+                let coupled = alone.coupled.take();
+                self.system(alpha, coupled)
+            }
+            None => self.shifted(alpha),
+        }
+    }
+}
+
+impl HarmonicTangent {
+    /// The system, and the tangent on low harmonics to make its own of.
+    fn system(&self, alpha: f64, low: Option<BlockBanded>) -> Result<HarmonicSystem, Singular> {
+        let tube = &self.state.tube;
         let rings = tube.tube.sector.rings;
         let blocks: Vec<Block> = (0..=rings / 2)
             .into_par_iter()
             .map(|n| self.state.block(n, alpha))
             .collect::<Result<_, _>>()?;
-        let negative_pivots = if *symmetric {
-            blocks[0].negative_pivots
-        } else {
-            0
-        };
+        let negative_pivots = blocks.iter().map(|block| block.negative_pivots).collect();
         let (factors, averaged): (Vec<_>, Vec<_>) = blocks
             .into_iter()
             .map(|block| (block.factor, block.averaged))
             .unzip();
         let mut preconditioner = HarmonicSolver::new(rings, factors);
-        if let Some(coupled) = coupled {
+        if let Some(mut matrix) = low {
             let low = tube.low();
-            let mut matrix = tube.low_matrix();
-            matrix.copy_from(coupled);
             if alpha != 0.0 {
                 low.add_drag(&tube.tube, &tube.drag, alpha, &mut matrix);
             }
@@ -236,7 +254,7 @@ impl Linear {
             if alpha != 0.0 {
                 self.tube.drag.add_harmonic(alpha, waves, &mut block);
             }
-            let low = self.coupled.as_ref().map(|_| self.tube.low());
+            let low = self.couples.then(|| self.tube.low());
             let averaged = low
                 .filter(|low| n <= low.highest)
                 .map(|low| self.averaged(low, n, &block))
@@ -321,9 +339,25 @@ impl Operator for HarmonicSystem {
     }
 }
 
+impl HarmonicSystem {
+    /// Negative eigenvalues of harmonics 0, 1, … of the sector, of a state that is the same at every
+    /// ring; none of any other, whose tangent does not part into harmonics.
+    pub fn negative_in_harmonics(&self) -> Option<&[usize]> {
+        self.state.symmetric.then_some(&self.negative_pivots)
+    }
+
+    /// Whether the average of the tangent around the tube is indefinite. Then the tangent is, too: what
+    /// the average makes of a displacement is the mean of what the tangent makes of it turned to every
+    /// ring, and the supports are those of every ring.
+    pub fn average_is_indefinite(&self) -> bool {
+        self.negative_pivots.iter().any(|negative| *negative > 0)
+    }
+}
+
 impl Solver for HarmonicSystem {
     fn negative_pivots(&self) -> usize {
-        self.negative_pivots
+        self.negative_in_harmonics()
+            .map_or(0, |harmonics| harmonics[0])
     }
 
     fn solve(
@@ -331,7 +365,7 @@ impl Solver for HarmonicSystem {
         b: &mut [f64],
         accuracy: f64,
         watch: &mut dyn Watch,
-    ) -> Result<usize, NegativeCurvature> {
+    ) -> Result<Solved, NegativeCurvature> {
         conjugate_gradients(self, b, accuracy, ITERATIONS, watch)
     }
 }

@@ -25,7 +25,7 @@ impl TubeProblem {
         let Ok(TubeSolver::Harmonic(system)) = system else {
             return None;
         };
-        let mut noise = Noise(0);
+        let mut noise = Noise::default();
         let mut seed = || {
             let force: Vec<f64> = u.iter().map(|_| noise.next()).collect();
             let mut smooth = vec![0.0; u.len()];
@@ -38,10 +38,12 @@ impl TubeProblem {
 }
 
 /// Numbers from −1 to 1 without order, the same for ever (SplitMix64, Steele et al. 2014).
-struct Noise(u64);
+#[derive(Debug, Default)]
+pub(super) struct Noise(u64);
 
 impl Noise {
-    fn next(&mut self) -> f64 {
+    /// The next of them.
+    pub(super) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -3,7 +3,9 @@
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
 use crate::assembly::{Inverted, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
-use crate::solve::{Balance, Direct, Equilibrium, NegativeCurvature, Solver, Tangent, Watch};
+use crate::solve::{
+    Balance, Direct, Equilibrium, NegativeCurvature, Solved, Solver, Tangent, Watch,
+};
 use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -152,7 +154,7 @@ impl Solver for TubeSolver {
         b: &mut [f64],
         accuracy: f64,
         watch: &mut dyn Watch,
-    ) -> Result<usize, NegativeCurvature> {
+    ) -> Result<Solved, NegativeCurvature> {
         match self {
             Self::Direct(factor) => Solver::solve(factor, b, accuracy, watch),
             Self::Harmonic(system) => system.solve(b, accuracy, watch),

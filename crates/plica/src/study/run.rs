@@ -1,7 +1,7 @@
 //! Leads a tube through its stages and writes down every accepted state.
 
 use super::manifest::Manifest;
-use super::stability::unstable_harmonics;
+use super::stability::StabilityTest;
 use super::summary::{Ending, Summary};
 use super::units::Scale;
 use super::{
@@ -76,11 +76,13 @@ fn follow(
             };
             let from = path.reached();
             match path.advance(n as f64 / stage.steps as f64, &mut watch) {
-                Ok(step) => record.accept(&stage.name, &path, &step, n == stage.steps, observer)?,
+                Ok(step) => {
+                    record.accept(&stage.name, &mut path, &step, n == stage.steps, observer)?
+                }
                 Err(error) => {
                     // What was reached on the way is a good state too.
                     if path.reached() > from {
-                        record.accept(&stage.name, &path, &error.step, true, observer)?;
+                        record.accept(&stage.name, &mut path, &error.step, true, observer)?;
                     }
                     return Ok(if error.stopped() {
                         Ending::Stopped
@@ -139,7 +141,7 @@ fn begin<'a>(
                 Err(error) => return Ok(Err(lost("rest", error))),
             }
         }
-        record.accept("rest", &path, &step, true, observer)?;
+        record.accept("rest", &mut path, &step, true, observer)?;
         return Ok(Ok(path));
     };
     let mut watch = Relay::new(observer, START);
@@ -148,11 +150,11 @@ fn begin<'a>(
         Err(error) if error.stopped() => return Ok(Err(Ending::Stopped)),
         Err(error) => return Ok(Err(lost(START, error))),
     };
-    let path = match path(start.load.clone(), u) {
+    let mut path = match path(start.load.clone(), u) {
         Ok(path) => path,
         Err(broken) => unreachable!("a state in equilibrium is not inverted: {broken}"),
     };
-    record.accept(START, &path, &step, true, observer)?;
+    record.accept(START, &mut path, &step, true, observer)?;
     Ok(Ok(path))
 }
 
@@ -256,6 +258,7 @@ struct Record<'a> {
     scale: Scale,
     rows: Vec<Row>,
     snapshots: Vec<Snapshot>,
+    stability: StabilityTest,
     since: Instant,
 }
 
@@ -270,6 +273,7 @@ impl<'a> Record<'a> {
             scale,
             rows: vec![],
             snapshots: vec![],
+            stability: StabilityTest::default(),
             since,
         }
     }
@@ -278,11 +282,15 @@ impl<'a> Record<'a> {
     fn accept(
         &mut self,
         stage: &str,
-        path: &Path<'_, TubeProblem>,
+        path: &mut Path<'_, TubeProblem>,
         step: &Step,
         last: bool,
         observer: &mut dyn Observer,
     ) -> Result<(), StudyError> {
+        let harmonics = self.plan.output.harmonics;
+        let unstable_harmonics = self
+            .stability
+            .unstable_harmonics(self.problem, path, harmonics);
         let (tube, state) = (&self.problem.tube, path.state());
         // The state was accepted, so its energy exists.
         let Ok(forces) = tube.forces(&state.load, &state.u) else {
@@ -330,7 +338,7 @@ impl<'a> Record<'a> {
             departure_harmonic: measures.departure.harmonic,
             departure_angle_deg: measures.departure.crest.to_degrees(),
             min_det_fe: forces.smallest_jacobian,
-            unstable_harmonics: unstable_harmonics(self.problem, state, self.plan.output.harmonics),
+            unstable_harmonics,
         };
         self.directory.record(&row)?;
         let every = self.plan.output.profiles_every;

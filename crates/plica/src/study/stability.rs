@@ -1,10 +1,11 @@
-//! Which circumferential harmonics an axisymmetric state is unstable to.
+//! Which circumferential harmonics an axisymmetric state is unstable to, and whether the lowest
+//! eigenvalue of any other state is negative.
 
-use super::TubeProblem;
+use super::lowest_modes::Noise;
 use super::problem::TubeSolver;
+use super::{TubeProblem, harmonic_tangent::HarmonicSystem};
 use crate::assembly::SplineTube;
-use crate::solve::{Equilibrium, Search, State, Tangent, lowest};
-use crate::tube::Load;
+use crate::solve::{Operator, Path, Search, lowest};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -17,24 +18,133 @@ const ROUND: f64 = 1e-9;
 /// Iterations in which the sign of the lowest eigenvalue should show.
 const ITERATIONS: usize = 60;
 
-/// Whether the lowest eigenvalue of the tangent of a state that is not round is negative, as far as
-/// that can be told.
-fn lowest_is_negative(problem: &TubeProblem, state: &State<Load>) -> Option<bool> {
-    let system = problem.tangent(&state.load, &state.u).into_shifted(0.0);
-    let Ok(TubeSolver::Harmonic(system)) = system else {
-        return None;
-    };
-    let search = Search {
-        wanted: 1,
-        accuracy: 1e-3,
-        iterations: ITERATIONS,
-        side_of: Some(0.0),
-    };
-    lowest(&system, &seeds(&problem.tube), &search, &mut |_| true).is_below(0.0)
+/// Tests the states of a run, one after the other.
+#[derive(Debug, Default)]
+pub struct StabilityTest {
+    /// The eigenvector found last, or what there was of it: the next state's is not far.
+    last: Option<Vec<f64>>,
+}
+
+impl StabilityTest {
+    /// Negative eigenvalues of the tangent, harmonic by harmonic, as `harmonic:count`, or none.
+    ///
+    /// For an axisymmetric state without twist the harmonics 0 to `harmonics` are looked at, whatever
+    /// the symmetry of the run: in an axisymmetric run 0 is the run's own tangent, all others are blocks
+    /// of the whole tube's (1 tilts or shifts sideways, 2 turns oval, and so on). Of any other state only
+    /// the run's own tangent is, whose eigenvalues cannot be told apart by harmonic: of an axisymmetric
+    /// run that is twisted `0:count` lists all of them; else `any:1` tells that the lowest is negative, and
+    /// `unknown` that its sign did not show in the iterations that it may take, or was not looked for,
+    /// `harmonics` being zero.
+    ///
+    /// What the path solves with at its state is made use of, and made if need be.
+    pub fn unstable_harmonics(
+        &mut self,
+        problem: &TubeProblem,
+        path: &mut Path<'_, TubeProblem>,
+        harmonics: usize,
+    ) -> String {
+        let tube = &problem.tube;
+        let (own, k) = (path.state().negative_pivots, tube.sector.rings);
+        let u = &path.state().u;
+        let round = |u: &[f64]| {
+            let mut rings = u.chunks_exact(k);
+            rings.all(|rings| rings.iter().all(|x| (x - rings[0]).abs() <= ROUND))
+        };
+        let round = round(u) && tube.geometric_imperfection().is_none_or(round);
+        let of_ring: Vec<f64> = u.iter().step_by(k).copied().collect();
+        let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
+        if !round || (twisted && k > 1) {
+            let lost = match (own, path.solver()) {
+                (0, _) if harmonics == 0 => None,
+                (0, Some(TubeSolver::Harmonic(system))) => self.lowest_is_negative(tube, system),
+                (0, _) => None,
+                _ => Some(true),
+            };
+            return match lost {
+                Some(true) => format!("any:{}", own.max(1)),
+                Some(false) => "none".into(),
+                None => "unknown".into(),
+            };
+        }
+        let looked_at = if twisted {
+            0
+        } else {
+            harmonics.min((tube.sector.around - 1) / 2)
+        };
+        // Harmonics of the sector are those of the run's own tangent.
+        let repeats = tube.sector.around / k;
+        let known = match path.solver() {
+            Some(TubeSolver::Harmonic(system)) => system.negative_in_harmonics(),
+            _ => None,
+        };
+        let known = known.unwrap_or(&[]).to_vec();
+        // The blocks of an axisymmetric state are those of its ring alone.
+        let ring = (k > 1).then(|| tube.of_one_ring());
+        let ring = ring.as_ref().unwrap_or(tube);
+        let load = &path.state().load;
+        let negative = |n: usize| {
+            if k == 1 && n == 0 {
+                return own;
+            }
+            if let (0, Some(&count)) = (n % repeats, known.get(n / repeats)) {
+                return count;
+            }
+            let mut tangent = match n {
+                0 => ring.tangent(load, &of_ring),
+                n => ring.harmonic_tangent(load, &of_ring, n),
+            };
+            tangent.constrain(&ring.given_in_harmonic(n));
+            // A singular block is at the edge of stability; it counts as lost.
+            tangent
+                .factor()
+                .map_or(1, |factor| factor.negative_pivots())
+        };
+        let counts: Vec<(usize, usize)> = (0..=looked_at)
+            .into_par_iter()
+            .map(|n| (n, negative(n)))
+            .collect();
+        let lost: Vec<String> = counts
+            .iter()
+            .filter(|(_, count)| *count > 0)
+            .map(|(n, count)| format!("{n}:{count}"))
+            .collect();
+        if lost.is_empty() {
+            "none".into()
+        } else {
+            lost.join(" ")
+        }
+    }
+
+    /// Whether the lowest eigenvalue of the tangent of a state that is not round is negative, as far as
+    /// that can be told.
+    fn lowest_is_negative(&mut self, tube: &SplineTube, system: &HarmonicSystem) -> Option<bool> {
+        if system.average_is_indefinite() {
+            return Some(true);
+        }
+        let search = Search {
+            wanted: 1,
+            accuracy: 1e-3,
+            iterations: ITERATIONS,
+            side_of: Some(0.0),
+        };
+        let [mut one, other] = seeds(tube);
+        if let Some(last) = self.last.take() {
+            one = last;
+        }
+        // What no low harmonic has a part in shows too.
+        let mut noise = Noise::default();
+        let force: Vec<f64> = one.iter().map(|_| noise.next()).collect();
+        let mut smooth = vec![0.0; one.len()];
+        system.precondition(&force, &mut smooth);
+        let mut found = lowest(system, &[one, other, smooth], &search, &mut |_| true);
+        let below = found.is_below(0.0);
+        self.last = (!found.vectors.is_empty()).then(|| found.vectors.swap_remove(0));
+        below
+    }
 }
 
 /// Two displacements with a part of every low harmonic, not alike on any two sides of the tube.
-fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
+fn seeds(tube: &SplineTube) -> [Vec<f64>; 2] {
     let (k, length) = (tube.sector.rings, tube.tube.length);
     let repeats = tube.sector.around / k;
     let highest = 4.min((k - 1) / 2);
@@ -51,69 +161,5 @@ fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
             [0.1 * radial, along + radial, around]
         })
     };
-    vec![seed(0.0), seed(0.5 * PI)]
-}
-
-/// Negative eigenvalues of the tangent, harmonic by harmonic, as `harmonic:count`, or none.
-///
-/// For an axisymmetric state without twist the harmonics 0 to `harmonics` are looked at, whatever
-/// the symmetry of the run: in an axisymmetric run 0 is the run's own tangent, all others are blocks
-/// of the whole tube's (1 tilts or shifts sideways, 2 turns oval, and so on). Of any other state only
-/// the run's own tangent is, whose eigenvalues cannot be told apart by harmonic: of an axisymmetric
-/// run that is twisted `0:count` lists all of them; else `any:1` tells that the lowest is negative, and
-/// `unknown` that its sign did not show in the iterations that it may take, or was not looked for,
-/// `harmonics` being zero.
-pub fn unstable_harmonics(problem: &TubeProblem, state: &State<Load>, harmonics: usize) -> String {
-    let tube = &problem.tube;
-    let (own, k) = (state.negative_pivots, tube.sector.rings);
-    let round = |u: &[f64]| {
-        let mut rings = u.chunks_exact(k);
-        rings.all(|rings| rings.iter().all(|x| (x - rings[0]).abs() <= ROUND))
-    };
-    let round = round(&state.u) && tube.geometric_imperfection().is_none_or(round);
-    let of_ring: Vec<f64> = state.u.iter().step_by(k).copied().collect();
-    let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
-    if !round || (twisted && k > 1) {
-        let lost = match own {
-            0 if harmonics == 0 => None,
-            0 => lowest_is_negative(problem, state),
-            _ => Some(true),
-        };
-        return match lost {
-            Some(true) => format!("any:{}", own.max(1)),
-            Some(false) => "none".into(),
-            None => "unknown".into(),
-        };
-    }
-    let looked_at = if twisted {
-        0
-    } else {
-        harmonics.min((tube.sector.around - 1) / 2)
-    };
-    // The blocks of an axisymmetric state are those of its ring alone.
-    let ring = (k > 1).then(|| tube.of_one_ring());
-    let ring = ring.as_ref().unwrap_or(tube);
-    let negative = |n: usize| {
-        let mut tangent = match n {
-            0 => ring.tangent(&state.load, &of_ring),
-            n => ring.harmonic_tangent(&state.load, &of_ring, n),
-        };
-        tangent.constrain(&ring.given_in_harmonic(n));
-        // A singular block is at the edge of stability; it counts as lost.
-        tangent
-            .factor()
-            .map_or(1, |factor| factor.negative_pivots())
-    };
-    let mut counts = vec![(0, if k == 1 { own } else { negative(0) })];
-    counts.par_extend((1..=looked_at).into_par_iter().map(|n| (n, negative(n))));
-    let lost: Vec<String> = counts
-        .iter()
-        .filter(|(_, count)| *count > 0)
-        .map(|(n, count)| format!("{n}:{count}"))
-        .collect();
-    if lost.is_empty() {
-        "none".into()
-    } else {
-        lost.join(" ")
-    }
+    [seed(0.0), seed(0.5 * PI)]
 }

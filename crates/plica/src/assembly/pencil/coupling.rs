@@ -31,7 +31,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(
             sum_through::<S, N>(simd, input, layer, 0, &along, &mut through);
             let Some(out) = out.next() else { return };
             for v in 0..input.rings.vectors() {
-                let (columns, [_, grown]) = input.columns(simd, qz, [t, 0], [v, 0]);
+                let (columns, [_, grown]) = input.columns::<_, false>(simd, qz, [t, 0], [v, 0]);
                 let g = gradients::<S, N>(simd, &slots[0], &through, W, v);
                 let Fe = columns.elastic(point, radius, g);
                 let blocks = columns.moduli(&law.moduli(&Fe), grown);

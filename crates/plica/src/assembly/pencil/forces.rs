@@ -27,11 +27,16 @@ pub fn pencil_forces<L: Law, const N: usize>(
     input: &PencilInput<'_>,
     residual: &mut [f64],
 ) -> PencilForces {
-    dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input, residual))
+    let level = Level::new();
+    if input.stress_free.is_none() {
+        dispatch!(level, simd => kernel::<_, L, N, true>(simd, law, input, residual))
+    } else {
+        dispatch!(level, simd => kernel::<_, L, N, false>(simd, law, input, residual))
+    }
 }
 
 #[inline(always)]
-fn kernel<S: Simd, L: Law, const N: usize>(
+fn kernel<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     simd: S,
     law: &L,
     input: &PencilInput<'_>,
@@ -67,11 +72,11 @@ fn kernel<S: Simd, L: Law, const N: usize>(
                     let mut pulled = [[[nil; 3]; 3]; N];
                     for qs in 0..N {
                         let point = &input.around[qs];
-                        let (columns, [volume, grown]) = input.columns(simd, qz, [t, qr], [v, qs]);
+                        let (columns, [volume, grown]) =
+                            input.columns::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let Fe = columns.elastic(point, radius, g);
-                        let J = Lanes::store(Fe.determinant());
-                        worst.note(J, |lane| [0, t, v * LANES + lane], qr);
+                        worst.note(Fe.determinant(), |lane| [0, t, v * LANES + lane], qr);
 
                         let w = law.energy(&Fe);
                         energy = Real::mul_add(w, grown, energy);

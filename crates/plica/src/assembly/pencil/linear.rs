@@ -24,11 +24,16 @@ pub fn pencil_keep<L: Law, const N: usize>(
     kept: &mut [[f32; 16]],
     averaged: &mut [f64],
 ) {
-    dispatch!(Level::new(), simd => keep::<_, L, N>(simd, law, input, kept, averaged));
+    let level = Level::new();
+    if input.stress_free.is_none() {
+        dispatch!(level, simd => keep::<_, L, N, true>(simd, law, input, kept, averaged));
+    } else {
+        dispatch!(level, simd => keep::<_, L, N, false>(simd, law, input, kept, averaged));
+    }
 }
 
 #[inline(always)]
-fn keep<S: Simd, L: Law, const N: usize>(
+fn keep<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     simd: S,
     law: &L,
     input: &PencilInput<'_>,
@@ -53,7 +58,8 @@ fn keep<S: Simd, L: Law, const N: usize>(
                 for v in 0..input.rings.vectors() {
                     for qs in 0..N {
                         let point = &input.around[qs];
-                        let (columns, [_, grown]) = input.columns(simd, qz, [t, qr], [v, qs]);
+                        let (columns, [_, grown]) =
+                            input.columns::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let Fe = columns.elastic(point, radius, g);
                         let state = law.keep(&Fe);
@@ -98,11 +104,16 @@ pub fn pencil_product<L: Law, const N: usize>(
     kept: &[[f32; 16]],
     out: &mut [f64],
 ) {
-    dispatch!(Level::new(), simd => product::<_, L, N>(simd, law, input, kept, out));
+    let level = Level::new();
+    if input.stress_free.is_none() {
+        dispatch!(level, simd => product::<_, L, N, true>(simd, law, input, kept, out));
+    } else {
+        dispatch!(level, simd => product::<_, L, N, false>(simd, law, input, kept, out));
+    }
 }
 
 #[inline(always)]
-fn product<S: Simd, L: Law, const N: usize>(
+fn product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     simd: S,
     law: &L,
     input: &PencilInput<'_>,
@@ -132,7 +143,8 @@ fn product<S: Simd, L: Law, const N: usize>(
                 for v in 0..input.rings.vectors() {
                     let mut pulled = [[[nil; 3]; 3]; N];
                     for qs in 0..N {
-                        let (columns, [_, grown]) = input.columns(simd, qz, [t, qr], [v, qs]);
+                        let (columns, [_, grown]) =
+                            input.columns::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let mut state: material::Kept<f64x8<S>> = [nil; 10];
                         if let Some(from) = kept.next() {
