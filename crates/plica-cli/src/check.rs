@@ -6,7 +6,7 @@ use plica::case::advice;
 use plica::solve::{Integrator, Scheme};
 use plica::spline::Circle;
 use plica::study::{Plan, fits, forecast};
-use plica::tube::{End, Part, Symmetry, Tube};
+use plica::tube::{End, Imperfection, Part, Shape, Symmetry, Tube};
 use std::path::Path;
 
 /// Says that a case is sound, and what it takes.
@@ -99,12 +99,9 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         ),
     ];
     if !tube.imperfections.is_empty() {
-        let parts: Vec<String> = tube
-            .imperfections
-            .iter()
-            .map(|i| part(tube, i.of))
-            .collect();
-        rows.insert(2, ("imperfect", parts.join(", ")));
+        let imperfections = tube.imperfections.iter();
+        let described: Vec<String> = imperfections.map(|i| imperfection(tube, i)).collect();
+        rows.insert(2, ("imperfect", described.join("; ")));
     }
     if let Some(start) = &plan.start {
         let (row, stage) = (start.state.row, &start.state.stage);
@@ -119,6 +116,21 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         rows.insert(1, ("units", units));
     }
     rows
+}
+
+/// What is imperfect, how much and in what shape.
+fn imperfection(tube: &Tube, imperfection: &Imperfection) -> String {
+    let shape = match &imperfection.shape {
+        Shape::Wave(wave) => format!("harmonic {}", wave.harmonic),
+        Shape::Random(random) => format!("random, seed {}", random.seed()),
+        Shape::Mode(mode) => format!("a mode of harmonic {}", mode.harmonic),
+    };
+    let unit = match imperfection.of {
+        Part::Muscle(_) => "",
+        Part::End(..) | Part::Geometry => " D",
+    };
+    let (part, amplitude) = (part(tube, imperfection.of), imperfection.amplitude);
+    format!("{part} ({shape}, {amplitude:.1e}{unit})")
 }
 
 /// What is imperfect.

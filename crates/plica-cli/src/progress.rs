@@ -9,6 +9,7 @@ pub struct Progress {
     ticker: Ticker,
     stage_width: usize,
     round: bool,
+    pressed: bool,
     begun: bool,
 }
 
@@ -20,6 +21,7 @@ impl Progress {
             ticker: Ticker::new(interrupt),
             stage_width: names.max().unwrap_or(0).clamp(5, 24),
             round: plan.mesh.rings(plan.symmetry) == 1,
+            pressed: plan.is_pressed(),
             begun: false,
         }
     }
@@ -35,14 +37,16 @@ impl Observer for Progress {
         let width = self.stage_width;
         // What only a tube that may leave axisymmetry has to tell.
         let departs = |what: String| if self.round { String::new() } else { what };
+        let pressed = |what: String| if self.pressed { what } else { String::new() };
         if !self.begun {
             self.begun = true;
             self.ticker.line(&format!(
-                "{:>5}  {:<width$}  {:>7} {:>7} {:>11}  {:<11} {:>6}  {:<11}{} {:>5} {:>8}",
+                "{:>5}  {:<width$}  {:>7} {:>7}{} {:>11}  {:<11} {:>6}  {:<11}{} {:>5} {:>8}",
                 "state",
                 "stage",
                 "Lmax/L",
                 "Dmin/D",
+                pressed(format!(" {:>10}", "pressure")),
                 "W",
                 "found by",
                 "angle",
@@ -53,11 +57,12 @@ impl Observer for Progress {
             ));
         }
         self.ticker.line(&format!(
-            "{:>5}  {:<width$}  {:>7.4} {:>7.4} {:>11.4e}  {:<11} {:>5.1}°  {:<11}{} {:>5} {:>8.1}",
+            "{:>5}  {:<width$}  {:>7.4} {:>7.4}{} {:>11.4e}  {:<11} {:>5.1}°  {:<11}{} {:>5} {:>8.1}",
             row.step,
             row.stage,
             row.length_ratio,
             row.diameter_ratio,
+            pressed(format!(" {:>10.2e}", pressure(row))),
             row.energy,
             row.method,
             row.max_wall_angle_deg,
@@ -75,6 +80,18 @@ impl Observer for Progress {
     fn stop(&mut self) -> bool {
         self.ticker.stop()
     }
+}
+
+/// The first of the pressures that a state is under, if there is any.
+fn pressure(row: &Row) -> f64 {
+    let pressures = [
+        row.outer_pressure,
+        row.inner_pressure,
+        row.outer_dead_pressure,
+        row.inner_dead_pressure,
+    ];
+    let under = |p: &f64| *p != 0.0;
+    pressures.into_iter().flatten().find(under).unwrap_or(0.0)
 }
 
 /// How far a state is from axisymmetric, and in which harmonic.

@@ -11,8 +11,8 @@ use plica::report::{mode_pictures, stability_pictures};
 use plica::stability::{
     ModesRequest, Observer, Request, Spectrum, StabilityError, Station, follow, lowest_modes,
 };
-use plica::study::{Plan, RunDirectory, SavedState};
-use plica::tube::Tube;
+use plica::study::{Plan, RunDirectory, SavedState, fits};
+use plica::tube::{Load, Tube};
 
 /// How close critical values are bracketed, unless told otherwise.
 const TOLERANCE: f64 = 1e-4;
@@ -38,6 +38,7 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     };
     let (_, plan) = case_file::open_with(&case, &own)?;
     threads::limit(arguments.threads)?;
+    fits(&plan).map_err(Failure::Study)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     console::tell(&format!(
@@ -53,6 +54,7 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     let mut watch = Watcher {
         ticker: Ticker::new(interrupt),
         begun: false,
+        pressed: plan.is_pressed(),
     };
     if plan.mesh.rings(plan.symmetry) == 1 {
         by_harmonics(arguments, &plan, &directory, &mut watch)
@@ -168,6 +170,28 @@ fn finish(
 struct Watcher {
     ticker: Ticker,
     begun: bool,
+    pressed: bool,
+}
+
+impl Watcher {
+    /// The heading of what a state is under.
+    fn heading(&self) -> String {
+        let pressure = if self.pressed { "    pressure/E" } else { "" };
+        format!("{:>5}  {:>7} {:>7}{pressure}", "state", "Lmax/L", "Dmin/D")
+    }
+
+    /// What a state is under; the first of its pressures, if there is any.
+    fn under(&self, row: usize, tube: &Tube, load: &Load) -> String {
+        let (length, diameter) = (tube.length_ratio(load), tube.diameter_ratio(load));
+        let [inner, outer] = load.pressures;
+        let pressures = [outer.follower, inner.follower, outer.dead, inner.dead];
+        let pressure = pressures.into_iter().find(|p| *p != 0.0).unwrap_or(0.0);
+        let pressure = match self.pressed {
+            true => format!(" {pressure:>13.4e}"),
+            false => String::new(),
+        };
+        format!("{row:>5}  {length:>7.4} {diameter:>7.4}{pressure}")
+    }
 }
 
 impl Observer for Watcher {
@@ -177,10 +201,8 @@ impl Observer for Watcher {
             let harmonics =
                 (0..station.tested.len()).map(|n| format!("{:>11}", format!("n = {n}")));
             self.ticker.line(&format!(
-                "{:>5}  {:>7} {:>7}  lowest eigenvalue, E/D²:{}",
-                "state",
-                "Lmax/L",
-                "Dmin/D",
+                "{}  lowest eigenvalue, E/D²:{}",
+                self.heading(),
                 harmonics.collect::<String>()
             ));
         }
@@ -189,10 +211,8 @@ impl Observer for Watcher {
             .iter()
             .map(|tested| format!("{:>11.3e}", tested.lowest));
         self.ticker.line(&format!(
-            "{:>5}  {:>7.4} {:>7.4}  {:>24}{}",
-            station.row.unwrap_or_default(),
-            tube.length_ratio(&station.load),
-            tube.diameter_ratio(&station.load),
+            "{}  {:>24}{}",
+            self.under(station.row.unwrap_or_default(), tube, &station.load),
             "",
             lowest.collect::<String>()
         ));
@@ -202,17 +222,16 @@ impl Observer for Watcher {
         if !self.begun {
             self.begun = true;
             self.ticker.line(&format!(
-                "{:>5}  {:>7} {:>7}  {:>10}  lowest eigenvalues, E/D²",
-                "state", "Lmax/L", "Dmin/D", "iterations"
+                "{}  {:>10}  lowest eigenvalues, E/D²",
+                self.heading(),
+                "iterations"
             ));
         }
         let lowest = spectrum.lowest.iter().take(5);
         let lowest = lowest.map(|eigenvalue| format!("{:>11.3e}", eigenvalue.value));
         self.ticker.line(&format!(
-            "{:>5}  {:>7.4} {:>7.4}  {:>10}{}",
-            spectrum.row,
-            tube.length_ratio(&spectrum.load),
-            tube.diameter_ratio(&spectrum.load),
+            "{}  {:>10}{}",
+            self.under(spectrum.row, tube, &spectrum.load),
             spectrum.iterations,
             lowest.collect::<String>()
         ));

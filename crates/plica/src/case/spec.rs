@@ -223,8 +223,7 @@ pub(super) enum Axial {
 #[serde(deny_unknown_fields)]
 pub(super) struct Random {
     pub seed: u64,
-    #[serde(default = "Random::usual_count")]
-    pub harmonics: usize,
+    pub harmonics: Option<usize>,
     pub half_waves: Option<usize>,
 }
 

@@ -114,7 +114,7 @@ pub const KEYS: &[Key] = &[
         "`axial = { zone = [0.5, 1.0] }`: ½(1 − cos 2πx) over a zone, and nothing elsewhere."),
     key("imperfections[].shape.random.seed", Count, "", Always("7"), from(0.0).to(1e9),
         "Any number; the same seed gives the same shape for ever, another seed another one."),
-    key("imperfections[].shape.random.harmonics", Count, "", Or("4"), from(0.0).to(50.0),
+    key("imperfections[].shape.random.harmonics", Count, "", OrElse("4, or as many as the rings tell apart", "4"), from(0.0).to(50.0),
         "Harmonics 0 to this around the tube, of those that the symmetry allows; all are as likely to be large."),
     key("imperfections[].shape.random.half_waves", Count, "", Or("4"), from(1.0).to(50.0),
         "1 to this half-waves along the zone of the muscle, or the tube. Not for an end."),

@@ -247,7 +247,7 @@ fn every_field_of_the_structs_is_in_the_table() {
                 direction: None,
                 shape: Shape::Random(Random {
                     seed: 1,
-                    harmonics: 2,
+                    harmonics: Some(2),
                     half_waves: Some(3),
                 }),
             },

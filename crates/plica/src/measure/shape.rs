@@ -29,6 +29,9 @@ pub enum Shape {
     Square,
     /// Narrowed, with a wall that overhangs.
     Invaginated,
+    /// Wider than the cylinder by more than 2 % of D in one bulge, nowhere narrower by as much, without
+    /// a muscle that narrows it.
+    Swollen,
     /// Buckled out of the cylinder by more than 2 % of D without a muscle that narrows it, or the
     /// lumen is closed.
     Collapsed,
@@ -53,6 +56,8 @@ impl Shape {
             Self::Collapsed
         } else if depth.max(bulge) < Self::LEAVES || diameter_ratio > 1.0 {
             Self::Straight
+        } else if !contracted && depth < Self::LEAVES && bulges_once(outer) {
+            Self::Swollen
         } else if !contracted {
             Self::Collapsed
         } else if steepest_angle_deg >= 90.0 {
@@ -83,6 +88,22 @@ impl std::fmt::Display for Side {
     }
 }
 
+/// Fall of the radius, in D, from which a wall no longer rises.
+const FALL: f64 = 1e-3;
+
+/// Whether the radius rises along the wall at most once before it falls for good.
+fn bulges_once(wall: &Wall) -> bool {
+    let (mut highest, mut lowest_since) = (f64::NEG_INFINITY, f64::INFINITY);
+    wall.points.iter().all(|&(_, r)| {
+        if r > highest {
+            (highest, lowest_since) = (r, r);
+        }
+        lowest_since = lowest_since.min(r);
+        // Once fallen from its highest it must not rise again.
+        r <= lowest_since + FALL
+    })
+}
+
 impl std::fmt::Display for Shape {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -91,6 +112,7 @@ impl std::fmt::Display for Shape {
             Self::U => "U",
             Self::Square => "square",
             Self::Invaginated => "invaginated",
+            Self::Swollen => "swollen",
             Self::Collapsed => "collapsed",
         })
     }
@@ -191,6 +213,15 @@ mod tests {
             shape(&[(0.0, 0.5), (0.5, 0.05), (3.0, 0.5)], 0.25),
             Shape::Collapsed
         );
+    }
+
+    #[test]
+    fn a_tube_that_is_wider_in_one_bulge_is_swollen() {
+        let swollen = [(0.0, 0.5), (0.5, 0.56), (1.5, 0.7), (2.5, 0.56), (3.0, 0.5)];
+        assert_eq!(shape(&swollen, 1.0), Shape::Swollen);
+        assert_eq!(shape(&[(0.0, 0.6), (3.0, 0.6)], 1.0), Shape::Swollen);
+        let rings = [(0.0, 0.5), (0.5, 0.56), (1.0, 0.5), (1.5, 0.56), (3.0, 0.5)];
+        assert_eq!(shape(&rings, 1.0), Shape::Collapsed);
     }
 
     #[test]

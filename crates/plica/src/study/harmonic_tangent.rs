@@ -3,7 +3,7 @@
 use super::spare::Spare;
 use crate::assembly::{Linearised, LowHarmonics, RingDrag, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
-use crate::rings::{Coupling, HarmonicSolver};
+use crate::rings::{Coupling, HarmonicSolver, Transform};
 use crate::solve::{
     NegativeCurvature, Operator, Solved, Solver, Tangent, Watch, conjugate_gradients,
 };
@@ -17,9 +17,13 @@ const SYMMETRIC: f64 = 1e-9;
 /// The same from which low harmonics are coupled.
 const COUPLED: f64 = 1e-2;
 
-/// The highest harmonic of the sector that is coupled. With 0, 2, 4, 6, 8 and 10 an oval 0.28 D deep
-/// took 109, 85, 56, 29, 20 and 15 iterations; the matrix costs the third power of the harmonic.
-const HIGHEST: usize = 6;
+/// The highest harmonics of the sector that may be coupled: four times the one that the state itself
+/// has. An oval 0.2 D deep takes 111, 94, 61, 36 and 20 iterations with 1, 2, 4, 6 and 8 coupled; a tilt
+/// of 0.13 D 57, 36, 21, 20 and 20. The matrix costs the third power of the harmonic.
+const HIGHEST: [usize; 2] = [4, 8];
+
+/// The share of the waves in a state from which a harmonic counts as one that it has.
+const SHARE: f64 = 0.1;
 
 /// Iterations after which a solve is cut off; what there is still leads down.
 const ITERATIONS: usize = 400;
@@ -29,8 +33,8 @@ const ITERATIONS: usize = 400;
 pub struct HarmonicTube {
     tube: Arc<SplineTube>,
     drag: RingDrag,
-    /// Low harmonics, once a state needs them.
-    low: OnceLock<LowHarmonics>,
+    /// Low harmonics, as many as a state needs, once one does.
+    low: [OnceLock<Arc<LowHarmonics>>; 2],
     /// Memory of tangents, of blocks of harmonics, and of matrices of low harmonics.
     linearised: Spare<Linearised>,
     blocks: Spare<BlockBanded>,
@@ -50,8 +54,8 @@ struct Linear {
     at: Linearised,
     /// Whether the state is the same at every ring.
     symmetric: bool,
-    /// Whether the state couples low harmonics.
-    couples: bool,
+    /// The low harmonics that the state couples, if it does.
+    low: Option<Arc<LowHarmonics>>,
     /// The tangent on them, unless it was used up.
     coupled: Option<BlockBanded>,
 }
@@ -97,7 +101,7 @@ impl HarmonicTube {
         Self {
             drag: tube.ring_drag(),
             tube,
-            low: OnceLock::new(),
+            low: Default::default(),
             linearised: Spare::default(),
             blocks: Spare::default(),
             coupled: Spare::default(),
@@ -116,9 +120,10 @@ impl HarmonicTube {
         let rings = u.chunks_exact(self.tube.sector.rings);
         let difference = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs()));
         let differs = rings.map(difference).fold(0.0, f64::max);
-        let coupled = (differs > COUPLED).then(|| {
-            let mut coupled = self.low_matrix();
-            self.tube.coupled_tangent(self.low(), load, u, &mut coupled);
+        let low = (differs > COUPLED).then(|| self.low_harmonics(u));
+        let coupled = low.as_ref().map(|low| {
+            let mut coupled = self.low_matrix(low);
+            self.tube.coupled_tangent(low, load, u, &mut coupled);
             coupled
         });
         HarmonicTangent {
@@ -126,26 +131,28 @@ impl HarmonicTube {
                 tube: self.clone(),
                 at,
                 symmetric: differs <= SYMMETRIC,
-                couples: coupled.is_some(),
+                low,
                 coupled,
             }),
         }
     }
 
-    fn low(&self) -> &LowHarmonics {
-        self.low
-            .get_or_init(|| LowHarmonics::new(&self.tube, HIGHEST))
+    /// The low harmonics that a state couples.
+    fn low_harmonics(&self, u: &[f64]) -> Arc<LowHarmonics> {
+        let mut shares = Transform::new(self.tube.sector.rings).products(u, u);
+        shares[0] = 0.0;
+        let all: f64 = shares.iter().sum();
+        let own = shares.iter().rposition(|share| *share > SHARE * all);
+        let which = usize::from(4 * own.unwrap_or(1) > HIGHEST[0]);
+        let low = || Arc::new(LowHarmonics::new(&self.tube, HIGHEST[which]));
+        self.low[which].get_or_init(low).clone()
     }
 
     /// Memory for a matrix of low harmonics.
-    fn low_matrix(&self) -> BlockBanded {
-        let (rows, size, band) = (
-            self.tube.axial.functions(),
-            self.low().row(),
-            self.tube.degree(),
-        );
-        let new = || BlockBanded::zeros(rows, size, band);
-        self.coupled.take().unwrap_or_else(new)
+    fn low_matrix(&self, low: &LowHarmonics) -> BlockBanded {
+        let (rows, size, band) = (self.tube.axial.functions(), low.row(), self.tube.degree());
+        let fits = self.coupled.take().filter(|matrix| matrix.size() == size);
+        fits.unwrap_or_else(|| BlockBanded::zeros(rows, size, band))
     }
 
     /// Memory for the block of a harmonic.
@@ -159,7 +166,7 @@ impl HarmonicTube {
 impl HarmonicTangent {
     /// Unknowns to a row of the matrix of low harmonics, of k rings; where it is needed.
     pub fn low_row(rings: usize) -> usize {
-        9 * (2 * HIGHEST.min(LowHarmonics::resolved(rings)) + 1)
+        9 * (2 * HIGHEST[1].min(LowHarmonics::resolved(rings)) + 1)
     }
 }
 
@@ -172,9 +179,11 @@ impl Tangent for HarmonicTangent {
     }
 
     fn shifted(&self, alpha: f64) -> Result<HarmonicSystem, Singular> {
-        let Linear { tube, coupled, .. } = &*self.state;
-        let copy = coupled.as_ref().map(|coupled| {
-            let mut matrix = tube.low_matrix();
+        let Linear {
+            tube, low, coupled, ..
+        } = &*self.state;
+        let copy = low.as_deref().zip(coupled.as_ref()).map(|(low, coupled)| {
+            let mut matrix = tube.low_matrix(low);
             matrix.copy_from(coupled);
             matrix
         });
@@ -194,7 +203,7 @@ impl Tangent for HarmonicTangent {
 
 impl HarmonicTangent {
     /// The system, and the tangent on low harmonics to make its own of.
-    fn system(&self, alpha: f64, low: Option<BlockBanded>) -> Result<HarmonicSystem, Singular> {
+    fn system(&self, alpha: f64, coupled: Option<BlockBanded>) -> Result<HarmonicSystem, Singular> {
         let tube = &self.state.tube;
         let rings = tube.tube.sector.rings;
         let blocks: Vec<Block> = (0..=rings / 2)
@@ -207,8 +216,7 @@ impl HarmonicTangent {
             .map(|block| (block.factor, block.averaged))
             .unzip();
         let mut preconditioner = HarmonicSolver::new(rings, factors);
-        if let Some(mut matrix) = low {
-            let low = tube.low();
+        if let (Some(low), Some(mut matrix)) = (self.state.low.as_deref(), coupled) {
             if alpha != 0.0 {
                 low.add_drag(&tube.tube, &tube.drag, alpha, &mut matrix);
             }
@@ -254,8 +262,9 @@ impl Linear {
             if alpha != 0.0 {
                 self.tube.drag.add_harmonic(alpha, waves, &mut block);
             }
-            let low = self.couples.then(|| self.tube.low());
-            let averaged = low
+            let averaged = self
+                .low
+                .as_deref()
                 .filter(|low| n <= low.highest)
                 .map(|low| self.averaged(low, n, &block))
                 .transpose()?;

@@ -65,7 +65,7 @@ pub struct Row {
     pub overhang: f64,
     /// The side it invaginates to: colon, ileum or none.
     pub side: String,
-    /// V, U, square, invaginated or collapsed; straight where nothing is contracted.
+    /// V, U, square, invaginated, swollen or collapsed; straight where nothing is contracted.
     pub shape: String,
     /// How far the outer wall is from axisymmetric: amplitude of its largest wave around.
     pub departure: f64,

@@ -127,16 +127,19 @@ impl StabilityTest {
             iterations: ITERATIONS,
             side_of: Some(0.0),
         };
-        let [mut one, other] = seeds(tube);
-        if let Some(last) = self.last.take() {
-            one = last;
-        }
+        let [first, mut other] = seeds(tube);
         // What no low harmonic has a part in shows too.
         let mut noise = Noise::default();
-        let force: Vec<f64> = one.iter().map(|_| noise.next()).collect();
-        let mut smooth = vec![0.0; one.len()];
+        let force: Vec<f64> = first.iter().map(|_| noise.next()).collect();
+        let mut smooth = vec![0.0; first.len()];
         system.precondition(&force, &mut smooth);
-        let mut found = lowest(system, &[one, other, smooth], &search, &mut |_| true);
+        let size = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let factor = size(&other) / size(&smooth);
+        for (other, smooth) in other.iter_mut().zip(&smooth) {
+            *other += factor * smooth;
+        }
+        let first = self.last.take().unwrap_or(first);
+        let mut found = lowest(system, &[first, other], &search, &mut |_| true);
         let below = found.is_below(0.0);
         self.last = (!found.vectors.is_empty()).then(|| found.vectors.swap_remove(0));
         below

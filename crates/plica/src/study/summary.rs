@@ -163,7 +163,6 @@ fn named(harmonic: &str) -> String {
         "1" => "harmonic 1 (sideways)".into(),
         "2" => "harmonic 2 (oval)".into(),
         "any" => "its own lowest mode".into(),
-        "unknown" => "something or to nothing, not known".into(),
         n => format!("harmonic {n} ({n} lobes)"),
     }
 }
@@ -273,7 +272,10 @@ impl fmt::Display for Summary {
             line(
                 f,
                 name,
-                format!("to {} at {} state(s), {span}", named(harmonic), rows.len()),
+                match *harmonic {
+                    "unknown" => format!("or not: not known of {} state(s), {span}", rows.len()),
+                    _ => format!("to {} at {} state(s), {span}", named(harmonic), rows.len()),
+                },
             )?;
         }
         let relaxed = count(|row| row.method == "relaxation");

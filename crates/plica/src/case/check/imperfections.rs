@@ -193,19 +193,25 @@ fn random(
     let path = format!("{path}.shape.random");
     let (mesh, symmetry) = run;
     let key = format!("{path}.harmonics");
-    check_highest(&key, random.harmonics, run, problems);
+    let told_apart = match symmetry {
+        Symmetry::Axisymmetric => 0,
+        Symmetry::Fold(_) | Symmetry::None => mesh.around / 4,
+    };
+    let usual = spec::Random::usual_count();
+    let harmonics = random.harmonics.unwrap_or(usual.min(told_apart));
+    check_highest(&key, harmonics, run, problems);
     let end = matches!(of, Part::End(..));
     if end && random.half_waves.is_some() {
         nothing_along(&format!("{path}.half_waves"), problems);
     }
-    let half_waves = random.half_waves.unwrap_or(spec::Random::usual_count());
+    let half_waves = random.half_waves.unwrap_or(usual);
     let half_waves = if end {
         0
     } else {
         half_waves.min(LARGEST_COUNT)
     };
     // Any number does where something was found wrong.
-    let harmonics = random.harmonics.min(mesh.around / 4).min(LARGEST_COUNT);
+    let harmonics = harmonics.min(mesh.around / 4).min(LARGEST_COUNT);
     let fold = match symmetry {
         Symmetry::Fold(m) => m.max(1),
         Symmetry::Axisymmetric | Symmetry::None => 1,
