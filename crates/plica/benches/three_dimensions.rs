@@ -2,7 +2,8 @@
 //!
 //! `cargo bench -p plica --bench three_dimensions` prints the table of docs/performance.md: the
 //! contracted tube of the main case (Dmin/D = 0.25) on every thread that there is, wall seconds,
-//! medians of five.
+//! medians of five; and then what a linear solve takes at states that are far from round, a tilted and
+//! an oval one, which takes some minutes to find.
 
 use plica::assembly::SplineTube;
 use plica::solve::{Equilibrium, Path, Solver, Tangent};
@@ -27,6 +28,76 @@ fn median(mut work: impl FnMut()) -> f64 {
         .collect();
     seconds.sort_by(f64::total_cmp);
     seconds[2]
+}
+
+/// Cases that leave their symmetric path: the state looked at is that at the end of so many steps of
+/// their last stage.
+const FAR_FROM_ROUND: [(&str, &str, [usize; 3], usize); 2] = [
+    (
+        "tilted",
+        include_str!("../../../cases/tilt.toml"),
+        [105, 32, 5],
+        19,
+    ),
+    (
+        "oval",
+        include_str!("../../../cases/collapse.toml"),
+        [60, 32, 4],
+        7,
+    ),
+];
+
+/// What a change of the load takes to be followed to a residual of 1e-3.
+fn far_from_round() {
+    println!(
+        "\n{:>8} {:>13} {:>9} {:>8} {:>7} {:>9} {:>9} {:>9} {:>5}",
+        "state", "mesh", "unknowns", "Lmax/L", "drag", "tangent", "factor", "solve", "its"
+    );
+    for (name, text, mesh, steps) in FAR_FROM_ROUND {
+        let mut plan = plica::case::read(text, name).expect("the case is sound");
+        [plan.mesh.axial, plan.mesh.around, plan.mesh.thickness] = mesh;
+        let whole = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, mesh[1]));
+        let start = whole.tube.start();
+        let mut path = Path::begin(&whole, plan.tube.rest(), start, plan.solver.clone())
+            .expect("a tube at rest is not inverted");
+        for (number, stage) in (1..).zip(&plan.stages) {
+            path.set_out(stage.load.clone());
+            let last = if number == plan.stages.len() {
+                steps
+            } else {
+                stage.steps
+            };
+            for n in 1..=last {
+                path.advance(n as f64 / stage.steps as f64, &mut ())
+                    .expect("the path can be followed");
+            }
+        }
+        let (load, u) = (path.state().load.clone(), path.state().u.clone());
+        let further = whole.between(&load, &plan.tube.rest(), 1e-3);
+        let residual = whole.forces(&further, &u).expect("not inverted").residual;
+        let free = |(r, given): (&f64, &bool)| if *given { 0.0 } else { -r };
+        let b: Vec<f64> = residual.iter().zip(whole.given()).map(free).collect();
+        for drag in [0.0, 10.0] {
+            let tangent = median(|| drop(whole.tangent(&load, &u)));
+            let at = whole.tangent(&load, &u);
+            let factor = median(|| drop(at.shifted(drag)));
+            let solver = at.shifted(drag).expect("not singular");
+            let mut iterations = String::new();
+            let solve = median(|| {
+                iterations = match solver.solve(&mut b.clone(), 1e-3, &mut ()) {
+                    Ok(solved) if solved.reached => solved.iterations.to_string(),
+                    Ok(solved) => format!(">{}", solved.iterations),
+                    Err(down) => format!("indefinite after {}", down.iterations),
+                };
+            });
+            println!(
+                "{name:>8} {:>13} {:>9} {:>8.4} {drag:>7} {tangent:>9.4} {factor:>9.4} {solve:>9.4} {iterations:>5}",
+                format!("{} x {} x {}", mesh[0], mesh[1], mesh[2]),
+                u.len(),
+                plan.tube.length_ratio(&load),
+            );
+        }
+    }
 }
 
 fn main() {
@@ -73,4 +144,5 @@ fn main() {
             step / (u.len() as f64 * 1e-6)
         );
     }
+    far_from_round();
 }

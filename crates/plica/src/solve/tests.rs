@@ -274,13 +274,22 @@ fn on_a_smooth_branch_no_step_costs_more_than_the_first() {
 }
 
 /// The same energies with tangents that are solved with by conjugate gradients.
-struct Iterated<const N: usize>(Toy<N>);
+struct Iterated<const N: usize> {
+    toy: Toy<N>,
+    /// Iterations after which a solve is cut off.
+    at_most: usize,
+}
+
+fn iterated<const N: usize>(toy: Toy<N>) -> Iterated<N> {
+    Iterated { toy, at_most: 100 }
+}
 
 struct IteratedTangent {
     stiffness: Direct,
     drag: Arc<BlockBanded>,
     given: Vec<bool>,
     alpha: f64,
+    at_most: usize,
 }
 
 impl<const N: usize> Equilibrium for Iterated<N> {
@@ -289,27 +298,28 @@ impl<const N: usize> Equilibrium for Iterated<N> {
     type Tangent = IteratedTangent;
 
     fn given(&self) -> &[bool] {
-        self.0.given()
+        self.toy.given()
     }
     fn impose(&self, load: &f64, u: &mut [f64]) {
-        self.0.impose(load, u);
+        self.toy.impose(load, u);
     }
     fn between(&self, from: &f64, to: &f64, t: f64) -> f64 {
-        self.0.between(from, to, t)
+        self.toy.between(from, to, t)
     }
     fn forces(&self, load: &f64, u: &[f64]) -> Result<Balance, PastTheWall> {
-        self.0.forces(load, u)
+        self.toy.forces(load, u)
     }
     fn tangent(&self, load: &f64, u: &[f64]) -> IteratedTangent {
         IteratedTangent {
-            stiffness: self.0.tangent(load, u),
-            drag: self.0.drag.clone(),
+            stiffness: self.toy.tangent(load, u),
+            drag: self.toy.drag.clone(),
             given: self.given().to_vec(),
             alpha: 0.0,
+            at_most: self.at_most,
         }
     }
     fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        self.0.drag(factor, v, y);
+        self.toy.drag(factor, v, y);
     }
 }
 
@@ -325,6 +335,7 @@ impl Tangent for IteratedTangent {
             drag: self.drag.clone(),
             given: self.given.clone(),
             alpha,
+            at_most: self.at_most,
         })
     }
 }
@@ -339,7 +350,7 @@ impl Solver for IteratedTangent {
         accuracy: f64,
         watch: &mut dyn Watch,
     ) -> Result<Solved, NegativeCurvature> {
-        conjugate_gradients(self, b, accuracy, 100, watch)
+        conjugate_gradients(self, b, accuracy, self.at_most, watch)
     }
 }
 
@@ -363,9 +374,9 @@ impl Operator for IteratedTangent {
 
 #[test]
 fn a_path_by_iteration_leads_through_the_same_states() {
-    let (direct, iterated) = (truss(), Iterated(truss()));
+    let (direct, other) = (truss(), iterated(truss()));
     let mut one = set_out(&direct, 0.0, [-1.0], 0.5);
-    let mut other = set_out(&iterated, 0.0, [-1.0], 0.5);
+    let mut other = set_out(&other, 0.0, [-1.0], 0.5);
     for t in [0.2, 0.4, 0.6, 0.8, 1.0] {
         let exact = one.advance(t, &mut ()).unwrap();
         let step = other.advance(t, &mut ()).unwrap();
@@ -395,7 +406,7 @@ impl Watch for StopsWithin {
 
 #[test]
 fn whoever_cuts_off_a_linear_solve_stops_what_asked_for_it() {
-    let strut = Iterated(strut());
+    let strut = iterated(strut());
     let settings = Settings::default();
     let (load, off) = (2.5, vec![3.5, 1.0]);
     let found = newton(
@@ -427,9 +438,38 @@ fn whoever_cuts_off_a_linear_solve_stops_what_asked_for_it() {
 }
 
 #[test]
+fn newton_gives_up_where_linear_systems_are_cut_off_and_relaxation_goes_on() {
+    // Springs of stiffness 1 and 30, pulled alike: one iteration does not solve their systems.
+    let springs = Iterated {
+        toy: toy(|load, [x, y]| {
+            let (a, b) = (x - load, y - load / 30.0);
+            let energy = 0.5 * (a * a + 30.0 * b * b);
+            (energy, [a, 30.0 * b], [[1.0, 0.0], [0.0, 30.0]])
+        }),
+        at_most: 1,
+    };
+    let settings = Settings::default();
+    let failed = newton(&springs, &0.5, vec![0.0; 2], &settings, &mut ()).unwrap_err();
+    assert!(
+        matches!(failed, Failure::Unsolved { iterations: 2, .. }),
+        "{failed}"
+    );
+    // The path does not halve its step for that; a drag makes the systems easier, step by step.
+    let settings = Settings {
+        tolerance: 1e-2,
+        ..settings
+    };
+    let mut path = Path::begin(&springs, 0.0, vec![0.0; 2], settings).unwrap();
+    path.set_out(0.5);
+    let step = path.advance(1.0, &mut ()).unwrap();
+    assert_eq!(step.method, Method::Relaxation);
+    assert_eq!(path.reached(), 1.0);
+}
+
+#[test]
 fn negative_curvature_refuses_newton() {
     let (load, u) = (1.5, vec![1.5, 0.1]);
-    let found = newton(&Iterated(strut()), &load, u, &Settings::default(), &mut ());
+    let found = newton(&iterated(strut()), &load, u, &Settings::default(), &mut ());
     let failure = found.unwrap_err();
     assert_eq!(failure, Failure::Indefinite { negative_pivots: 1 });
 }
@@ -439,7 +479,7 @@ fn a_saddle_is_left_along_the_motion_off_it_in_a_few_solves() {
     let leave = |push: f64| {
         let start = vec![2.5, push];
         relaxation(
-            &Iterated(strut()),
+            &iterated(strut()),
             &2.5,
             start,
             &Settings::default(),
