@@ -16,13 +16,13 @@ const TWISTED: f64 = 1e-9;
 const ROUND: f64 = 1e-9;
 
 /// Iterations in which the sign of the lowest eigenvalue should show.
-const ITERATIONS: usize = 60;
+const ITERATIONS: usize = 80;
 
 /// Tests the states of a run, one after the other.
 #[derive(Debug, Default)]
 pub struct StabilityTest {
-    /// The eigenvector found last, or what there was of it: the next state's is not far.
-    last: Option<Vec<f64>>,
+    /// The lowest two eigenvectors found last, or what there was of them: the next state's are not far.
+    last: Vec<Vec<f64>>,
 }
 
 impl StabilityTest {
@@ -127,27 +127,26 @@ impl StabilityTest {
             iterations: ITERATIONS,
             side_of: Some(0.0),
         };
-        let [first, mut other] = seeds(tube);
-        // What no low harmonic has a part in shows too.
+        let mut seeds = match std::mem::take(&mut self.last) {
+            last if last.len() == 2 => last,
+            _ => seeds(tube),
+        };
+        // What no low harmonic and no mode before has a part in shows too.
         let mut noise = Noise::default();
-        let force: Vec<f64> = first.iter().map(|_| noise.next()).collect();
-        let mut smooth = vec![0.0; first.len()];
+        let force: Vec<f64> = seeds[0].iter().map(|_| noise.next()).collect();
+        let mut smooth = vec![0.0; force.len()];
         system.precondition(&force, &mut smooth);
-        let size = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let factor = size(&other) / size(&smooth);
-        for (other, smooth) in other.iter_mut().zip(&smooth) {
-            *other += factor * smooth;
-        }
-        let first = self.last.take().unwrap_or(first);
-        let mut found = lowest(system, &[first, other], &search, &mut |_| true);
+        seeds.push(smooth);
+        let mut found = lowest(system, &seeds, &search, &mut |_| true);
         let below = found.is_below(0.0);
-        self.last = (!found.vectors.is_empty()).then(|| found.vectors.swap_remove(0));
+        found.vectors.truncate(2);
+        self.last = found.vectors;
         below
     }
 }
 
 /// Two displacements with a part of every low harmonic, not alike on any two sides of the tube.
-fn seeds(tube: &SplineTube) -> [Vec<f64>; 2] {
+fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
     let (k, length) = (tube.sector.rings, tube.tube.length);
     let repeats = tube.sector.around / k;
     let highest = 4.min((k - 1) / 2);
@@ -164,5 +163,5 @@ fn seeds(tube: &SplineTube) -> [Vec<f64>; 2] {
             [0.1 * radial, along + radial, around]
         })
     };
-    [seed(0.0), seed(0.5 * PI)]
+    vec![seed(0.0), seed(0.5 * PI)]
 }
