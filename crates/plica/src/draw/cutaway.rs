@@ -13,6 +13,8 @@ pub(super) const TITLE: f64 = 9.0;
 pub(super) const TEXT: f64 = 8.0;
 /// Room for "colon" and "ileum" beside the tubes.
 pub(super) const SIDE: f64 = 36.0;
+/// The height of a panel, at most, in points.
+const TALLEST: f64 = 190.0;
 const SAMPLES: usize = 3;
 
 /// One tube of the picture.
@@ -83,7 +85,13 @@ impl Cutaway {
         let scale = self.scale()?;
         let [right, up, toward] = View::axes(self.toward);
         let (left, width) = self.extent(self.panels.iter(), right)?;
-        let per_unit = (self.width_pt - 2.0 * SIDE) / width; // points per D
+        let mut tallest: f64 = 0.0;
+        for panel in &self.panels {
+            tallest = tallest.max(self.extent([panel].into_iter(), up)?.1);
+        }
+        // Points per D; a short tube is as wide as its height lets it be, and stands in the middle.
+        let per_unit = ((self.width_pt - 2.0 * SIDE) / width).min(TALLEST / tallest);
+        let inset = 0.5 * (self.width_pt - width * per_unit);
 
         let mut tops = Vec::new();
         let mut bottom = if self.title.is_empty() { 4.0 } else { 24.0 };
@@ -123,11 +131,11 @@ impl Cutaway {
                 self.map,
                 SAMPLES,
             )?;
-            canvas.stamp(tube, (SIDE - margin, top - margin));
+            canvas.stamp(tube, (inset - margin, top - margin));
             let middle = top + height / 2.0 + TEXT * CAPITAL / 2.0;
-            canvas.text((SIDE - 7.0, middle), "colon", TEXT, Anchor::End, INK);
+            canvas.text((inset - 7.0, middle), "colon", TEXT, Anchor::End, INK);
             canvas.text(
-                (self.width_pt - SIDE + 7.0, middle),
+                (self.width_pt - inset + 7.0, middle),
                 "ileum",
                 TEXT,
                 Anchor::Start,

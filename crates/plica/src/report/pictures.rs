@@ -1,6 +1,6 @@
 //! The pictures of a run.
 
-use super::Story;
+use super::{Abscissa, Story};
 use crate::assembly::{Point, SplineTube};
 use crate::draw::{
     Chart, Curve, Cutaway, DrawError, Marker, Opening, Panel, Rule, Stroke, Surface,
@@ -250,5 +250,12 @@ fn surfaces(plan: &Plan, tube: &SplineTube, snapshot: &Snapshot, upwards: f64) -
 /// What a state is called in a legend.
 fn label(story: &Story<'_>, row: &Row) -> String {
     let (label, value) = (story.abscissa.label(), story.abscissa.of(row));
-    format!("{label} = {value:.2} ({})", row.shape)
+    let value = match story.abscissa {
+        Abscissa::InnerPressure | Abscissa::OuterPressure if value != 0.0 => {
+            format!("{value:.2e}")
+        }
+        Abscissa::InnerPressure | Abscissa::OuterPressure => "0".into(),
+        _ => format!("{value:.2}"),
+    };
+    format!("{label} = {value} ({})", row.shape)
 }
