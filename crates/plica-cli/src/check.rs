@@ -93,8 +93,15 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         (
             "time",
             format!(
-                "about {}, more where the tube snaps, and pictures",
-                duration(forecast.seconds_estimate)
+                "about {}, {} where the tube snaps, and pictures",
+                duration(forecast.seconds_estimate),
+                match (
+                    plan.mesh.rings(plan.symmetry),
+                    tube.imperfections.is_empty()
+                ) {
+                    (2.., false) => "many times more",
+                    _ => "more",
+                }
             ),
         ),
     ];

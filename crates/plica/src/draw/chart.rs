@@ -47,6 +47,8 @@ pub struct Marker {
     pub at: (f64, f64),
     /// What it says.
     pub label: String,
+    /// Its colour, as of a curve.
+    pub colour: usize,
 }
 
 /// A vertical line across the frame, named above it: where the wall turns square.

@@ -121,7 +121,7 @@ impl Chart {
             if !frame.holds((x, y)) {
                 continue;
             }
-            canvas.disc((x, y), 2.6, line_colour(2), 0.9);
+            canvas.disc((x, y), 2.6, line_colour(marker.colour), 0.9);
             let width = canvas.text_width(&marker.label, TEXT);
             let height = TEXT * CAPITAL;
             // Left edge and baseline of the label: above, right, left, below, then the corners.

@@ -3,13 +3,16 @@
 use super::{Face, Wall, even};
 use crate::assembly::{Point, SplineTube};
 use crate::tube::{Load, Tube};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Meridians that are looked at where they differ: harmonics up to 7 of the sector are told apart.
 pub(super) const MERIDIANS: usize = 16;
 
 /// Departure, in D, up to which a tube counts as axisymmetric: what solvers leave of nothing.
 const ROUND: f64 = 1e-9;
+
+/// An angle, in radians, below which what parts a crest from half a turn is rounding.
+const SAME_SIDE: f64 = 1e-4;
 
 /// A state, and where its meridians have turned to.
 pub struct Meridians<'a> {
@@ -124,10 +127,16 @@ impl<'a> Meridians<'a> {
                     } else {
                         along
                     };
+                    // What rounding makes of a crest at half a turn is at the same side always.
+                    let angle = if re < 0.0 && im < 0.0 && im > SAME_SIDE * re {
+                        PI
+                    } else {
+                        im.atan2(re)
+                    };
                     largest = Departure {
                         amplitude,
                         harmonic,
-                        crest: im.atan2(re) / harmonic as f64,
+                        crest: angle / harmonic as f64,
                     };
                 }
             }

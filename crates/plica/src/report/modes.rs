@@ -46,7 +46,7 @@ fn eigenvalues(states: &[Spectrum]) -> Chart {
     for number in 0..count.unwrap_or(0) {
         let at = |state: &Spectrum| Some((x(state), state.lowest.get(number)?.value));
         curves.push(Curve {
-            label: format!("{}", number + 1),
+            label: format!("mode {}", number + 1),
             points: states.iter().filter_map(at).collect(),
             dots: true,
             colour: number + 1,

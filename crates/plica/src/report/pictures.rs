@@ -82,6 +82,7 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
             .map(|row| Marker {
                 at: (x(row), row.energy),
                 label: format!("minimum at {:.2}", x(row)),
+                colour: 2,
             })
             .into_iter()
             .collect(),

@@ -122,6 +122,7 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
             .map(|change| Marker {
                 at: (change.critical, 0.0),
                 label: String::new(),
+                colour: change.harmonic + 1,
             })
             .collect(),
         rules: marked

@@ -191,6 +191,25 @@ fn place(row: &Row) -> String {
     place
 }
 
+/// From one state to another, told by what differs where that is one quantity alone.
+fn span(first: &Row, last: &Row) -> String {
+    let of = |row: &Row| pressures(row).map(|(_, pressure)| pressure);
+    let ratios = |row: &Row| (row.length_ratio, row.diameter_ratio);
+    if first.step == last.step {
+        return place(first);
+    }
+    if first.diameter_ratio == last.diameter_ratio && of(first) == of(last) {
+        let [from, to] = [first, last].map(|row| row.length_ratio);
+        return format!("Lmax/L = {from:.4} to {to:.4}");
+    }
+    let differ: Vec<_> = (0..4).filter(|&i| of(first)[i] != of(last)[i]).collect();
+    if let ([i], true) = (&differ[..], ratios(first) == ratios(last)) {
+        let [from, to] = [first, last].map(|row| of(row)[*i].unwrap_or(0.0));
+        return format!("pressure {} {from:.4e} to {to:.4e}", pressures(first)[*i].0);
+    }
+    format!("{} to {}", place(first), place(last))
+}
+
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(last) = self.rows.last() else {
@@ -255,27 +274,21 @@ impl fmt::Display for Summary {
             line(f, "unstable", "no state".into())?;
         }
         for (i, (harmonic, rows)) in lost.iter().enumerate() {
+            let (count, span) = (rows.len(), span(rows[0], rows[rows.len() - 1]));
+            if *harmonic == "unknown" {
+                line(
+                    f,
+                    "stability",
+                    format!("not known of {count} state(s), {span}"),
+                )?;
+                continue;
+            }
             let name = if i == 0 { "unstable" } else { "" };
-            let (first, last) = (rows[0], rows[rows.len() - 1]);
-            let others = |row: &Row| {
-                let pressures = pressures(row).map(|(_, pressure)| pressure);
-                (row.diameter_ratio, pressures)
-            };
-            let span = if others(first) == others(last) {
-                format!(
-                    "Lmax/L = {:.4} to {:.4}",
-                    first.length_ratio, last.length_ratio
-                )
-            } else {
-                format!("{} to {}", place(first), place(last))
-            };
+            let harmonic = named(harmonic);
             line(
                 f,
                 name,
-                match *harmonic {
-                    "unknown" => format!("or not: not known of {} state(s), {span}", rows.len()),
-                    _ => format!("to {} at {} state(s), {span}", named(harmonic), rows.len()),
-                },
+                format!("to {harmonic} at {count} state(s), {span}"),
             )?;
         }
         let relaxed = count(|row| row.method == "relaxation");
