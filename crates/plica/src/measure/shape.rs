@@ -16,7 +16,8 @@ pub enum Side {
 
 /// What the contracting region looks like (Okino et al. 2025, Fig. 4, name the shapes but give no
 /// measure; these thresholds are ours). V, U, square and invaginated are shapes of a tube that its
-/// circular muscles narrow; without them a tube that leaves its cylinder has collapsed.
+/// circular muscles narrow; without them a tube that leaves its cylinder has
+/// swollen, in one bulge outwards, or else collapsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// The outer face stays within 2 % of D of the cylinder, or its circular muscles widen it.
@@ -88,7 +89,7 @@ impl std::fmt::Display for Side {
     }
 }
 
-/// Fall of the radius, in D, from which a wall no longer rises.
+/// Rise of the radius after a fall, in D, from which a wall counts as rising again.
 const FALL: f64 = 1e-3;
 
 /// Whether the radius rises along the wall at most once before it falls for good.

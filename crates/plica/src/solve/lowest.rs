@@ -64,13 +64,14 @@ pub struct Lowest {
 
 impl Lowest {
     /// The side of a value on which the lowest eigenvalue lies, as far as that is certain: whether
-    /// it is below. A Rayleigh quotient below proves that; that none is, is as certain as that the
-    /// seeds have a part of every eigenvector.
+    /// it is below. A Rayleigh quotient below proves that. That none is, is as certain as that the
+    /// seeds have a part of every eigenvector, and is asked of all that were found: a seed that happens
+    /// to be an eigenvector has no error, and what lies below shows in what the others turn into.
     pub fn is_below(&self, value: f64) -> Option<bool> {
-        let (lowest, error) = (*self.values.first()?, *self.errors.first()?);
-        if lowest < value {
+        let certain = |(found, error): (&f64, &f64)| found - value > CERTAIN * error;
+        if *self.values.first()? < value {
             Some(true)
-        } else if lowest - value > CERTAIN * error {
+        } else if self.values.iter().zip(&self.errors).all(certain) {
             Some(false)
         } else {
             None
@@ -130,7 +131,8 @@ pub fn lowest<O: Operator>(
             .collect();
         let all = open.iter().all(|&j| j >= search.wanted);
         let decided = |value| found.is_below(value).is_some();
-        if all
+        if open.is_empty()
+            || (all && search.side_of.is_none())
             || search.side_of.is_some_and(decided)
             || found.iterations == search.iterations
             || !goes_on(&found)
@@ -372,6 +374,33 @@ mod tests {
         let found = lowest_of(&operator, &seeds(300, 3), &search(2));
         assert!(found.iterations < 60, "{}", found.iterations);
         assert_lowest(&operator, &found, &[-0.2, -0.05]);
+    }
+
+    #[test]
+    fn seeds_that_are_eigenvectors_do_not_hide_a_negative_eigenvalue() {
+        let mut spectrum: Vec<f64> = (0..300).map(|i| 0.5 * (1 + i) as f64).collect();
+        (spectrum[7], spectrum[20], spectrum[250]) = (1e-3, 2e-3, -0.05);
+        let operator = Reflected::new(&spectrum, 3.0);
+        let of = |sought: f64| {
+            let search = Search {
+                wanted: 3,
+                iterations: 300,
+                ..search(3)
+            };
+            let found = lowest_of(&operator, &seeds(300, 6), &search);
+            let at = found.values.iter().position(|v| (v - sought).abs() < 1e-6);
+            found.vectors[at.unwrap()].clone()
+        };
+        let mut noise = vec![0.0; 300];
+        operator.precondition(&seeds(300, 1)[0], &mut noise);
+        let seeds = [of(1e-3), of(2e-3), noise];
+        let side = Search {
+            wanted: 1,
+            side_of: Some(0.0),
+            ..search(1)
+        };
+        let found = lowest_of(&operator, &seeds, &side);
+        assert_eq!(found.is_below(0.0), Some(true), "{:?}", found.values);
     }
 
     #[test]

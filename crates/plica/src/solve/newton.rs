@@ -10,8 +10,8 @@ pub const EQUILIBRIUM: f64 = 1e-6;
 /// Armijo's condition: the fraction of the predicted fall of the energy that a step must reach.
 const SUFFICIENT: f64 = 1e-4;
 
-/// Linear systems in a row that may not be solved as exactly as was asked for. Truncated steps lead
-/// down, but creep; a drag makes the systems easier.
+/// Linear systems in a row that are not solved as exactly as was asked for, after which Newton gives
+/// up. Truncated steps lead down, but creep; a drag makes the systems easier.
 const UNSOLVED: usize = 2;
 
 /// Halvings of a step before it counts as leading nowhere.
@@ -55,6 +55,9 @@ pub fn newton<P: Equilibrium>(
                 let enough = solved.reached || imbalance <= EQUILIBRIUM;
                 unsolved = if enough { 0 } else { unsolved + 1 };
                 if unsolved == UNSOLVED {
+                    if !watch.solved(Method::Newton, imbalance) {
+                        return Err(Failure::Stopped);
+                    }
                     return Err(Failure::Unsolved {
                         iterations,
                         imbalance,

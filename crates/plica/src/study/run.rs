@@ -1,7 +1,7 @@
 //! Leads a tube through its stages and writes down every accepted state.
 
 use super::manifest::Manifest;
-use super::stability::StabilityTest;
+use super::stability::unstable_harmonics;
 use super::summary::{Ending, Summary};
 use super::units::Scale;
 use super::{
@@ -258,7 +258,6 @@ struct Record<'a> {
     scale: Scale,
     rows: Vec<Row>,
     snapshots: Vec<Snapshot>,
-    stability: StabilityTest,
     since: Instant,
 }
 
@@ -273,7 +272,6 @@ impl<'a> Record<'a> {
             scale,
             rows: vec![],
             snapshots: vec![],
-            stability: StabilityTest::default(),
             since,
         }
     }
@@ -288,9 +286,8 @@ impl<'a> Record<'a> {
         observer: &mut dyn Observer,
     ) -> Result<(), StudyError> {
         let harmonics = self.plan.output.harmonics;
-        let unstable_harmonics = self
-            .stability
-            .unstable_harmonics(self.problem, path, harmonics);
+        let mut goes_on = || !observer.stop();
+        let unstable_harmonics = unstable_harmonics(self.problem, path, harmonics, &mut goes_on);
         let (tube, state) = (&self.problem.tube, path.state());
         // The state was accepted, so its energy exists.
         let Ok(forces) = tube.forces(&state.load, &state.u) else {

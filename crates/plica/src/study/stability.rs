@@ -18,131 +18,124 @@ const ROUND: f64 = 1e-9;
 /// Iterations in which the sign of the lowest eigenvalue should show.
 const ITERATIONS: usize = 80;
 
-/// Tests the states of a run, one after the other.
-#[derive(Debug, Default)]
-pub struct StabilityTest {
-    /// The lowest two eigenvectors found last, or what there was of them: the next state's are not far.
-    last: Vec<Vec<f64>>,
+/// Negative eigenvalues of the tangent, harmonic by harmonic, as `harmonic:count`, or none.
+///
+/// For an axisymmetric state without twist the harmonics 0 to `harmonics` are looked at, whatever
+/// the symmetry of the run: in an axisymmetric run 0 is the run's own tangent, all others are blocks
+/// of the whole tube's (1 tilts or shifts sideways, 2 turns oval, and so on). Of any other state only
+/// the run's own tangent is, whose eigenvalues cannot be told apart by harmonic: of an axisymmetric
+/// run that is twisted `0:count` lists all of them; else `any:1` tells that the lowest is negative, and
+/// `unknown` that its sign did not show in the iterations that it may take, or was not looked for,
+/// `harmonics` being zero.
+///
+/// What the path solves with at its state is made use of, and made if need be.
+///
+/// `goes_on` is asked in every iteration of such a search; a sign that did not show until it said no
+/// is `unknown`.
+pub fn unstable_harmonics(
+    problem: &TubeProblem,
+    path: &mut Path<'_, TubeProblem>,
+    harmonics: usize,
+    goes_on: &mut dyn FnMut() -> bool,
+) -> String {
+    let tube = &problem.tube;
+    let (own, k) = (path.state().negative_pivots, tube.sector.rings);
+    let u = &path.state().u;
+    let round = |u: &[f64]| {
+        let mut rings = u.chunks_exact(k);
+        rings.all(|rings| rings.iter().all(|x| (x - rings[0]).abs() <= ROUND))
+    };
+    let round = round(u) && tube.geometric_imperfection().is_none_or(round);
+    let of_ring: Vec<f64> = u.iter().step_by(k).copied().collect();
+    let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
+    if !round || (twisted && k > 1) {
+        let lost = match (own, path.solver()) {
+            (0, _) if harmonics == 0 => None,
+            (0, Some(TubeSolver::Harmonic(system))) => lowest_is_negative(tube, system, goes_on),
+            (0, _) => None,
+            _ => Some(true),
+        };
+        return match lost {
+            Some(true) => format!("any:{}", own.max(1)),
+            Some(false) => "none".into(),
+            None => "unknown".into(),
+        };
+    }
+    let looked_at = if twisted {
+        0
+    } else {
+        harmonics.min((tube.sector.around - 1) / 2)
+    };
+    // Harmonics of the sector are those of the run's own tangent.
+    let repeats = tube.sector.around / k;
+    let known = match path.solver() {
+        Some(TubeSolver::Harmonic(system)) => system.negative_in_harmonics(),
+        _ => None,
+    };
+    let known = known.unwrap_or(&[]).to_vec();
+    // The blocks of an axisymmetric state are those of its ring alone.
+    let ring = (k > 1).then(|| tube.of_one_ring());
+    let ring = ring.as_ref().unwrap_or(tube);
+    let load = &path.state().load;
+    let negative = |n: usize| {
+        if k == 1 && n == 0 {
+            return own;
+        }
+        if let (0, Some(&count)) = (n % repeats, known.get(n / repeats)) {
+            return count;
+        }
+        let mut tangent = match n {
+            0 => ring.tangent(load, &of_ring),
+            n => ring.harmonic_tangent(load, &of_ring, n),
+        };
+        tangent.constrain(&ring.given_in_harmonic(n));
+        // A singular block is at the edge of stability; it counts as lost.
+        tangent
+            .factor()
+            .map_or(1, |factor| factor.negative_pivots())
+    };
+    let counts: Vec<(usize, usize)> = (0..=looked_at)
+        .into_par_iter()
+        .map(|n| (n, negative(n)))
+        .collect();
+    let lost: Vec<String> = counts
+        .iter()
+        .filter(|(_, count)| *count > 0)
+        .map(|(n, count)| format!("{n}:{count}"))
+        .collect();
+    if lost.is_empty() {
+        "none".into()
+    } else {
+        lost.join(" ")
+    }
 }
 
-impl StabilityTest {
-    /// Negative eigenvalues of the tangent, harmonic by harmonic, as `harmonic:count`, or none.
-    ///
-    /// For an axisymmetric state without twist the harmonics 0 to `harmonics` are looked at, whatever
-    /// the symmetry of the run: in an axisymmetric run 0 is the run's own tangent, all others are blocks
-    /// of the whole tube's (1 tilts or shifts sideways, 2 turns oval, and so on). Of any other state only
-    /// the run's own tangent is, whose eigenvalues cannot be told apart by harmonic: of an axisymmetric
-    /// run that is twisted `0:count` lists all of them; else `any:1` tells that the lowest is negative, and
-    /// `unknown` that its sign did not show in the iterations that it may take, or was not looked for,
-    /// `harmonics` being zero.
-    ///
-    /// What the path solves with at its state is made use of, and made if need be.
-    pub fn unstable_harmonics(
-        &mut self,
-        problem: &TubeProblem,
-        path: &mut Path<'_, TubeProblem>,
-        harmonics: usize,
-    ) -> String {
-        let tube = &problem.tube;
-        let (own, k) = (path.state().negative_pivots, tube.sector.rings);
-        let u = &path.state().u;
-        let round = |u: &[f64]| {
-            let mut rings = u.chunks_exact(k);
-            rings.all(|rings| rings.iter().all(|x| (x - rings[0]).abs() <= ROUND))
-        };
-        let round = round(u) && tube.geometric_imperfection().is_none_or(round);
-        let of_ring: Vec<f64> = u.iter().step_by(k).copied().collect();
-        let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
-        if !round || (twisted && k > 1) {
-            let lost = match (own, path.solver()) {
-                (0, _) if harmonics == 0 => None,
-                (0, Some(TubeSolver::Harmonic(system))) => self.lowest_is_negative(tube, system),
-                (0, _) => None,
-                _ => Some(true),
-            };
-            return match lost {
-                Some(true) => format!("any:{}", own.max(1)),
-                Some(false) => "none".into(),
-                None => "unknown".into(),
-            };
-        }
-        let looked_at = if twisted {
-            0
-        } else {
-            harmonics.min((tube.sector.around - 1) / 2)
-        };
-        // Harmonics of the sector are those of the run's own tangent.
-        let repeats = tube.sector.around / k;
-        let known = match path.solver() {
-            Some(TubeSolver::Harmonic(system)) => system.negative_in_harmonics(),
-            _ => None,
-        };
-        let known = known.unwrap_or(&[]).to_vec();
-        // The blocks of an axisymmetric state are those of its ring alone.
-        let ring = (k > 1).then(|| tube.of_one_ring());
-        let ring = ring.as_ref().unwrap_or(tube);
-        let load = &path.state().load;
-        let negative = |n: usize| {
-            if k == 1 && n == 0 {
-                return own;
-            }
-            if let (0, Some(&count)) = (n % repeats, known.get(n / repeats)) {
-                return count;
-            }
-            let mut tangent = match n {
-                0 => ring.tangent(load, &of_ring),
-                n => ring.harmonic_tangent(load, &of_ring, n),
-            };
-            tangent.constrain(&ring.given_in_harmonic(n));
-            // A singular block is at the edge of stability; it counts as lost.
-            tangent
-                .factor()
-                .map_or(1, |factor| factor.negative_pivots())
-        };
-        let counts: Vec<(usize, usize)> = (0..=looked_at)
-            .into_par_iter()
-            .map(|n| (n, negative(n)))
-            .collect();
-        let lost: Vec<String> = counts
-            .iter()
-            .filter(|(_, count)| *count > 0)
-            .map(|(n, count)| format!("{n}:{count}"))
-            .collect();
-        if lost.is_empty() {
-            "none".into()
-        } else {
-            lost.join(" ")
-        }
+/// Whether the lowest eigenvalue of the tangent of a state that is not round is negative, as far as
+/// that can be told.
+fn lowest_is_negative(
+    tube: &SplineTube,
+    system: &HarmonicSystem,
+    goes_on: &mut dyn FnMut() -> bool,
+) -> Option<bool> {
+    if system.average_is_indefinite() {
+        return Some(true);
     }
-
-    /// Whether the lowest eigenvalue of the tangent of a state that is not round is negative, as far as
-    /// that can be told.
-    fn lowest_is_negative(&mut self, tube: &SplineTube, system: &HarmonicSystem) -> Option<bool> {
-        if system.average_is_indefinite() {
-            return Some(true);
-        }
-        let search = Search {
-            wanted: 1,
-            accuracy: 1e-3,
-            iterations: ITERATIONS,
-            side_of: Some(0.0),
-        };
-        let mut seeds = match std::mem::take(&mut self.last) {
-            last if last.len() == 2 => last,
-            _ => seeds(tube),
-        };
-        // What no low harmonic and no mode before has a part in shows too.
-        let mut noise = Noise::default();
-        let force: Vec<f64> = seeds[0].iter().map(|_| noise.next()).collect();
-        let mut smooth = vec![0.0; force.len()];
-        system.precondition(&force, &mut smooth);
-        seeds.push(smooth);
-        let mut found = lowest(system, &seeds, &search, &mut |_| true);
-        let below = found.is_below(0.0);
-        found.vectors.truncate(2);
-        self.last = found.vectors;
-        below
-    }
+    let search = Search {
+        wanted: 1,
+        accuracy: 1e-3,
+        iterations: ITERATIONS,
+        side_of: Some(0.0),
+    };
+    // From the same seeds always: eigenvectors of the state before would hide what has become
+    // negative since, and make the answer depend on the way. Noise, made smooth, has a part of every
+    // eigenvector.
+    let mut seeds = seeds(tube);
+    let mut noise = Noise::default();
+    let force: Vec<f64> = seeds[0].iter().map(|_| noise.next()).collect();
+    let mut smooth = vec![0.0; force.len()];
+    system.precondition(&force, &mut smooth);
+    seeds.push(smooth);
+    lowest(system, &seeds, &search, &mut |_| goes_on()).is_below(0.0)
 }
 
 /// Two displacements with a part of every low harmonic, not alike on any two sides of the tube.

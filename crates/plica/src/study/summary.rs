@@ -133,7 +133,8 @@ impl Summary {
         self.first("invaginated")
     }
 
-    /// The harmonics that any state is unstable to, with those states.
+    /// The harmonics that any state is unstable to, with those states; as `unknown` those of which it is
+    /// not known.
     pub fn lost_harmonics(&self) -> BTreeMap<&str, Vec<&Row>> {
         let mut lost: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
         for row in self
