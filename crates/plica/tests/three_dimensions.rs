@@ -2,7 +2,7 @@
 
 use plica::assembly::SplineTube;
 use plica::solve::{Path, Step};
-use plica::study::{Plan, TubeProblem};
+use plica::study::{self, Observer, Plan, Row, RunDirectory, TubeProblem};
 
 /// The main case on a small mesh, contracted in three steps to Dmin/D = 0.6.
 fn contracted(plan: &Plan, problem: &TubeProblem) -> (Vec<(f64, Step)>, Vec<f64>) {
@@ -63,5 +63,51 @@ fn the_path_in_three_dimensions_does_not_depend_on_the_number_of_threads() {
     let one = with(1);
     for threads in [2, 3] {
         assert!(with(threads) == one, "{threads} threads");
+    }
+}
+
+/// Nobody watches.
+struct Nobody;
+
+impl Observer for Nobody {
+    fn accepted(&mut self, _: &Row) {}
+    fn working(&mut self, _: &str, _: f64) {}
+    fn stop(&mut self) -> bool {
+        false
+    }
+}
+
+#[test]
+fn a_round_state_loses_the_same_harmonics_whatever_is_solved_for() {
+    let unstable = |symmetry: &str| {
+        let case = format!(
+            "symmetry = {symmetry}\n\
+             output.pictures = false\n\
+             mesh.control_points = {{ axial = 40, around = 12, thickness = 4 }}\n\
+             [muscles.longitudinal]\n\
+             direction = \"longitudinal\"\n\
+             zone = [0.5, 1.0]\n\
+             [[stages]]\n\
+             steps = 8\n\
+             drive.longitudinal.length_ratio = 1.08\n"
+        );
+        let plan = plica::case::read(&case, "rounds").unwrap();
+        let rings = plan.mesh.rings(plan.symmetry);
+        let name = format!("plica-rounds-{rings}-{}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        let mut directory = RunDirectory::create(&path, &case, true).unwrap();
+        let summary = study::run(&plan, &mut directory, &mut Nobody).unwrap();
+        std::fs::remove_dir_all(&path).unwrap();
+        assert!(summary.finished(), "{}", summary.ending());
+        let rows = summary.rows().iter();
+        rows.map(|row| (row.departure_harmonic, row.unstable_harmonics.clone()))
+            .collect::<Vec<_>>()
+    };
+    let one = unstable("\"axisymmetric\"");
+    // Blocks of the ring's own, and those that the tangent of many rings is solved with.
+    assert_eq!(one[6].1, "none");
+    assert!(one[8].1.starts_with("2:"), "{one:?}");
+    for symmetry in ["\"none\"", "{ fold = 2 }"] {
+        assert_eq!(unstable(symmetry), one, "{symmetry}");
     }
 }
