@@ -343,8 +343,8 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     }
 
     /// The path's tangent du/dt at the state. None where the tangent stiffness is singular or the
-    /// residual does not exist, and where the solver meets negative curvature: the state is then
-    /// known to be unstable.
+    /// residual does not exist, where the solver does not come far enough, and where it meets negative
+    /// curvature: the state is then known to be unstable.
     fn tangent(&mut self, watch: &mut dyn Watch) -> Option<Vec<f64>> {
         if self.tangent.is_none() {
             self.tangent = Some(self.solve_for_tangent(watch));
@@ -389,7 +389,8 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         match solver.solve(&mut tangent, PREDICTION, watch) {
             Ok(solved) => {
                 watch.iterated(solved.iterations);
-                Some(tangent)
+                // What was cut off is no du/dt.
+                solved.reached.then_some(tangent)
             }
             Err(down) => {
                 watch.iterated(down.iterations);
@@ -477,11 +478,15 @@ fn accepted<P: Equilibrium>(
     forces: &Balance,
 ) -> (State<P::Load>, Option<SolverOf<P>>) {
     let solver = problem.tangent(&load, &u).into_shifted(0.0).ok();
+    let negative = |solver: &SolverOf<P>| {
+        let indefinite = usize::from(solver.is_indefinite());
+        solver.negative_pivots().max(indefinite)
+    };
     let state = State {
         load,
         energy: forces.energy,
         imbalance: forces.imbalance(problem.given()),
-        negative_pivots: solver.as_ref().map_or(1, |s| s.negative_pivots()),
+        negative_pivots: solver.as_ref().map_or(1, negative),
         u,
     };
     (state, solver)

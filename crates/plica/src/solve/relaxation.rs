@@ -13,6 +13,9 @@ const SOFTER: (f64, f64) = (0.5, 0.05);
 /// The energy's fall over the one that the tangent predicts: from the first on the drag may shrink,
 /// below the second it grows.
 const TRUSTED: (f64, f64) = (0.6, 0.25);
+/// Where a solver did not come as far as it was to, the drag stays above this many times what it was,
+/// and half as much after every so many solves that do.
+const UNSOLVED: (f64, usize) = (2.0, 5);
 /// How often a step is shortened before it is given up, and the most and the least that is left of
 /// it each time.
 const SHORTENINGS: usize = 4;
@@ -33,9 +36,9 @@ const LARGEST_DRAG: f64 = 1e12;
 /// energy falls nearly as the tangent says, the drag then shrinks with the residual (switched
 /// evolution relaxation); where it falls much less, or a step was shortened, the drag grows; where it
 /// does not fall at all, it grows eightfold, and the step is solved for again. It grows eightfold, too,
-/// where a solver that iterates did not come as far as it was to. This follows the tube
-/// down to the next equilibrium, whatever lies between. It is stable unless a symmetry of the start
-/// kept the tube on a saddle; the caller looks at the tangent there.
+/// where a solver that iterates did not come as far as it was to, and does not soon shrink back to where
+/// that was. This follows the tube down to the next equilibrium, whatever lies between. It is stable
+/// unless a symmetry of the start kept the tube on a saddle; the caller looks at the tangent there.
 ///
 /// Where a solver that iterates meets a direction of negative curvature, the step is what it had by
 /// then and that direction, along both of which the energy falls, made longer twofold as long as it
@@ -55,6 +58,8 @@ pub fn relaxation<P: Equilibrium>(
     let mut forcing = Forcing::new(settings.tolerance);
     let mut accuracy = forcing.accuracy(imbalance);
     let mut alpha = settings.relaxation_drag;
+    // Drag with which solves come as far as they are to, and how many in a row have.
+    let (mut solvable, mut in_a_row) = (0.0, 0);
     let (mut iterations, mut drag_work) = (0, 0.0);
     let mut tangent = None;
     let (mut refused, mut rejected) = (None, 0);
@@ -115,6 +120,14 @@ pub fn relaxation<P: Equilibrium>(
             }
         };
         drop(solver);
+        if !reached {
+            (solvable, in_a_row) = (UNSOLVED.0 * alpha, 0);
+        } else {
+            in_a_row += 1;
+            if in_a_row % UNSOLVED.1 == 0 {
+                solvable *= 0.5;
+            }
+        }
         let mut drag = vec![0.0; u.len()];
         problem.drag(alpha, &step, &mut drag);
         // α s · C s, and s · K s = −R · s − α s · C s.
@@ -145,7 +158,9 @@ pub fn relaxation<P: Equilibrium>(
                 alpha *= if !reached {
                     STIFFER
                 } else if trust >= TRUSTED.0 {
-                    (imbalance / before).clamp(SOFTER.1, SOFTER.0)
+                    // Not below what is solvable, unless it is already.
+                    let floor = (solvable / alpha).clamp(SOFTER.1, 1.0);
+                    (imbalance / before).clamp(SOFTER.1, SOFTER.0).max(floor)
                 } else if trust < TRUSTED.1 {
                     stiffer(length)
                 } else {

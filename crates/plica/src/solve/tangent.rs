@@ -40,6 +40,11 @@ pub trait Solver {
     /// none, 0, and only the iteration may tell.
     fn negative_pivots(&self) -> usize;
 
+    /// Whether the matrix is known not to be positive definite, without an iteration.
+    fn is_indefinite(&self) -> bool {
+        self.negative_pivots() > 0
+    }
+
     /// Solves (K + α C) x = b in place for the free unknowns, until the Euclidean norm of the
     /// residual is at most `accuracy` times that of b, or as far as it gets: what it then leaves is
     /// still a direction in which the energy falls. Entries of unknowns that supports give take no

@@ -376,6 +376,14 @@ impl Solver for HarmonicSystem {
             .map_or(0, |harmonics| harmonics[0])
     }
 
+    /// A state that is the same at every ring may stay so, whatever other harmonics it has lost.
+    fn is_indefinite(&self) -> bool {
+        match self.negative_in_harmonics() {
+            Some(harmonics) => harmonics[0] > 0,
+            None => self.average_is_indefinite(),
+        }
+    }
+
     fn solve(
         &self,
         b: &mut [f64],
@@ -383,5 +391,63 @@ impl Solver for HarmonicSystem {
         watch: &mut dyn Watch,
     ) -> Result<Solved, NegativeCurvature> {
         conjugate_gradients(self, b, accuracy, ITERATIONS, watch)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{Material, NeoHookean};
+    use crate::tube::{Mesh, Support, Tube};
+
+    #[test]
+    fn memory_that_another_state_has_used_changes_nothing() {
+        let tube = Tube {
+            length: 1.0,
+            thickness: 0.06,
+            material: Material::NeoHookean(NeoHookean::new(1.0, 0.4)),
+            muscles: vec![],
+            ends: [Support::Fixed; 2],
+            imperfections: vec![],
+        };
+        let mesh = Mesh {
+            axial: 8,
+            around: 36,
+            thickness: 4,
+            degree: 3,
+            refinements: vec![],
+        };
+        let tube = Arc::new(SplineTube::new(&tube, &mesh, 36));
+        let load = tube.tube.rest();
+        let wave = |harmonic: f64| {
+            tube.control_values(|z, _, ring| {
+                let phi = harmonic * tube.sector.ring_angle(ring);
+                let size = 0.03 * (std::f64::consts::PI * z).sin();
+                [0.0, size * phi.cos(), -size * phi.sin() / harmonic]
+            })
+        };
+        let solved = |on: &Arc<HarmonicTube>, u: &[f64]| {
+            let tangent = on.tangent(&load, u);
+            let coupled = tangent.state.low.as_ref().map(|low| low.highest);
+            let mut b = wave(3.0);
+            let solver = tangent.into_shifted(1.0).unwrap();
+            let solved = solver.solve(&mut b, 1e-6, &mut ()).unwrap();
+            assert!(solved.reached);
+            (coupled, solved.iterations, b)
+        };
+        let shared = Arc::new(HarmonicTube::new(tube.clone()));
+        let mut couplings = vec![];
+        for harmonic in [2.0, 1.0, 0.0, 2.0, 1.0] {
+            let u = match harmonic {
+                0.0 => vec![0.0; tube.unknowns()],
+                _ => wave(harmonic),
+            };
+            let alone = Arc::new(HarmonicTube::new(tube.clone()));
+            let found = solved(&shared, &u);
+            assert_eq!(found, solved(&alone, &u));
+            couplings.push(found.0);
+        }
+        // A tilt needs fewer harmonics than an oval, a round tube none.
+        assert_eq!(couplings, [Some(8), Some(4), None, Some(8), Some(4)]);
     }
 }

@@ -149,6 +149,12 @@ impl Solver for TubeSolver {
             Self::Harmonic(system) => system.negative_pivots(),
         }
     }
+    fn is_indefinite(&self) -> bool {
+        match self {
+            Self::Direct(factor) => factor.is_indefinite(),
+            Self::Harmonic(system) => system.is_indefinite(),
+        }
+    }
     fn solve(
         &self,
         b: &mut [f64],

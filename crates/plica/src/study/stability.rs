@@ -158,3 +158,69 @@ fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
     };
     vec![seed(0.0), seed(0.5 * PI)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{Material, NeoHookean};
+    use crate::tube::{Mesh, Support, Tube};
+
+    #[test]
+    fn of_an_oval_the_sign_of_the_lowest_eigenvalue_is_that_of_the_assembled_tangent() {
+        let tube = Tube {
+            length: 1.0,
+            thickness: 0.06,
+            material: Material::NeoHookean(NeoHookean::new(1.0, 0.4)),
+            muscles: vec![],
+            ends: [Support::Fixed, Support::Sliding],
+            imperfections: vec![],
+        };
+        let mesh = Mesh {
+            axial: 8,
+            around: 12,
+            thickness: 4,
+            degree: 3,
+            refinements: vec![],
+        };
+        let mut seen = [0; 3];
+        for rings in [12, 6] {
+            let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, rings));
+            let tube = &problem.tube;
+            for (size, pressure) in [
+                (0.004, 0.0),
+                (0.004, 0.02),
+                (0.004, 0.05),
+                (0.02, 0.0),
+                (0.02, 0.05),
+                (0.04, 0.0),
+                (0.04, 0.02),
+                (0.04, 0.03),
+            ] {
+                // Not an equilibrium, which makes no difference to the tangent.
+                let oval = tube.control_values(|z, _, ring| {
+                    let phi = 2.0 * tube.sector.ring_angle(ring);
+                    let size = size * (1.0 + (3.0 * z).cos());
+                    [0.0, size * phi.cos(), -0.5 * size * phi.sin()]
+                });
+                let mut load = tube.tube.rest();
+                load.pressures[1].follower = pressure;
+                let mut tangent = tube.tangent(&load, &oval);
+                tangent.constrain(tube.given());
+                let negative = tangent.factor().unwrap().negative_pivots();
+                let mut path = Path::begin(&problem, load, oval, Default::default()).unwrap();
+                let Some(TubeSolver::Harmonic(system)) = path.solver() else {
+                    unreachable!("many rings")
+                };
+                let average = system.average_is_indefinite();
+                assert!(!average || negative > 0);
+                assert_eq!(path.state().negative_pivots, usize::from(average));
+                let told = unstable_harmonics(&problem, &mut path, 4, &mut || true);
+                println!("{rings} {pressure}: {negative} negative, {average}, {told}");
+                assert_eq!(told, if negative > 0 { "any:1" } else { "none" });
+                seen[usize::from(negative > 0) + usize::from(average)] += 1;
+            }
+        }
+        // Stable, and unstable with and without the average telling.
+        assert!(seen.iter().all(|&times| times > 0), "{seen:?}");
+    }
+}
