@@ -68,6 +68,15 @@ pub(super) enum Material {
 pub(super) struct NeoHookean {
     pub youngs_modulus: f64,
     pub poisson_ratio: f64,
+    pub volumetric: Volumetric,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Volumetric {
+    #[default]
+    Logarithmic,
+    Quadratic,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -289,6 +298,7 @@ impl Default for NeoHookean {
         Self {
             youngs_modulus: 1.0,
             poisson_ratio: 0.495,
+            volumetric: Volumetric::default(),
         }
     }
 }

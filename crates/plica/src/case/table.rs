@@ -34,6 +34,8 @@ pub const KEYS: &[Key] = &[
     key("material.neo-hookean.poisson_ratio", Number, "", Or("0.495"),
         above(-1.0).below(0.5).because("the law is compressible"),
         "Poisson's ratio ν."),
+    key("material.neo-hookean.volumetric", Word(&["logarithmic", "quadratic"]), "", Or("\"logarithmic\""), ANY,
+        "What resists a change of volume: λ/2 (ln J)², the paper's, or λ/4 (J² − 1 − 2 ln J), which stays elliptic where the wall expands strongly."),
 
     key("muscles.<name>.direction", Word(&["circular", "longitudinal"]), "", Always("\"circular\""), ANY,
         "Whether it shortens the wall around the tube or lengthens it along the tube."),

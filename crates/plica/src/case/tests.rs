@@ -187,6 +187,7 @@ fn every_field_of_the_structs_is_in_the_table() {
         material: Material::NeoHookean(NeoHookean {
             youngs_modulus: 1.0,
             poisson_ratio: 0.3,
+            volumetric: Volumetric::Quadratic,
         }),
         muscles: BTreeMap::from([
             (

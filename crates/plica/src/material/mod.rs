@@ -18,7 +18,7 @@
 
 mod neo_hookean;
 
-pub use neo_hookean::NeoHookean;
+pub use neo_hookean::{NeoHookean, Volumetric};
 
 use crate::tensor::{Real, Tensor2};
 

@@ -1,9 +1,11 @@
 //! Compressible neo-Hookean law, Okino et al. (2025), Eqs. (9)–(11), after Bonet and Wood (2008):
 //!
-//! w = μ/2 (I₁ − 3) − μ ln J + λ/2 (ln J)²,  I₁ = tr(FeᵀFe),  J = det Fe
+//! w = μ/2 (I₁ − 3) − μ ln J + U(J),  I₁ = tr(FeᵀFe),  J = det Fe
 //!
-//! Valid for J > 0. It loses ellipticity under strong expansion (ln J > 1), far from where a
-//! nearly incompressible wall goes.
+//! with U = λ/2 (ln J)², the paper's, or U = λ/4 (J² − 1 − 2 ln J) (Simo and Taylor 1982).
+//!
+//! Valid for J > 0. Where the wall expands strongly, ln J > 1, the first U is concave and the law no
+//! longer elliptic, far from where a nearly incompressible wall goes; the second is convex for every J.
 
 use super::{Kept, Law, Moduli};
 use crate::tensor::{Real, Tensor2};
@@ -15,6 +17,18 @@ pub struct NeoHookean {
     pub mu: f64,
     /// Lamé's first constant λ.
     pub lambda: f64,
+    /// U.
+    pub volumetric: Volumetric,
+}
+
+/// How a law resists a change of volume.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Volumetric {
+    /// U = λ/2 (ln J)².
+    #[default]
+    Logarithmic,
+    /// U = λ/4 (J² − 1 − 2 ln J).
+    Quadratic,
 }
 
 impl NeoHookean {
@@ -25,7 +39,27 @@ impl NeoHookean {
         Self {
             mu: E / (2.0 * (1.0 + nu)),
             lambda: E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            volumetric: Volumetric::Logarithmic,
         }
+    }
+
+    /// J U′, a pressure times J.
+    #[inline(always)]
+    fn pressure<S: Real>(&self, J: S) -> S {
+        match self.volumetric {
+            Volumetric::Logarithmic => J.ln().times(self.lambda),
+            Volumetric::Quadratic => (J * J - J.like(1.0)).times(0.5 * self.lambda),
+        }
+    }
+
+    /// J (J U′)′, from μ − J U′: λ, or λ J² = λ + 2 J U′.
+    #[inline(always)]
+    fn bulk<S: Real>(&self, m: S) -> S {
+        let doubled = match self.volumetric {
+            Volumetric::Logarithmic => 0.0,
+            Volumetric::Quadratic => 2.0,
+        };
+        m.times(-doubled) + m.like(self.lambda + doubled * self.mu)
     }
 }
 
@@ -34,18 +68,27 @@ impl Law for NeoHookean {
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {
         let (mu, lambda) = (self.mu, self.lambda);
         let I1 = F.dot(*F);
-        let ln_J = F.determinant().ln();
+        let J = F.determinant();
+        let ln_J = J.ln();
         let shape = (I1 - I1.like(3.0)).times(0.5 * mu);
-        ln_J.mul_add(ln_J.times(0.5 * lambda) - I1.like(mu), shape)
+        match self.volumetric {
+            Volumetric::Logarithmic => {
+                ln_J.mul_add(ln_J.times(0.5 * lambda) - I1.like(mu), shape)
+            }
+            Volumetric::Quadratic => {
+                let volume = (J * J - J.like(1.0)).times(0.25 * lambda);
+                ln_J.mul_add(I1.like(-mu - 0.5 * lambda), shape + volume)
+            }
+        }
     }
 
-    // P = μ (F − F⁻ᵀ) + λ ln J F⁻ᵀ
+    // P = μ (F − F⁻ᵀ) + J U′ F⁻ᵀ
     #[inline(always)]
     fn stress<S: Real>(&self, F: &Tensor2<S>) -> Tensor2<S> {
-        let (mu, lambda) = (self.mu, self.lambda);
+        let mu = self.mu;
         let cofactor = F.cofactor();
         let J = F.determinant_with(cofactor);
-        let p = (J.ln().times(lambda) - J.like(mu)) / J;
+        let p = (self.pressure(J) - J.like(mu)) / J;
         let mut P = F.0;
         for i in 0..3 {
             for k in 0..3 {
@@ -55,15 +98,15 @@ impl Law for NeoHookean {
         Tensor2(P)
     }
 
-    // A_{jk il} = μ δ_ij δ_kl + (μ − λ ln J) F⁻ᵀ_{jl} F⁻ᵀ_{ik} + λ F⁻ᵀ_{jk} F⁻ᵀ_{il}
+    // A_{jk il} = μ δ_ij δ_kl + (μ − J U′) F⁻ᵀ_{jl} F⁻ᵀ_{ik} + J (J U′)′ F⁻ᵀ_{jk} F⁻ᵀ_{il}
     #[inline(always)]
     fn moduli<S: Real>(&self, F: &Tensor2<S>) -> Moduli<S> {
-        let (mu, lambda) = (self.mu, self.lambda);
+        let mu = self.mu;
         let cofactor = F.cofactor();
         let J = F.determinant_with(cofactor);
         let G = cofactor.scaled(J.like(1.0) / J); // F⁻ᵀ
-        let m = J.like(mu) - J.ln().times(lambda);
-        let (shifted, scaled) = (G.scaled(m).0, G.scaled(J.like(lambda)).0);
+        let m = J.like(mu) - self.pressure(J);
+        let (shifted, scaled) = (G.scaled(m).0, G.scaled(self.bulk(m)).0);
         let mut A = [[J.like(0.0); 9]; 9];
         for k in 0..3 {
             for l in k..3 {
@@ -79,23 +122,23 @@ impl Law for NeoHookean {
         A
     }
 
-    // F⁻ᵀ row by row, then μ − λ ln J.
+    // F⁻ᵀ row by row, then μ − J U′.
     #[inline(always)]
     fn keep<S: Real>(&self, F: &Tensor2<S>) -> Kept<S> {
         let cofactor = F.cofactor();
         let J = F.determinant_with(cofactor);
-        let m = J.like(self.mu) - J.ln().times(self.lambda);
+        let m = J.like(self.mu) - self.pressure(J);
         let [a, b, c] = cofactor.scaled(J.like(1.0) / J).0;
         [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], m]
     }
 
-    // A : dF = μ dF + (μ − λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ + λ (F⁻ᵀ : dF) F⁻ᵀ
+    // A : dF = μ dF + (μ − J U′) F⁻ᵀ dFᵀ F⁻ᵀ + J (J U′)′ (F⁻ᵀ : dF) F⁻ᵀ
     #[inline(always)]
     fn change<S: Real>(&self, kept: &Kept<S>, dF: &Tensor2<S>) -> Tensor2<S> {
         let [a0, a1, a2, b0, b1, b2, c0, c1, c2, m] = *kept;
         let G = Tensor2([[a0, a1, a2], [b0, b1, b2], [c0, c1, c2]]);
         let H = dF.transpose().times(G);
-        let trace = G.dot(*dF).times(self.lambda);
+        let trace = G.dot(*dF) * self.bulk(m);
         let mut middle = H;
         for i in 0..3 {
             for j in 0..3 {

@@ -8,7 +8,15 @@ fn laws() -> Vec<(&'static str, NeoHookean)> {
         ("neo-Hookean, nu = 0.495", NeoHookean::new(1.0, 0.495)),
         ("neo-Hookean, nu = 0.3", NeoHookean::new(2.5, 0.3)),
         ("neo-Hookean, nu = 0", NeoHookean::new(1.0, 0.0)),
+        ("neo-Hookean, quadratic", quadratic(0.495)),
     ]
+}
+
+fn quadratic(poisson_ratio: f64) -> NeoHookean {
+    NeoHookean {
+        volumetric: Volumetric::Quadratic,
+        ..NeoHookean::new(1.0, poisson_ratio)
+    }
 }
 
 /// A deformation gradient far from the identity, with det > 0.
@@ -154,4 +162,19 @@ fn small_strains_follow_hooke() {
     let P = law.stress(&F);
     assert!((P.0[0][0] / (E * e) - 1.0).abs() < 1e-6);
     assert!(P.0[1][1].abs() < 1e-6 * E * e);
+}
+
+#[test]
+fn only_the_quadratic_law_stays_elliptic_where_a_wall_expands() {
+    // a ⊗ b : A : a ⊗ b, the stiffness of a wave along b that moves along a; here both along x.
+    let stiffness = |law: NeoHookean, J: f64| {
+        let mut F = Tensor2::IDENTITY;
+        F.0[0][0] = J;
+        law.moduli(&F)[0][0]
+    };
+    let expansions = [1.0, 2.0, 4.0, 8.0, 16.0];
+    let found = expansions.map(|J| stiffness(quadratic(0.495), J));
+    assert!(found.iter().all(|a| *a > 1.0), "{found:?}");
+    let found = expansions.map(|J| stiffness(NeoHookean::new(1.0, 0.495), J));
+    assert!(found[0] > 1.0 && found[2] < 0.0, "{found:?}");
 }

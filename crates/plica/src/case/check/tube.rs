@@ -3,7 +3,7 @@
 use super::super::problem::Problems;
 use super::super::spec::{self, Spec};
 use super::muscles::muscles;
-use crate::material::{Material, NeoHookean};
+use crate::material::{Material, NeoHookean, Volumetric};
 use crate::tube::{Support, Tube};
 
 /// The tube, dimensionless.
@@ -36,7 +36,13 @@ pub(super) fn tube(spec: &Spec, problems: &mut Problems) -> Tube {
         length,
         thickness,
         // Stresses in E: the law's own Young's modulus is one.
-        material: Material::NeoHookean(NeoHookean::new(1.0, law.poisson_ratio)),
+        material: Material::NeoHookean(NeoHookean {
+            volumetric: match law.volumetric {
+                spec::Volumetric::Logarithmic => Volumetric::Logarithmic,
+                spec::Volumetric::Quadratic => Volumetric::Quadratic,
+            },
+            ..NeoHookean::new(1.0, law.poisson_ratio)
+        }),
         muscles: muscles(spec, length, problems),
         ends: [spec.ends.colon, spec.ends.ileum].map(support),
         imperfections: vec![], // checked against the mesh, later
