@@ -34,3 +34,4 @@ pub mod stability;
 pub mod study;
 pub mod tensor;
 pub mod tube;
+pub mod verification;

@@ -72,9 +72,7 @@ impl Law for NeoHookean {
         let ln_J = J.ln();
         let shape = (I1 - I1.like(3.0)).times(0.5 * mu);
         match self.volumetric {
-            Volumetric::Logarithmic => {
-                ln_J.mul_add(ln_J.times(0.5 * lambda) - I1.like(mu), shape)
-            }
+            Volumetric::Logarithmic => ln_J.mul_add(ln_J.times(0.5 * lambda) - I1.like(mu), shape),
             Volumetric::Quadratic => {
                 let volume = (J * J - J.like(1.0)).times(0.25 * lambda);
                 ln_J.mul_add(I1.like(-mu - 0.5 * lambda), shape + volume)
