@@ -46,6 +46,7 @@ fn mesh(degree: usize, [along, around, through]: [usize; 3]) -> Mesh {
         thickness: through + degree,
         degree,
         refinements: vec![],
+        volumetric: Default::default(),
     }
 }
 
@@ -200,6 +201,7 @@ fn the_main_case_is_the_same_for_every_sector() {
             to: 1.0,
             factor: 3.0,
         }],
+        volumetric: Default::default(),
     };
     let energy = |rings: usize| {
         let problem = problem(&tube, &mesh, rings);

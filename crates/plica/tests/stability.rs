@@ -28,6 +28,7 @@ fn passive(
         thickness: through,
         degree: 3,
         refinements: vec![],
+        volumetric: Default::default(),
     };
     TubeProblem::new(SplineTube::new(&tube, &mesh, 1))
 }

@@ -19,6 +19,7 @@ use super::tables::{Around, Layer, Slab};
 use crate::material::Material;
 use crate::matrix::{BlockBanded, multiply};
 use crate::rings::Turn;
+use crate::spline::gauss_legendre;
 use crate::tube::Load;
 use rayon::prelude::*;
 
@@ -53,6 +54,7 @@ impl LowHarmonics {
         let (inner, outer) = (tube.tube.inner_radius(), crate::tube::Tube::OUTER_RADIUS);
         let t = |radius: f64| (2.0 * radius - inner - outer) / (outer - inner);
         let slope = 2.0 / (outer - inner);
+        let along = vec![gauss_legendre(POINTS[0]); tube.axial.elements()];
         let points = Layer::points(&tube.wall, POINTS[1]);
         let wall = points.iter().map(|point| {
             let t = t(point.radius[0]);
@@ -68,7 +70,7 @@ impl LowHarmonics {
         Self {
             highest,
             through,
-            slabs: Slab::with_points(&tube.axial, POINTS[0]),
+            slabs: Slab::all(&tube.axial, &along),
             wall: wall.collect(),
             points,
             middle: [Around::at(&tube.sector, &tube.circle, 0.5, 1.0)],
@@ -325,7 +327,7 @@ impl SplineTube {
             u: &u[(slab.first + lane) * row..][..(self.degree() + 1) * row],
         };
         let mut moduli = vec![0.0; POINTS[0] * POINTS[1] * AVERAGED * padded];
-        with_law_and_degree!(self, pencil_moduli, &input, &mut moduli);
+        with_law_and_degree!(self, self.tube.material, pencil_moduli, &input, &mut moduli);
 
         let (columns, size) = (3 * low.modes(), low.row());
         let mut moved = vec![0.0; 3 * k * 3 * columns];

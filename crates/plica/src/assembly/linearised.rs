@@ -26,6 +26,9 @@ pub struct Linearised {
     /// By slab.
     kept: Vec<Kept>,
     pressed: Option<Pressed>,
+    /// Of the part that resists a change of volume, where that is integrated apart; its average is in
+    /// the whole's.
+    volume: Option<Box<Linearised>>,
     /// The tangent averaged over the rings; every unknown is free.
     pub average: Circulant,
 }
@@ -43,6 +46,18 @@ impl SplineTube {
     /// The same in the memory of another state's.
     pub fn linearise(&self, load: &Load, u: &[f64], at: &mut Linearised) {
         at.pressed = self.pressed(load, u);
+        self.linearise_elastic(load, u, at);
+        if let Some(volume) = &self.volume {
+            let apart = at.volume.get_or_insert_default();
+            volume.linearise_elastic(load, u, apart);
+            at.average.add(&apart.average);
+        }
+        if let Some(pressed) = &at.pressed {
+            self.add_average_pressure(pressed, &mut at.average);
+        }
+    }
+
+    fn linearise_elastic(&self, load: &Load, u: &[f64], at: &mut Linearised) {
         let u = self.lanes.pad(u);
         let lanes = |slab: &Slab| {
             let of = |lane| self.pencil_stretch(slab, lane, &self.around, load);
@@ -65,15 +80,12 @@ impl SplineTube {
                     let input = self.pencil((number, lane), stretch, &u);
                     let kept = &mut kept[lane * len..][..len];
                     let averaged = &mut averaged[lane * element..][..element];
-                    with_law_and_degree!(self, pencil_keep, &input, kept, averaged);
+                    with_law_and_degree!(self, self.law, pencil_keep, &input, kept, averaged);
                 }
                 self.slab_offsets(slab, &averaged)
             })
             .collect();
         self.circulant(&offsets, &mut at.average);
-        if let Some(pressed) = &at.pressed {
-            self.add_average_pressure(pressed, &mut at.average);
-        }
     }
 
     /// y += factor · K v.
@@ -82,6 +94,14 @@ impl SplineTube {
             self.pressure_product(pressed, factor, v, y);
         }
         let v = self.lanes.pad(v);
+        self.elastic_product(at, factor, &v, y);
+        if let (Some(volume), Some(apart)) = (&self.volume, &at.volume) {
+            volume.elastic_product(apart, factor, &v, y);
+        }
+    }
+
+    /// The product of the wall's part, on v in padded rows.
+    fn elastic_product(&self, at: &Linearised, factor: f64, v: &[f64], y: &mut [f64]) {
         let row = self.wall.functions() * 3 * self.lanes.padded;
         let parts: Vec<Vec<f64>> = self
             .slabs
@@ -93,10 +113,10 @@ impl SplineTube {
                 let len = kept.len() / slab.elements;
                 for lane in 0..slab.elements {
                     let stretch = &at.stretch[slab.first + lane];
-                    let input = self.pencil((number, lane), stretch, &v);
+                    let input = self.pencil((number, lane), stretch, v);
                     let kept = &kept[lane * len..][..len];
                     let out = &mut out[lane * row..][..(self.degree() + 1) * row];
-                    with_law_and_degree!(self, pencil_product, &input, kept, out);
+                    with_law_and_degree!(self, self.law, pencil_product, &input, kept, out);
                 }
                 out
             })
@@ -122,7 +142,7 @@ impl SplineTube {
             let stretch = self.pencil_stretch(slab, lane, &self.around, load);
             let input = self.pencil((number, lane), &stretch, u);
             let residual = &mut residual[lane * row..][..(self.degree() + 1) * row];
-            let part = with_law_and_degree!(self, pencil_forces, &input, residual);
+            let part = with_law_and_degree!(self, self.law, pencil_forces, &input, residual);
             sum.energy += part.energy;
             sum.energy_ungrown += part.energy_ungrown;
             sum.squares += part.squares;

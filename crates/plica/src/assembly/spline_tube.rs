@@ -8,14 +8,14 @@ use super::ring_drag::RingDrag;
 use super::slab::SlabInput;
 use super::stress_free::{StressFree, slab_stress_free};
 use super::supports::{Supports, left_by, motions_in_harmonic};
-use super::tables::{Around, Layer, Slab};
+use super::tables::{Around, Layer, Slab, full_rules, reduced_rules};
 use super::tangent::{SlabTangent, slab_tangent};
 use crate::material::Material;
 use crate::matrix::BlockBanded;
 use crate::rings::{Sector, Turn};
 use crate::spline::{Basis, Circle, gauss_legendre, graded_breakpoints};
 use crate::tensor::Lanes;
-use crate::tube::{Load, Mesh, Tube};
+use crate::tube::{Integration, Load, Mesh, Tube};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -44,6 +44,10 @@ pub struct SplineTube {
     pub(super) around: Vec<Around>,
     pub(super) lanes: RingLanes,
     pub(super) imperfect: Option<Arc<Imperfect>>,
+    /// What is integrated here: the law of the wall, or its part that resists a change of shape.
+    pub(super) law: Material,
+    /// The part that resists a change of volume, where it is integrated at fewer points.
+    pub(super) volume: Option<Box<SplineTube>>,
 }
 
 /// An imperfect geometry.
@@ -91,10 +95,10 @@ pub struct Inverted {
     pub jacobian: f64,
 }
 
-/// Calls a slab kernel for the law and the degree at hand. A new law adds one line.
+/// Calls a kernel for a law and the degree at hand. A new law adds one line.
 macro_rules! with_law_and_degree {
-    ($self:ident, $kernel:ident, $($argument:expr),+) => {
-        match $self.tube.material {
+    ($self:ident, $law:expr, $kernel:ident, $($argument:expr),+) => {
+        match $law {
             Material::NeoHookean(law) => with_degree!($self, law, $kernel, $($argument),+),
         }
     };
@@ -136,10 +140,11 @@ impl SplineTube {
         let ring = Sector::new(p, around, 1);
         let of_ring = displacement.as_deref().map(|u| first_ring(u, rings));
         let ring_supports = Supports::new(tube, &ring, &places, of_ring.as_deref());
+        let rule = gauss_legendre(p + 1);
         let spline = Self {
-            slabs: Slab::all(&axial),
-            layers: Layer::all(&wall),
-            around: Around::all(p, &sector, &circle),
+            slabs: Slab::all(&axial, &full_rules(&axial)),
+            layers: Layer::all(&wall, &full_rules(&wall)),
+            around: Around::all(&sector, &circle, &rule),
             lanes: RingLanes::new(sector.rings),
             tube: tube.clone(),
             sector,
@@ -149,10 +154,42 @@ impl SplineTube {
             supports,
             ring_supports,
             imperfect: None,
+            law: tube.material,
+            volume: None,
         };
-        match displacement {
+        let spline = match displacement {
             Some(displacement) => spline.imperfect(displacement),
             None => spline,
+        };
+        match mesh.volumetric {
+            Integration::Full => spline,
+            Integration::Reduced => spline.volume_apart(),
+        }
+    }
+
+    /// The same with the part of the law that resists a change of volume integrated at fewer points.
+    fn volume_apart(self) -> Self {
+        let p = self.degree();
+        // Around, where sums over periodic functions converge fastest, in the middle of each element.
+        let mut around = vec![(0.5, 1.0)];
+        around.resize(p + 1, (0.5, 0.0));
+        let [shape, volume] = self.law.parts();
+        let apart = Self {
+            slabs: Slab::all(&self.axial, &reduced_rules(&self.axial)),
+            layers: Layer::all(&self.wall, &reduced_rules(&self.wall)),
+            around: Around::all(&self.sector, &self.circle, &around),
+            law: volume,
+            imperfect: None,
+            ..self.clone()
+        };
+        let apart = match &self.imperfect {
+            Some(own) => apart.imperfect(own.displacement.clone()),
+            None => apart,
+        };
+        Self {
+            law: shape,
+            volume: Some(Box::new(apart)),
+            ..self
         }
     }
 
@@ -160,12 +197,17 @@ impl SplineTube {
     /// of its first ring all around.
     pub fn of_one_ring(&self) -> Self {
         let sector = Sector::new(self.degree(), self.sector.around, 1);
+        let rule: Vec<_> = self.around.iter().map(|at| (at.s, at.weight)).collect();
         let ring = Self {
-            around: Around::all(self.degree(), &sector, &self.circle),
+            around: Around::all(&sector, &self.circle, &rule),
             lanes: RingLanes::new(1),
             supports: self.ring_supports.clone(),
             sector,
             imperfect: None,
+            volume: self
+                .volume
+                .as_ref()
+                .map(|volume| Box::new(volume.of_one_ring())),
             ..self.clone()
         };
         match &self.imperfect {
@@ -280,12 +322,30 @@ impl SplineTube {
 
     /// Energy and residual of a state `u` under a load.
     pub fn forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
+        let mut forces = self.elastic_forces(load, u)?;
+        if let Some(volume) = &self.volume {
+            let apart = volume.elastic_forces(load, u)?;
+            forces.energy += apart.energy;
+            forces.energy_ungrown += apart.energy_ungrown;
+            forces.in_play = forces.in_play.hypot(apart.in_play);
+            forces.smallest_jacobian = forces.smallest_jacobian.min(apart.smallest_jacobian);
+            for (sum, part) in forces.residual.iter_mut().zip(&apart.residual) {
+                *sum += part;
+            }
+        }
+        forces.potential = forces.energy;
+        self.add_pressure(load, u, &mut forces);
+        Ok(forces)
+    }
+
+    /// Energy and residual of the wall, without pressures and the part that is integrated apart.
+    fn elastic_forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
         let slabs: Vec<SlabForces> = if self.sector.rings < FEW_RINGS {
             let forces = |(number, slab): (usize, &Slab)| {
                 let stretch = self.inverse_stretch(slab, load);
                 let shape = self.shape_of_slab(number);
                 let input = self.input(slab, (&stretch, shape.as_deref()), u);
-                with_law_and_degree!(self, slab_forces, &input)
+                with_law_and_degree!(self, self.law, slab_forces, &input)
             };
             self.slabs.par_iter().enumerate().map(forces).collect()
         } else {
@@ -328,16 +388,14 @@ impl SplineTube {
             }
         }
         forces.in_play = forces.in_play.sqrt();
-        forces.potential = forces.energy;
-        self.add_pressure(load, u, &mut forces);
         Ok(forces)
     }
 
     /// The tangent stiffness ∂R/∂u_cp of the sector at a state; every unknown is free in it. The
     /// state must not be inverted (see [`SplineTube::forces`]).
     pub fn tangent(&self, load: &Load, u: &[f64]) -> BlockBanded {
-        let turns = |point: &Around| vec![point.slots.iter().map(Turn::from).collect()];
-        self.tangent_on(load, u, &self.around.iter().map(turns).collect::<Vec<_>>())
+        let turns = |at: &Around| vec![at.slots.iter().map(Turn::from).collect()];
+        self.tangent_on(load, u, &turns)
     }
 
     /// The block of the whole tube's tangent that belongs to circumferential harmonic n ≥ 1, at
@@ -345,14 +403,13 @@ impl SplineTube {
     /// displacements (z cos nφ, r cos nφ, −θ sin nφ). Scaled by 2/N_C; every unknown is free.
     pub fn harmonic_tangent(&self, load: &Load, u: &[f64], n: usize) -> BlockBanded {
         assert!(self.sector.rings == 1 && n >= 1);
-        let rule = gauss_legendre(self.degree() + 1);
-        let turns = |&(s, _): &(f64, f64)| {
+        let turns = |at: &Around| {
             self.sector
-                .harmonic_at(n, s)
+                .harmonic_at(n, at.s)
                 .map(|half| vec![half])
                 .to_vec()
         };
-        self.tangent_on(load, u, &rule.iter().map(turns).collect::<Vec<_>>())
+        self.tangent_on(load, u, &turns)
     }
 
     /// For every unknown of circumferential harmonic n of the tube, whether a support gives it or it
@@ -383,9 +440,33 @@ impl SplineTube {
         left_by(motions_in_harmonic(n, &points), &self.held_in_harmonics())
     }
 
-    fn tangent_on(&self, load: &Load, u: &[f64], turns: &[Vec<Vec<Turn>>]) -> BlockBanded {
+    /// The tangent where the slots of a point around are turned as `turns` says.
+    fn tangent_on(
+        &self,
+        load: &Load,
+        u: &[f64],
+        turns: &dyn Fn(&Around) -> Vec<Vec<Turn>>,
+    ) -> BlockBanded {
         let (p, m) = (self.degree(), self.row_size());
         let mut matrix = BlockBanded::zeros(self.axial.functions(), m, p);
+        let all = |tube: &Self| tube.around.iter().map(turns).collect::<Vec<_>>();
+        let own = all(self);
+        self.add_elastic_tangent(load, u, &own, &mut matrix);
+        if let Some(volume) = &self.volume {
+            volume.add_elastic_tangent(load, u, &all(volume), &mut matrix);
+        }
+        self.add_pressure_tangent(load, u, &own, &mut matrix);
+        matrix
+    }
+
+    fn add_elastic_tangent(
+        &self,
+        load: &Load,
+        u: &[f64],
+        turns: &[Vec<Vec<Turn>>],
+        matrix: &mut BlockBanded,
+    ) {
+        let (p, m) = (self.degree(), self.row_size());
         // What is held before it is summed: a few slabs at a time when rows are large.
         let slab_bytes = 8 * (p + 1) * m * m * (8 + p);
         let together = (SLAB_MEMORY / slab_bytes).clamp(2, self.slabs.len().max(2));
@@ -400,7 +481,7 @@ impl SplineTube {
                     let input = self.input(slab, (&stretch, shape.as_deref()), u);
                     (
                         slab.first,
-                        with_law_and_degree!(self, slab_tangent, &input, turns),
+                        with_law_and_degree!(self, self.law, slab_tangent, &input, turns),
                     )
                 })
                 .collect();
@@ -412,7 +493,7 @@ impl SplineTube {
             } else {
                 last
             };
-            let places = self.places(&matrix);
+            let places = self.places(matrix);
             let parts_before = before.as_slice();
             matrix.panels_mut().enumerate().collect::<Vec<_>>()[first..end]
                 .par_iter_mut()
@@ -427,8 +508,6 @@ impl SplineTube {
                 });
             before = parts.pop();
         }
-        self.add_pressure_tangent(load, u, turns, &mut matrix);
-        matrix
     }
 
     /// The drag matrix ∫ N N dV₀ of the sector.

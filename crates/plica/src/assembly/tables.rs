@@ -1,8 +1,28 @@
 //! What the kernel needs to know of the splines, tabulated once.
 
 use crate::rings::{Sector, SlotValues};
-use crate::spline::{Basis, Circle, gauss_legendre};
+use crate::spline::{Basis, Circle, gauss_legendre, reduced_rule};
 use crate::tensor::{LANES, Lanes};
+
+/// A rule for every element of a basis: points on [0, 1] of it, and weights. Kernels read p + 1 points;
+/// rules of fewer are filled up with places that have no weight.
+pub type Rules = Vec<Vec<(f64, f64)>>;
+
+/// p + 1 Gauss points on every element.
+pub fn full_rules(basis: &Basis) -> Rules {
+    vec![gauss_legendre(basis.degree() + 1); basis.elements()]
+}
+
+/// About one point on every element, see [`reduced_rule`]; all points where there is no such rule.
+pub fn reduced_rules(basis: &Basis) -> Rules {
+    let Some(mut rules) = reduced_rule(basis) else {
+        return full_rules(basis);
+    };
+    for rule in &mut rules {
+        rule.resize(basis.degree() + 1, (0.5, 0.0));
+    }
+    rules
+}
 
 /// Eight elements that are neighbours along the tube. The last slab may hold fewer: its spare
 /// lanes repeat its last element with no weight.
@@ -23,35 +43,30 @@ pub struct Slab {
 }
 
 impl Slab {
-    /// All slabs of an axial basis.
-    pub fn all(basis: &Basis) -> Vec<Self> {
-        Self::with_points(basis, basis.degree() + 1)
-    }
-
-    /// All slabs, with so many quadrature points to an element.
-    pub fn with_points(basis: &Basis, points: usize) -> Vec<Self> {
+    /// All slabs of an axial basis, with a rule of as many points for every element.
+    pub fn all(basis: &Basis, rules: &Rules) -> Vec<Self> {
         (0..basis.elements())
             .step_by(LANES)
-            .map(|first| Self::new(basis, first, points))
+            .map(|first| Self::new(basis, first, rules))
             .collect()
     }
 
-    fn new(basis: &Basis, first: usize, points: usize) -> Self {
-        let (rule, functions) = (gauss_legendre(points), basis.degree() + 1);
+    fn new(basis: &Basis, first: usize, rules: &Rules) -> Self {
+        let (points, functions) = (rules[0].len(), basis.degree() + 1);
         let elements = (basis.elements() - first).min(LANES);
         let zero = |n: usize| vec![Lanes::default(); n];
         let mut slab = Self {
             first,
             elements,
-            value: zero(rule.len() * functions),
-            slope: zero(rule.len() * functions),
-            weight: zero(rule.len()),
-            z: zero(rule.len()),
+            value: zero(points * functions),
+            slope: zero(points * functions),
+            weight: zero(points),
+            z: zero(points),
         };
         for l in 0..LANES {
             let e = first + slab.row(l);
             let (start, end) = basis.element(e);
-            for (q, (x, w)) in rule.iter().enumerate() {
+            for (q, (x, w)) in rules[e].iter().enumerate() {
                 let z = start + (end - start) * x;
                 let v = basis.evaluate_in(e, z);
                 slab.z[q].0[l] = z;
@@ -87,10 +102,10 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// All layers of a basis through the wall.
-    pub fn all(basis: &Basis) -> Vec<Self> {
-        let rule = gauss_legendre(basis.degree() + 1);
+    /// All layers of a basis through the wall, with a rule for every element.
+    pub fn all(basis: &Basis, rules: &Rules) -> Vec<Self> {
         let layer = |e: usize| {
+            let rule = &rules[e];
             let (start, end) = basis.element(e);
             let points: Vec<f64> = rule
                 .iter()
@@ -180,8 +195,7 @@ impl Around {
     }
 
     /// The quadrature points of an element around the tube.
-    pub fn all(degree: usize, sector: &Sector, circle: &Circle) -> Vec<Self> {
-        let rule = gauss_legendre(degree + 1);
+    pub fn all(sector: &Sector, circle: &Circle, rule: &[(f64, f64)]) -> Vec<Self> {
         rule.iter()
             .map(|&(s, w)| Self::at(sector, circle, s, w))
             .collect()

@@ -132,7 +132,16 @@ pub(super) enum Support {
 pub(super) struct Mesh {
     pub control_points: ControlPoints,
     pub degree: usize,
+    pub volumetric_integration: Integration,
     pub refine: Option<Vec<Refine>>,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Integration {
+    #[default]
+    Full,
+    Reduced,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
@@ -308,6 +317,7 @@ impl Default for Mesh {
         Self {
             control_points: ControlPoints::default(),
             degree: 3,
+            volumetric_integration: Integration::default(),
             refine: None,
         }
     }

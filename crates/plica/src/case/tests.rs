@@ -108,6 +108,7 @@ fn state() -> SavedState {
             thickness: 4,
             degree: 3,
             refinements: vec![],
+            volumetric: Default::default(),
         },
         rings: 1,
     };
@@ -208,6 +209,7 @@ fn every_field_of_the_structs_is_in_the_table() {
                 thickness: 3,
             },
             degree: 3,
+            volumetric_integration: Integration::Reduced,
             refine: Some(vec![Refine {
                 zone: [0.0, 1.0],
                 factor: 2.0,

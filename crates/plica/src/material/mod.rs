@@ -59,6 +59,19 @@ impl Material {
             Self::NeoHookean(law) => law.lambda + 2.0 * law.mu,
         }
     }
+
+    /// The law as a sum of two: what resists a change of shape, and what a change of volume.
+    pub fn parts(&self) -> [Self; 2] {
+        match *self {
+            Self::NeoHookean(law) => {
+                let (shape, volume) = (
+                    NeoHookean { lambda: 0.0, ..law },
+                    NeoHookean { mu: 0.0, ..law },
+                );
+                [Self::NeoHookean(shape), Self::NeoHookean(volume)]
+            }
+        }
+    }
 }
 
 #[cfg(test)]

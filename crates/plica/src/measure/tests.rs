@@ -21,6 +21,7 @@ fn tube(rings: usize) -> SplineTube {
         thickness: 4,
         degree: 3,
         refinements: vec![],
+        volumetric: Default::default(),
     };
     SplineTube::new(&tube, &mesh, rings)
 }

@@ -23,6 +23,13 @@ pub struct Circulant {
 }
 
 impl Circulant {
+    /// Adds another of the same shape.
+    pub fn add(&mut self, other: &Self) {
+        for (sum, part) in self.offsets.iter_mut().zip(&other.offsets) {
+            sum.add_scaled(1.0, part);
+        }
+    }
+
     /// B_n: the matrix on circumferential harmonic n of the whole tube; every unknown is free.
     pub fn harmonic(&self, n: usize) -> BlockBanded {
         let like = &self.offsets[0];

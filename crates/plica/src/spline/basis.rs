@@ -32,6 +32,17 @@ impl Basis {
         Self { degree, knots }
     }
 
+    /// The same with every inner knot so many times: less smooth there. Its elements are then knot spans,
+    /// some of them empty.
+    pub(super) fn less_smooth(degree: usize, times: usize, breakpoints: &[f64]) -> Self {
+        let inner = &breakpoints[1..breakpoints.len() - 1];
+        let (first, last) = (breakpoints[0], breakpoints[breakpoints.len() - 1]);
+        let mut knots = vec![first; degree + 1];
+        knots.extend(inner.iter().flat_map(|&t| vec![t; times]));
+        knots.extend(vec![last; degree + 1]);
+        Self { degree, knots }
+    }
+
     /// The one element [0, 1] of a uniform periodic basis.
     pub fn uniform_element(degree: usize) -> Self {
         let p = degree as i32;
@@ -71,6 +82,14 @@ impl Basis {
     pub fn greville(&self) -> Vec<f64> {
         (0..self.functions())
             .map(|a| self.knots[a + 1..=a + self.degree].iter().sum::<f64>() / self.degree as f64)
+            .collect()
+    }
+
+    /// Integral of every function.
+    pub fn integrals(&self) -> Vec<f64> {
+        let p = self.degree;
+        (0..self.functions())
+            .map(|a| (self.knots[a + p + 1] - self.knots[a]) / (p + 1) as f64)
             .collect()
     }
 

@@ -26,5 +26,5 @@ mod transfer;
 pub use basis::{Basis, Values};
 pub use circle::{Circle, control_wave};
 pub use grading::{Refinement, graded_breakpoints};
-pub use quadrature::gauss_legendre;
+pub use quadrature::{gauss_legendre, reduced_rule};
 pub use transfer::{through, transfer};

@@ -48,7 +48,7 @@ pub fn through(basis: &Basis, mut values: Vec<f64>, width: usize) -> Vec<f64> {
 
 /// Elimination within the band, without pivoting: a collocation matrix of splines is totally
 /// positive (de Boor and Pinkus 1977).
-fn solve(matrix: &mut [Vec<f64>], right: &mut [f64], p: usize, width: usize) {
+pub(super) fn solve(matrix: &mut [Vec<f64>], right: &mut [f64], p: usize, width: usize) {
     let n = matrix.len();
     for i in 0..n {
         let (head, tail) = matrix.split_at_mut(i + 1);

@@ -110,6 +110,7 @@ mod tests {
             thickness: 5,
             degree: 3,
             refinements: vec![],
+            volumetric: Default::default(),
         };
         SplineTube::new(&tube, &mesh, rings)
     }

@@ -416,6 +416,7 @@ mod tests {
             thickness: 4,
             degree: 3,
             refinements: vec![],
+            volumetric: Default::default(),
         };
         let tube = Arc::new(SplineTube::new(&tube, &mesh, 36));
         let load = tube.tube.rest();

@@ -47,6 +47,7 @@ impl Layout {
             thickness,
             degree,
             ref refinements,
+            volumetric: _,
         } = self.mesh;
         let sound = |from: f64, to: f64, factor: f64| {
             from < to && from.is_finite() && to.is_finite() && (1.0..=1e6).contains(&factor)

@@ -168,6 +168,7 @@ mod tests {
             thickness: thickness + degree,
             degree,
             refinements: vec![],
+            volumetric: Default::default(),
         };
         SplineTube::new(&tube(), &mesh, rings)
     }

@@ -181,6 +181,7 @@ mod tests {
             thickness: 4,
             degree: 3,
             refinements: vec![],
+            volumetric: Default::default(),
         };
         let mut seen = [0; 3];
         for rings in [12, 6] {

@@ -15,6 +15,18 @@ pub struct Mesh {
     pub degree: usize,
     /// Where elements along the tube are denser.
     pub refinements: Vec<Refinement>,
+    /// How the wall's resistance to a change of volume is integrated.
+    pub volumetric: Integration,
+}
+
+/// At how many points of an element something is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integration {
+    /// p + 1 Gauss points each way: exactly, but for the curvature.
+    #[default]
+    Full,
+    /// Fewer, so that a nearly incompressible wall does not lock.
+    Reduced,
 }
 
 /// What repeats around the circumference.

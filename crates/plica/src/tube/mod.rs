@@ -11,7 +11,7 @@ mod random;
 
 pub use imperfection::{Axial, Imperfection, Mode, Part, Push, Shape, Wave};
 pub use load::{EndMotion, Load, Pressure};
-pub use mesh::{Mesh, Symmetry};
+pub use mesh::{Integration, Mesh, Symmetry};
 pub use random::Random;
 
 use crate::activation::{Direction, Muscle};

@@ -15,7 +15,7 @@ mod found;
 pub mod one_dimension;
 mod rings;
 pub mod row;
-mod specimen;
+pub mod specimen;
 
 pub use found::{Findings, Observer, Trouble, Verification};
 pub use row::{Row, Tolerance};

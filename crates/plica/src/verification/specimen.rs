@@ -8,7 +8,7 @@ use crate::material::{Law, Material, NeoHookean};
 use crate::solve::{Path, Settings, State};
 use crate::stability::Harmonics;
 use crate::study::TubeProblem;
-use crate::tube::{Load, Mesh, Pressure, Support, Tube};
+use crate::tube::{Integration, Load, Mesh, Pressure, Support, Tube};
 
 /// A tube, and the elements along, around and through it.
 #[derive(Clone, Debug)]
@@ -19,6 +19,8 @@ pub struct Specimen {
     pub elements: [usize; 3],
     /// p.
     pub degree: usize,
+    /// How the resistance to a change of volume is integrated.
+    pub volumetric: Integration,
 }
 
 /// Newton as exact as rounding lets it be.
@@ -44,6 +46,7 @@ impl Specimen {
             tube,
             elements,
             degree: 3,
+            volumetric: Integration::Full,
         }
     }
 
@@ -73,6 +76,7 @@ impl Specimen {
             thickness: through + p,
             degree: p,
             refinements: vec![],
+            volumetric: self.volumetric,
         };
         TubeProblem::new(SplineTube::new(&self.tube, &mesh, rings))
     }

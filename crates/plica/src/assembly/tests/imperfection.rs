@@ -15,6 +15,7 @@ fn imperfect(ends: [Support; 2], of: Part, amplitude: f64, wave: Wave) -> Spline
         thickness: 5,
         degree: 3,
         refinements: vec![],
+        volumetric: Default::default(),
     };
     let imperfection = Imperfection {
         of,

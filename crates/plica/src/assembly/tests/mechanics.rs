@@ -23,6 +23,7 @@ fn a_tube_at_rest_has_its_radii_its_volume_and_no_residual() {
         thickness: 5,
         degree: 3,
         refinements: vec![],
+        volumetric: Default::default(),
     };
     let (rest, spline) = (tube.rest(), SplineTube::new(&tube, &mesh, 1));
     let u = vec![0.0; spline.unknowns()];

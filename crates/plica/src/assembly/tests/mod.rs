@@ -7,6 +7,7 @@ mod slabs;
 mod stress_free;
 mod supports;
 mod symmetry;
+mod volume;
 
 use super::SplineTube;
 use crate::activation::{Direction, Muscle, Profile};
@@ -53,6 +54,7 @@ pub(in crate::assembly) fn tube_and_load(
         thickness: elements[1] + degree,
         degree,
         refinements: vec![],
+        volumetric: Default::default(),
     };
     TubeAndLoad {
         tube: SplineTube::new(&tube, &mesh, rings),

@@ -20,6 +20,7 @@ fn mesh(degree: usize, [along, through, around]: [usize; 3]) -> Mesh {
         thickness: through + degree,
         degree,
         refinements: vec![],
+        volumetric: Default::default(),
     }
 }
 

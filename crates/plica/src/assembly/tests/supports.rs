@@ -28,6 +28,7 @@ fn anchors_are_as_many_as_rigid_motions_are_left() {
                 thickness: 3,
                 degree: 2,
                 refinements: vec![],
+                volumetric: Default::default(),
             };
             let spline = SplineTube::new(&tube, &mesh, rings);
             assert_eq!(spline.anchors(), anchors, "{ends:?}, {rings} rings");

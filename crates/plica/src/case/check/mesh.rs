@@ -4,7 +4,7 @@ use super::super::problem::Problems;
 use super::super::spec::{self, Refine, Spec};
 use super::zone;
 use crate::spline::Refinement;
-use crate::tube::{Mesh, Symmetry, Tube};
+use crate::tube::{Integration, Mesh, Symmetry, Tube};
 
 /// Control points of the sector that is solved, at most: some 100 GB.
 const LARGEST: usize = 20_000_000;
@@ -22,6 +22,10 @@ pub(super) fn mesh(spec: &Spec, tube: &Tube, problems: &mut Problems) -> (Mesh, 
         thickness: points.thickness,
         degree: spec.mesh.degree,
         refinements: refinements(spec, tube, problems),
+        volumetric: match spec.mesh.volumetric_integration {
+            spec::Integration::Full => Integration::Full,
+            spec::Integration::Reduced => Integration::Reduced,
+        },
     };
     let symmetry = match spec.symmetry {
         spec::Symmetry::Axisymmetric => Symmetry::Axisymmetric,

@@ -194,6 +194,7 @@ mod tests {
                     to: 1.0,
                     factor: 3.0,
                 }],
+                volumetric: Default::default(),
             },
             rings: 2,
         };

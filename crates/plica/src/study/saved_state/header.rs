@@ -179,6 +179,7 @@ impl SavedState {
                 thickness: header.mesh.thickness,
                 degree: header.mesh.degree,
                 refinements: header.mesh.refine.iter().map(refinement).collect(),
+                volumetric: Default::default(),
             },
             rings: header.rings,
         };
