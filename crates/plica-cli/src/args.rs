@@ -23,6 +23,9 @@ pub enum Command {
     /// Tell which modes a run's path becomes unstable to, where, and in what shape
     #[command(after_long_help = STABILITY_EPILOGUE)]
     Stability(StabilityArguments),
+    /// Solve problems whose answer is known otherwise, and say how far off each is
+    #[command(after_long_help = VERIFY_EPILOGUE)]
+    Verify(VerifyArguments),
     /// Say whether a case is sound, and what running it would take
     Check {
         /// The case file
@@ -81,6 +84,26 @@ pub struct StabilityArguments {
     pub threads: Option<u16>,
 }
 
+/// What `plica verify` takes.
+#[derive(Args, Debug)]
+pub struct VerifyArguments {
+    /// Take the slow checks along, and finer meshes
+    #[arg(long)]
+    pub full: bool,
+    /// A check to hold alone, by its name or a part of it; may be given again [default: all]
+    #[arg(long, value_name = "NAME")]
+    pub only: Vec<String>,
+    /// List the checks by name, and hold none
+    #[arg(long, conflicts_with_all = ["full", "only", "out"])]
+    pub list: bool,
+    /// Directory to write the table and the pictures to
+    #[arg(short, long, value_name = "DIR", default_value = "runs/verification")]
+    pub out: PathBuf,
+    /// Threads to use [default: all cores]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
 /// A tolerance that can be reached.
 fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -96,12 +119,14 @@ Examples:
   plica run tube.toml            run it; results go to runs/tube
   plica run tube.toml -o again -t 4
   plica stability runs/tube      where does its path become unstable, and how?
+  plica verify                   is this program right?
 
 A case file is described, key by key, in docs/case-file.md.
 
 Exit codes:
   0    done
-  1    the run could not be finished: no equilibrium was found any more, or too little memory
+  1    the run could not be finished: no equilibrium was found any more, or too little memory;
+       or a row of the verification is too far off
   2    wrong arguments, or a case with problems
   3    files could not be read or written
   130  interrupted (Ctrl-C or SIGTERM); what was computed until then is written";
@@ -142,3 +167,14 @@ What it leaves in the directory of the run:
   mode.png         the modes of the first unstable state, or else of the last
 
 Ctrl-C or SIGTERM ends it after the iteration at hand, with the states before written.";
+
+const VERIFY_EPILOGUE: &str = "\
+Closed forms, an independent one-dimensional solution, orders of convergence, and second routes through
+the program itself; every row says what was computed, what it should be, who says so, and how far off
+it may be. docs/verification.md tells how each is found.
+
+What it leaves behind:
+  verification.md   the table and the pictures as a page
+  *.png             the pictures
+
+Ctrl-C or SIGTERM ends it after the solve at hand, with nothing written.";

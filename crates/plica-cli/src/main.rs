@@ -14,6 +14,7 @@ mod run;
 mod stability;
 mod threads;
 mod ticker;
+mod verify;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
     let done = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Stability(arguments) => stability::stability(&arguments),
+        Command::Verify(arguments) => verify::verify(&arguments),
         Command::Check { case } => check::check(&case),
         Command::New { file } => new::new(&file),
         Command::Completions { shell } => new::completions(shell),

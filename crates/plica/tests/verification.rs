@@ -1,36 +1,18 @@
-//! The quick verification, row by row.
+//! The quick verification, row by row: what `plica verify` holds.
 
-use plica::verification::{Observer, Row, verify};
-
-/// Prints as it goes.
-struct Printer;
-
-impl Observer for Printer {
-    fn found(&mut self, row: &Row) {
-        let verdict = if row.passes() { "ok" } else { "FAILED" };
-        println!(
-            "{} {}: {} for {}, off by {:.1e} {verdict} {:?}",
-            row.case,
-            row.quantity,
-            row.computed,
-            row.reference,
-            row.error(),
-            row.trouble
-        );
-    }
-}
+use plica::verification::verify;
 
 #[test]
 fn every_row_of_the_quick_verification_passes() {
-    let only = std::env::var("ONLY").unwrap_or_default();
-    let t = std::time::Instant::now();
-    let found = verify(
-        std::env::var("FULL").is_ok(),
-        &|check| check.name.contains(&only),
-        &mut Printer,
-    )
-    .unwrap();
-    println!("{:?}", t.elapsed());
+    let found = verify(false, &|_| true, &mut ()).unwrap();
     println!("{}", found.text());
+    assert!(found.rows.len() > 90, "{} rows", found.rows.len());
     assert_eq!(found.failed(), 0);
+    assert!(
+        found
+            .pictures()
+            .unwrap()
+            .iter()
+            .all(|(_, png)| png.len() > 1000)
+    );
 }

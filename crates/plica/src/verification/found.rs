@@ -30,6 +30,9 @@ pub enum Trouble {
     /// A path ended.
     #[error("{0}")]
     Path(#[from] PathError<Inverted>),
+    /// A solver ended.
+    #[error("{0}")]
+    Solve(String),
     /// A state is inside out.
     #[error("{0}")]
     Inverted(#[from] Inverted),

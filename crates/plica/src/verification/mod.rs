@@ -11,11 +11,16 @@
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
 mod columns;
+mod exact;
 mod found;
+mod locking;
+mod manufactured;
 pub mod one_dimension;
+mod paper;
 mod rings;
+mod routes;
 pub mod row;
-pub mod specimen;
+mod specimen;
 
 pub use found::{Findings, Observer, Trouble, Verification};
 pub use row::{Row, Tolerance};
@@ -33,6 +38,19 @@ pub struct Check {
 
 /// All checks, in the order of the table.
 pub const CHECKS: &[Check] = &[
+    quick("rest", "a tube at rest", exact::rest),
+    quick(
+        "free-growth",
+        "a tube that is free to grow",
+        exact::free_growth,
+    ),
+    quick(
+        "objectivity",
+        "a tube that is turned as a whole",
+        exact::objectivity,
+    ),
+    quick("frame", "muscles that are turned", exact::frame),
+    quick("splines", "what splines draw", exact::splines),
     quick("lame", "a ring under a small pressure", rings::lame),
     quick("inflation", "a ring that is blown up", rings::inflation),
     quick("growth", "a closed ring that has grown", rings::growth),
@@ -42,6 +60,16 @@ pub const CHECKS: &[Check] = &[
         rings::buckling,
     ),
     quick("thin-ring", "thinner and thinner rings", rings::thin_limit),
+    quick(
+        "thick-cylinder",
+        "a thick cylinder that is nearly incompressible",
+        locking::thick_cylinder,
+    ),
+    quick(
+        "orders",
+        "manufactured solutions, finer and finer",
+        manufactured::orders,
+    ),
     quick("plates", "a tube between plates", columns::plates),
     quick(
         "thin-shell",
@@ -52,6 +80,40 @@ pub const CHECKS: &[Check] = &[
         "column",
         "longer and longer tubes between plates",
         columns::column,
+    ),
+    quick("tangents", "tangents against differences", routes::tangents),
+    quick(
+        "solvers",
+        "two ways to solve with a tangent",
+        routes::solvers,
+    ),
+    quick("symmetries", "one ring, a fold, all", routes::symmetries),
+    quick(
+        "schemes",
+        "Newton, relaxation, pseudo-time",
+        routes::schemes,
+    ),
+    quick("threads", "one thread, several", routes::threads),
+    quick("main-case", "the paper's main case", paper::main_case),
+    slow(
+        "main-case-radii",
+        "where the main case is narrowest",
+        paper::narrowest,
+    ),
+    slow(
+        "main-case-stability",
+        "which harmonics the main case loses",
+        paper::stability,
+    ),
+    slow(
+        "main-case-meshes",
+        "the main case on finer and finer meshes",
+        paper::meshes,
+    ),
+    slow(
+        "relaxation-alone",
+        "which harmonics relaxation alone loses",
+        paper::relaxation_alone,
     ),
 ];
 
@@ -65,6 +127,17 @@ const fn quick(
         about,
         slow: false,
         run,
+    }
+}
+
+const fn slow(
+    name: &'static str,
+    about: &'static str,
+    run: fn(&mut Findings<'_>) -> Result<(), Trouble>,
+) -> Check {
+    Check {
+        slow: true,
+        ..quick(name, about, run)
     }
 }
 

@@ -97,7 +97,7 @@ fn every_sector_and_every_harmonic_is_part_of_the_whole() {
 fn an_even_stress_meets_the_forces_that_full_integration_meets() {
     // The patch test. A flat wall would pass it to rounding; in a round one the volume grows with R,
     // and what is integrated is a degree higher than the rule is made for at the faces of the wall.
-    for (degree, tolerance) in [(1, 3e-3), (3, 3e-4), (5, 5e-5), (2, 2e-2)] {
+    for (degree, tolerance) in [(1, 3e-3), (3, 3e-4), (5, 5e-5), (2, 5e-2)] {
         let [tube, full] = reduced(degree, [7, 3, 24], 1);
         let load = tube.tube.rest();
         let radius = tube.circle.control_radius;

@@ -1,0 +1,124 @@
+//! `plica verify`.
+
+use crate::args::VerifyArguments;
+use crate::failure::Failure;
+use crate::interrupt::Interrupt;
+use crate::ticker::Ticker;
+use crate::{console, threads};
+use plica::verification::{CHECKS, Check, Observer, Row, Trouble, verify as hold};
+use std::fs;
+
+/// The page with the table.
+const PAGE: &str = "verification.md";
+
+/// Holds the checks, prints the table and writes it with its pictures.
+pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
+    if arguments.list {
+        return console::say(&list());
+    }
+    let wanted = |check: &Check| {
+        let only = &arguments.only;
+        only.is_empty() || only.iter().any(|name| check.name.contains(name.as_str()))
+    };
+    let full = arguments.full;
+    if let Some(name) = arguments.only.iter().find(|name| {
+        let mut held = CHECKS.iter().filter(|check| full || !check.slow);
+        !held.any(|check| check.name.contains(name.as_str()))
+    }) {
+        let slow = CHECKS
+            .iter()
+            .any(|check| check.name.contains(name.as_str()));
+        let cure = if slow {
+            "it is a slow one: add --full"
+        } else {
+            "plica verify --list names them"
+        };
+        return Err(Failure::Usage(format!(
+            "--only {name}: no check has this name; {cure}"
+        )));
+    }
+    threads::limit(arguments.threads)?;
+    // Before minutes of work, not after.
+    let file_trouble = |error| Failure::Files(format!("{}: {error}", arguments.out.display()));
+    fs::create_dir_all(&arguments.out).map_err(file_trouble)?;
+    let interrupt = Interrupt::listen()
+        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
+    let mut watch = Watcher {
+        ticker: Ticker::new(interrupt),
+        done: 0,
+        of: 1,
+    };
+    let held = hold(full, &wanted, &mut watch);
+    watch.ticker.finish();
+    let held = held.map_err(|trouble| match trouble {
+        Trouble::Stopped => Failure::Interrupted("interrupted; nothing was written"),
+        trouble => Failure::Files(trouble.to_string()),
+    })?;
+    let mut names = vec![PAGE.to_owned()];
+    fs::write(arguments.out.join(PAGE), held.page()).map_err(file_trouble)?;
+    match held.pictures() {
+        Ok(pictures) => {
+            for (name, png) in pictures {
+                fs::write(arguments.out.join(&name), png).map_err(file_trouble)?;
+                names.push(name);
+            }
+        }
+        Err(error) => console::tell(&format!("warning: no pictures: {error}")),
+    }
+    let out = arguments.out.display();
+    console::say(&format!(
+        "{}written to {out}: {}\n",
+        held.text(),
+        names.join(", ")
+    ))?;
+    if held.failed() > 0 {
+        Err(Failure::Unfinished)
+    } else {
+        Ok(())
+    }
+}
+
+/// The checks and what they are about.
+fn list() -> String {
+    let line = |check: &Check| {
+        let slow = if check.slow { " (--full)" } else { "" };
+        format!("{:<22}{}{slow}\n", check.name, check.about)
+    };
+    CHECKS.iter().map(line).collect()
+}
+
+/// A line per check, and one per row that is too far off.
+struct Watcher {
+    ticker: Ticker,
+    done: usize,
+    of: usize,
+}
+
+impl Observer for Watcher {
+    fn begins(&mut self, about: &str, done: usize, of: usize) {
+        (self.done, self.of) = (done, of);
+        self.ticker
+            .line(&format!("{:>3} of {of}  {about}", done + 1));
+    }
+
+    fn found(&mut self, row: &Row) {
+        let fraction = self.done as f64 / self.of as f64;
+        self.ticker.working(&row.case, fraction);
+        if !row.passes() {
+            let Row {
+                case,
+                quantity,
+                computed,
+                reference,
+                ..
+            } = row;
+            self.ticker.line(&format!(
+                "            FAILED: {case}, {quantity}: {computed:.6e}, not {reference:.6e}"
+            ));
+        }
+    }
+
+    fn stop(&mut self) -> bool {
+        self.ticker.stop()
+    }
+}
