@@ -167,17 +167,12 @@ impl SplineTube {
         }
     }
 
-    /// The same with the part of the law that resists a change of volume integrated at fewer points.
+    /// The same with the part of the law that resists a change of volume integrated at fewer points through
+    /// the wall.
     fn volume_apart(self) -> Self {
-        let p = self.degree();
-        // Around, where sums over periodic functions converge fastest, in the middle of each element.
-        let mut around = vec![(0.5, 1.0)];
-        around.resize(p + 1, (0.5, 0.0));
         let [shape, volume] = self.law.parts();
         let apart = Self {
-            slabs: Slab::all(&self.axial, &reduced_rules(&self.axial)),
             layers: Layer::all(&self.wall, &reduced_rules(&self.wall)),
-            around: Around::all(&self.sector, &self.circle, &around),
             law: volume,
             imperfect: None,
             ..self.clone()

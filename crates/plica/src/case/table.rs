@@ -63,8 +63,8 @@ pub const KEYS: &[Key] = &[
     key("mesh.degree", Count, "", Or("3"), from(1.0).to(5.0),
         "Degree of the splines, in every direction."),
     key("mesh.volumetric_integration", Word(&["full", "reduced"]), "", Or("\"full\""), ANY,
-        "Where the wall's resistance to a change of volume is integrated: at all points, as the paper does; or at about one point to an \
-         element, so that a nearly incompressible wall does not lock on a coarse mesh (best with degree 3)."),
+        "At how many points the wall's resistance to a change of volume is integrated: at all, as the paper does; or at about one to an \
+         element through the wall, so that a nearly incompressible wall does not lock where few elements are that thick; needs an odd degree."),
     key("mesh.refine", Tables, "", OrElse("the zones of the muscles, factor 3", "[{ zone = [0.5, 1.0], factor = 3.0 }]"), ANY,
         "Where elements along the tube are denser; `refine = []` for a uniform mesh. Where entries overlap the densest counts."),
     key("mesh.refine[].zone", Zone, "length", Always("[0.5, 1.0]"), ANY,

@@ -36,20 +36,24 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
 
 /// About one point to an element, as many as splines of degree p − 1 have functions: at no more places can
 /// something be asked of a slope of splines of degree p without asking too much. Element by element, on
-/// [0, 1] of it; none where no such rule with positive weights was found.
+/// [0, 1] of it; none if p is even, or where no such rule with positive weights was found.
 ///
-/// The rule integrates splines of degree p exactly, those that are one derivative less smooth too if p is
-/// odd (in the middle of a uniform mesh the middles of elements do). Points and weights are the nearest
-/// to Greville's for degree p − 1 that do: Newton's steps of the smallest size.
+/// The rule integrates splines of degree p exactly that are one derivative less smooth than they could be:
+/// slopes of such times R, so that an even stress meets its forces (in the middle of a uniform mesh the
+/// middles of elements do, if p is odd). Points and weights are the nearest to Greville's for degree p − 1
+/// that do: Newton's steps of the smallest size.
 pub fn reduced_rule(basis: &Basis) -> Option<Vec<Vec<(f64, f64)>>> {
     let (p, elements) = (basis.degree(), basis.elements());
+    if p % 2 == 0 {
+        return None;
+    }
     if p == 1 {
         return Some(vec![vec![(0.5, 1.0)]; elements]);
     }
     let mut breakpoints: Vec<f64> = (0..elements).map(|e| basis.element(e).0).collect();
     breakpoints.push(basis.element(elements - 1).1);
     let lower = Basis::open(p - 1, &breakpoints);
-    let target = Basis::less_smooth(p, 1 + p % 2, &breakpoints);
+    let target = Basis::less_smooth(p, 2, &breakpoints);
     let integrals = target.integrals();
     let (mut points, mut weights) = (lower.greville(), lower.integrals());
     for _ in 0..RULE_STEPS {
@@ -123,7 +127,7 @@ mod tests {
     #[test]
     fn a_reduced_rule_integrates_polynomials_of_its_degree() {
         let breakpoints = [0.0, 0.1, 0.25, 0.5, 0.8, 1.0];
-        for p in 1..=5 {
+        for p in [1, 3, 5] {
             let basis = Basis::open(p, &breakpoints);
             let rule = reduced_rule(&basis).unwrap();
             let points: Vec<(f64, f64)> = rule

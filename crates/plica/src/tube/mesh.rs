@@ -19,13 +19,14 @@ pub struct Mesh {
     pub volumetric: Integration,
 }
 
-/// At how many points of an element something is integrated.
+/// At how many points something is integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integration {
-    /// p + 1 Gauss points each way: exactly, but for the curvature.
+    /// p + 1 Gauss points to an element each way.
     #[default]
     Full,
-    /// Fewer, so that a nearly incompressible wall does not lock.
+    /// About one point to an element through the wall, and p + 1 along and around, so that a nearly
+    /// incompressible wall does not lock.
     Reduced,
 }
 

@@ -41,6 +41,9 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
     ] {
         for degree in [1, 2, 3] {
             found.go_on()?;
+            if degree == 2 && volumetric == Integration::Reduced {
+                continue;
+            }
             let points = THROUGH.map(|through| {
                 let off = off(nu, degree, through, volumetric)?;
                 Ok((f64::from(through as u32).log2(), off.abs().log10()))
@@ -79,7 +82,7 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
     found.picture(
         "locking.png",
         "Thick cylinder, ν = 0.4999: relative error of u(A) over elements through the wall, with the resistance to a change of \
-         volume integrated in full (dashed) and at about one point to an element (solid).",
+         volume integrated in full (dashed) and at about one point to an element through the wall (solid; degrees 1 and 3).",
         Chart {
             x_label: "log_{2} elements".into(),
             y_label: "log_{10} error of *u*(*A*)".into(),

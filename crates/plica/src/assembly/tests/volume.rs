@@ -1,4 +1,4 @@
-//! The resistance to a change of volume, integrated at about one point to an element.
+//! The resistance to a change of volume, integrated at about one point to an element through the wall.
 
 use super::symmetry::harmonic;
 use super::{direction, largest, moved, repeated, replicated, tube_and_load, unknowns, wavy};
@@ -22,7 +22,7 @@ fn reduced(degree: usize, elements: [usize; 3], rings: usize) -> [SplineTube; 2]
 #[test]
 fn residual_and_tangent_are_slopes() {
     let load = tube_and_load(3, [9, 2, 6], 1).load;
-    for (degree, rings) in [(1, 1), (3, 1), (3, 6), (2, 6)] {
+    for (degree, rings) in [(1, 1), (3, 1), (3, 6), (5, 6)] {
         let [tube, _] = reduced(degree, [9, 2, 6], rings);
         let (u, d) = (wavy(&tube), direction(&tube));
         let at = |h: f64| tube.forces(&load, &moved(&u, &d, h)).unwrap();
@@ -97,7 +97,7 @@ fn every_sector_and_every_harmonic_is_part_of_the_whole() {
 fn an_even_stress_meets_the_forces_that_full_integration_meets() {
     // The patch test. A flat wall would pass it to rounding; in a round one the volume grows with R,
     // and what is integrated is a degree higher than the rule is made for at the faces of the wall.
-    for (degree, tolerance) in [(1, 3e-3), (3, 3e-4), (5, 5e-5), (2, 5e-2)] {
+    for (degree, tolerance) in [(1, 3e-3), (3, 3e-4), (5, 5e-5)] {
         let [tube, full] = reduced(degree, [7, 3, 24], 1);
         let load = tube.tube.rest();
         let radius = tube.circle.control_radius;

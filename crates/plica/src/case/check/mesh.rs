@@ -47,6 +47,11 @@ pub(super) fn mesh(spec: &Spec, tube: &Tube, problems: &mut Problems) -> (Mesh, 
         let rule = format!("must be at least {} for degree {degree}", 2 * degree + 2);
         problems.value(AROUND, rule, Some("try 60".into()));
     }
+    if mesh.volumetric == Integration::Reduced && degree.is_multiple_of(2) {
+        let rule = format!("there is no such rule for splines of an even degree, {degree}");
+        let cure = "try degree 3, or \"full\"".to_owned();
+        problems.value("mesh.volumetric_integration", rule, Some(cure));
+    }
     if let Symmetry::Fold(m) = symmetry
         && !mesh.around.is_multiple_of(m)
     {
