@@ -18,6 +18,7 @@
 //! - [`case`]: the case file as written, and what it means.
 //! - [`draw`]: charts and shaded cut-aways from plain data.
 //! - [`report`]: the pictures of a run.
+//! - [`verification`]: problems whose answer is known otherwise.
 
 pub mod activation;
 pub mod assembly;

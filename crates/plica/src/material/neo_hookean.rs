@@ -2,7 +2,7 @@
 //!
 //! w = μ/2 (I₁ − 3) − μ ln J + U(J),  I₁ = tr(FeᵀFe),  J = det Fe
 //!
-//! with U = λ/2 (ln J)², the paper's, or U = λ/4 (J² − 1 − 2 ln J) (Simo and Taylor 1982).
+//! with U = λ/2 (ln J)², the paper's, or U = λ/4 (J² − 1 − 2 ln J) (Simo and Hughes 1998).
 //!
 //! Valid for J > 0. Where the wall expands strongly, ln J > 1, the first U is concave and the law no
 //! longer elliptic, far from where a nearly incompressible wall goes; the second is convex for every J.

@@ -41,7 +41,8 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
 /// The rule integrates splines of degree p exactly that are one derivative less smooth than they could be:
 /// slopes of such times R, so that an even stress meets its forces (in the middle of a uniform mesh the
 /// middles of elements do, if p is odd). Points and weights are the nearest to Greville's for degree p − 1
-/// that do: Newton's steps of the smallest size.
+/// that do: Newton's steps of the smallest size. (Hughes et al. 2010 look for such rules with as few points
+/// as exactness allows; here there are more, as many as a slope through the wall may be asked at.)
 pub fn reduced_rule(basis: &Basis) -> Option<Vec<Vec<(f64, f64)>>> {
     let (p, elements) = (basis.degree(), basis.elements());
     if p % 2 == 0 {

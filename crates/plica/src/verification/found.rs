@@ -209,7 +209,7 @@ impl Verification {
             "# Verification, row by row\n\n\
              Written by `plica verify{flag}`, {how}, version {}; {}. An error is over the reference, or\n\
              where the tolerance says ± in the unit of the quantity. Lengths are in D, stresses in E, energies in E·D³ (per length\n\
-             E·D²). How each row is found, and what its source is: [verification](../verification.md).\n\n{}",
+             E·D²). docs/verification.md tells how each row is found.\n\n{}",
             env!("CARGO_PKG_VERSION"),
             self.verdict(),
             in_markdown(&self.rows)

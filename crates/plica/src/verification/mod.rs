@@ -4,7 +4,12 @@
 //! |---|---|
 //! | [`one_dimension`] | the reference side: a tube of circles, and the waves that may grow on it; nothing else of the library is used there |
 //! | `specimen` | Plica's side: rings and tubes between sliding plates |
+//! | `exact` | what must be so to rounding |
 //! | `rings`, `columns` | pressure, growth, buckling, thin and long limits |
+//! | `locking` | a thick cylinder that is nearly incompressible |
+//! | `manufactured` | orders of convergence |
+//! | `routes` | the same answer by a second way through the code |
+//! | `paper` | the main case of Okino et al. (2025) |
 //! | [`row`], `found` | rows, the table, the page |
 //!
 //! A row that is too far off says FAILED; its tolerance is the one that the mesh at hand should keep.
@@ -53,6 +58,11 @@ pub const CHECKS: &[Check] = &[
     quick("splines", "what splines draw", exact::splines),
     quick("lame", "a ring under a small pressure", rings::lame),
     quick("inflation", "a ring that is blown up", rings::inflation),
+    quick(
+        "quadratic-law",
+        "the quadratic law, blown up",
+        rings::quadratic,
+    ),
     quick("growth", "a closed ring that has grown", rings::growth),
     quick(
         "ring-buckling",

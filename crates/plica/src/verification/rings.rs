@@ -1,11 +1,13 @@
 //! Rings in plane strain: under pressure, grown, and about to buckle.
 
 use super::found::{Findings, Trouble};
-use super::one_dimension::{Wall, first};
+use super::one_dimension::{Resistance, Wall, first};
 use super::specimen::{Specimen, energy, lost, stress, swelling, under};
 use crate::activation::Direction;
 use crate::draw::{Chart, Curve, Stroke};
+use crate::material::{Material, NeoHookean, Volumetric};
 use crate::tube::Load;
+use std::f64::consts::PI;
 
 const A: f64 = 0.44;
 const B: f64 = 0.5;
@@ -76,6 +78,43 @@ pub fn inflation(found: &mut Findings<'_>) -> Result<(), Trouble> {
             stress(&problem, &state, B)[2],
             (outer[1], ONE),
         );
+    }
+    Ok(())
+}
+
+/// The same of a wall that resists a change of volume by λ/4 (J² − 1 − 2 ln J), compressible enough to show it.
+pub fn quadratic(found: &mut Findings<'_>) -> Result<(), Trouble> {
+    let nu = 0.3;
+    let mut specimen = Specimen::ring(B - A, nu, 8);
+    specimen.tube.material = Material::NeoHookean(NeoHookean {
+        volumetric: Volumetric::Quadratic,
+        ..NeoHookean::new(1.0, nu)
+    });
+    let problem = specimen.problem(1);
+    for p in [0.02, 0.03] {
+        let pressures = [p, 0.0];
+        let wall = Wall {
+            resistance: Resistance::Square,
+            pressures,
+            ..Wall::new([A, B], nu)
+        };
+        let balanced = wall.balance(8)?;
+        let state = under(&problem, &specimen.pressed(pressures), 6)?;
+        found.case(format!("ring, quadratic law, ν = 0.3, p = {p} inside"))?;
+        let [a, b] = balanced.radii();
+        let radius = |R: f64| R + swelling(&problem, &state, R);
+        found.within(1e-5, "a", radius(A), (a, ONE));
+        found.within(1e-5, "b", radius(B), (b, ONE));
+        let W = energy(&problem, &state) / specimen.tube.length;
+        let work = p * PI * (a * a - A * A);
+        found.within(
+            1e-5,
+            "W − p ΔV over length",
+            W,
+            (balanced.energy() - work, ONE),
+        );
+        let sigma = stress(&problem, &state, A)[2];
+        found.within(1e-4, "σθ(a)", sigma, (balanced.stress()[0][1], ONE));
     }
     Ok(())
 }
