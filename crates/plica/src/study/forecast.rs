@@ -4,7 +4,7 @@ use super::harmonic_tangent::HarmonicTangent;
 use super::{Plan, TubeProblem};
 use crate::assembly::SplineTube;
 use crate::solve::{Equilibrium, Scheme, Solver, Tangent};
-use crate::tube::{Imperfection, Mesh, Part};
+use crate::tube::{Imperfection, Integration, Mesh, Part};
 use std::time::Instant;
 
 /// The size and the cost of a study.
@@ -78,6 +78,11 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
         let at_point = match plan.tube.imperfections.iter().any(geometry) {
             true => 40 + 48,
             false => 40,
+        };
+        // The resistance to a change of volume has points of its own where it is integrated apart.
+        let at_point = match mesh.volumetric {
+            Integration::Full => at_point,
+            Integration::Reduced => 2 * at_point,
         };
         let harmonics = (rings / 2 + 2 * (mesh.degree as u64 + 1)) * banded(row / rings);
         let low = 3 * banded(HarmonicTangent::low_row(rings as usize) as u64);

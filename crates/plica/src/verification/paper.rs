@@ -251,13 +251,18 @@ pub fn stability(found: &mut Findings<'_>) -> Result<(), Trouble> {
             );
         }
     }
-    let curves = cubics.into_iter().enumerate().map(|(n, points)| Curve {
-        label: format!("*n* = {n}"),
-        points,
-        colour: n,
-        dots: true,
-        ..Curve::default()
-    });
+    // Of those that come near to being lost.
+    let curves = cubics
+        .into_iter()
+        .take(3)
+        .enumerate()
+        .map(|(n, points)| Curve {
+            label: format!("*n* = {n}"),
+            points,
+            colour: n,
+            dots: true,
+            ..Curve::default()
+        });
     found.picture(
         "main-case-stability.png",
         "Lowest eigenvalue of the tangent of the main case, harmonic by harmonic.",
@@ -365,21 +370,23 @@ pub fn relaxation_alone(found: &mut Findings<'_>) -> Result<(), Trouble> {
     plan.stages[1].load.muscles[0] = 1.0;
     found.case("relaxation alone, 305 × 60 × 8, steps of 0.002")?;
     let mut lost = [f64::NAN; 5];
+    let mut before: Vec<(f64, f64)> = vec![];
     follow(found, &plan, |_, problem, state| {
         let length = problem.tube.tube.length_ratio(&state.load);
         if length < 1.05 {
             return Ok(());
         }
-        let harmonics = Harmonics::new(&problem.tube, 4);
-        for (n, negative) in harmonics
-            .negative(&state.load, &state.u)
-            .into_iter()
-            .enumerate()
-        {
-            if negative > 0 && lost[n].is_nan() {
-                lost[n] = length;
+        let tested = Harmonics::new(&problem.tube, 4).test(&state.load, &state.u)?;
+        let now: Vec<(f64, f64)> = tested
+            .iter()
+            .map(|tested| (length, tested.lowest))
+            .collect();
+        for (n, (from, to)) in before.iter().zip(&now).enumerate() {
+            if from.1 > 0.0 && to.1 <= 0.0 && lost[n].is_nan() {
+                lost[n] = from.0 + from.1 * (to.0 - from.0) / (from.1 - to.1);
             }
         }
+        before = now;
         Ok(())
     })?;
     // The prototype's are brackets of 0.01, but the first.
@@ -389,7 +396,7 @@ pub fn relaxation_alone(found: &mut Findings<'_>) -> Result<(), Trouble> {
         (4, 1.095, 6e-3),
         (1, 1.095, 6e-3),
     ] {
-        let quantity = format!("first Lmax/L at which harmonic {n} is lost");
+        let quantity = format!("Lmax/L at which harmonic {n} is lost");
         found.row(
             quantity,
             lost[n],
