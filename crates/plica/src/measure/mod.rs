@@ -18,9 +18,11 @@
 //! | own axis | where the radii of the outer face have no first harmonic |
 //! | depth | outer radius at rest less the smallest outer radius about the own axis |
 //! | flatness | axial extent of the wall deeper than ¾ of the depth, over that deeper than ¼ |
+//! | gap | smallest distance of two points of a meridian of either face that lie a wall's thickness or more from each other along it; 0 if a meridian crosses itself |
 //! | shape | see [`Shape`] |
 //! | departure | amplitude √(aᶻ² + aᵨ²) of the largest wave cos n(φ − φ₀), n ≥ 1, in z and ρ around the outer face |
 
+mod gap;
 mod meridians;
 mod shape;
 mod wall;
@@ -45,6 +47,8 @@ pub struct Measures {
     pub overhang: f64,
     /// The side it overhangs on.
     pub side: Side,
+    /// How near a wall comes to itself; 0 where it crosses itself, which nothing prevents.
+    pub gap: f64,
     /// What the contracting region looks like.
     pub shape: Shape,
     /// How far it is from axisymmetric.
@@ -67,6 +71,11 @@ impl Measures {
         let overhangs = outer.iter().map(Wall::overhang);
         let steepest = outer.iter().map(Wall::steepest_angle_deg);
         let angle = steepest.fold(0.0, f64::max);
+        let gaps = outer
+            .iter()
+            .chain(&inner)
+            .map(|wall| wall.gap(tube.tube.thickness));
+        let gap = gaps.fold(f64::INFINITY, f64::min);
 
         let [own_outer, own_inner] = meridians.about_own_axis([&outer, &inner]);
         let narrowest = |&i: &usize| own_outer[i].narrowest().1;
@@ -83,6 +92,7 @@ impl Measures {
             max_wall_angle_deg: angle,
             overhang,
             side,
+            gap,
             shape: Shape::of(
                 &own_outer[deepest],
                 &own_inner[deepest],

@@ -65,6 +65,8 @@ pub struct Row {
     pub overhang: f64,
     /// The side it invaginates to: colon, ileum or none.
     pub side: String,
+    /// How near a wall comes to itself; 0 if it crosses itself.
+    pub gap: f64,
     /// V, U, square, invaginated, swollen or collapsed; straight where nothing is contracted.
     pub shape: String,
     /// How far the outer wall is from axisymmetric: amplitude of its largest wave around.

@@ -245,6 +245,16 @@ impl fmt::Display for Summary {
             ),
         };
         line(f, "invaginates", side)?;
+        let crosses: Vec<&Row> = self.rows.iter().filter(|row| row.gap == 0.0).collect();
+        if let [first, .., last] | [first @ last] = crosses.as_slice() {
+            let (count, span) = (crosses.len(), span(first, last));
+            let physical = "nothing holds it apart, and what it does there is not physical";
+            line(
+                f,
+                "wall crosses itself",
+                format!("at {count} state(s), {span}: {physical}"),
+            )?;
+        }
         line(
             f,
             "last state",
