@@ -177,4 +177,5 @@ What it leaves behind:
   verification.md   the table and the pictures as a page
   *.png             the pictures
 
-Ctrl-C or SIGTERM ends it after the solve at hand, with nothing written.";
+Ctrl-C or SIGTERM ends it after the problem at hand, some seconds at most, with nothing written. A
+second Ctrl-C ends it at once.";

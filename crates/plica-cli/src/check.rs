@@ -3,10 +3,11 @@
 use crate::failure::Failure;
 use crate::{case_file, console};
 use plica::case::advice;
+use plica::material::{Material, NeoHookean, Volumetric};
 use plica::solve::{Integrator, Scheme};
 use plica::spline::Circle;
 use plica::study::{Plan, fits, forecast};
-use plica::tube::{End, Imperfection, Part, Shape, Symmetry, Tube};
+use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube};
 use std::path::Path;
 
 /// Says that a case is sound, and what it takes.
@@ -42,7 +43,18 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
     let mut rows = vec![
         (
             "tube",
-            format!("{} D long, wall {} D thick", tube.length, tube.thickness),
+            format!(
+                "{} D long, wall {} D thick{}",
+                tube.length,
+                tube.thickness,
+                match tube.material {
+                    Material::NeoHookean(NeoHookean {
+                        volumetric: Volumetric::Quadratic,
+                        ..
+                    }) => ", quadratic volumetric law",
+                    Material::NeoHookean(_) => "",
+                }
+            ),
         ),
         (
             "muscles",
@@ -56,8 +68,15 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         (
             "mesh",
             format!(
-                "{} x {} x {} control points of degree {}",
-                mesh.axial, mesh.around, mesh.thickness, mesh.degree
+                "{} x {} x {} control points of degree {}{}",
+                mesh.axial,
+                mesh.around,
+                mesh.thickness,
+                mesh.degree,
+                match mesh.volumetric {
+                    Integration::Full => "",
+                    Integration::Reduced => ", volume at reduced points",
+                }
             ),
         ),
         (

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{console, threads};
-use plica::verification::{CHECKS, Check, Observer, Row, Trouble, verify as hold};
+use plica::verification::{CHECKS, Check, Observer, Row, TITLE, Trouble, verify as hold};
 use std::fs;
 
 /// The page with the table.
@@ -39,6 +39,14 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     // Before minutes of work, not after.
     let file_trouble = |error| Failure::Files(format!("{}: {error}", arguments.out.display()));
     fs::create_dir_all(&arguments.out).map_err(file_trouble)?;
+    let page = arguments.out.join(PAGE);
+    let written = fs::read_to_string(&page).unwrap_or_default();
+    if page.exists() && !written.starts_with(TITLE) {
+        return Err(Failure::Usage(format!(
+            "{}: there is such a page already, and it is none of plica verify's; choose another --out",
+            page.display()
+        )));
+    }
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     let mut watch = Watcher {
@@ -53,7 +61,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
         trouble => Failure::Files(trouble.to_string()),
     })?;
     let mut names = vec![PAGE.to_owned()];
-    fs::write(arguments.out.join(PAGE), held.page()).map_err(file_trouble)?;
+    fs::write(&page, held.page()).map_err(file_trouble)?;
     match held.pictures() {
         Ok(pictures) => {
             for (name, png) in pictures {

@@ -71,3 +71,20 @@ fn a_directory_that_cannot_be_is_told_before_the_work() {
     assert_eq!(said.status.code(), Some(3), "{}", text(&said.stderr));
     assert!(said.stdout.is_empty());
 }
+
+#[test]
+fn a_page_of_someone_else_s_is_not_replaced() {
+    let directory = scratch("verify-page");
+    let page = directory.join("verification.md");
+    fs::write(&page, "# My notes\n").unwrap();
+    let said = plica(&directory, &["verify", "--only", "lame", "-o", "."]);
+    assert_eq!(said.status.code(), Some(2));
+    assert!(text(&said.stderr).contains("choose another --out"));
+    assert_eq!(fs::read_to_string(&page).unwrap(), "# My notes\n");
+    // Its own is.
+    fs::remove_file(&page).unwrap();
+    for _ in 0..2 {
+        let said = plica(&directory, &["verify", "--only", "lame", "-o", "."]);
+        assert!(said.status.success(), "{}", text(&said.stderr));
+    }
+}

@@ -29,7 +29,7 @@ pub struct Sample {
     /// Elastic deformation gradient: rows (z, outwards, around) at the middle of the point's
     /// element, columns (along, outwards, around) at the point.
     pub elastic: Tensor2,
-    /// det Fe.
+    /// det Fe; where volume is resisted, if that is integrated apart.
     pub jacobian: f64,
     /// Strain energy density w(Fe), per grown volume, in E.
     pub energy_density: f64,
@@ -37,8 +37,30 @@ pub struct Sample {
 
 impl SplineTube {
     /// The fields at a point under a load. Points outside the wall are read from the splines of
-    /// the nearest element.
+    /// the nearest element. Where the resistance to a change of volume is integrated apart, its energy is that
+    /// of the nearest of its points through the wall: between them volume is not what the wall resists.
     pub fn sample(&self, load: &Load, u: &[f64], at: Point) -> Sample {
+        let sample = self.sample_here(load, u, at);
+        let Some(volume) = &self.volume else {
+            return sample;
+        };
+        let points = volume.layers.iter().flat_map(|layer| {
+            let points = layer.radius.iter().zip(&layer.weight);
+            points.filter(|(_, weight)| **weight > 0.0).map(|(r, _)| *r)
+        });
+        let far = |r: &f64| (r - at.radius).abs();
+        let nearest = points.min_by(|a, b| far(a).total_cmp(&far(b)));
+        let radius = nearest.unwrap_or(at.radius);
+        let there = volume.sample_here(load, u, Point { radius, ..at });
+        Sample {
+            energy_density: sample.energy_density + there.energy_density,
+            jacobian: there.jacobian,
+            ..sample
+        }
+    }
+
+    /// The same of what is integrated here.
+    fn sample_here(&self, load: &Load, u: &[f64], at: Point) -> Sample {
         let (axial, wall) = (self.axial.evaluate(at.z), self.wall.evaluate(at.radius));
         let alpha = self.sector.angle();
         // Element 0 is centred on angle zero.
@@ -92,7 +114,7 @@ impl SplineTube {
             reference: turned(reference),
             position: turned(position),
             jacobian: Fe.determinant(),
-            energy_density: match self.tube.material {
+            energy_density: match self.law {
                 Material::NeoHookean(law) => law.energy(&Fe),
             },
             elastic: Fe,

@@ -13,13 +13,16 @@ pub fn full_rules(basis: &Basis) -> Rules {
     vec![gauss_legendre(basis.degree() + 1); basis.elements()]
 }
 
-/// About one point on every element, see [`reduced_rule`]; all points where there is no such rule.
+/// About one point on every element of a uniform basis, see [`reduced_rule`]. Panics where there is no
+/// such rule.
 pub fn reduced_rules(basis: &Basis) -> Rules {
-    let Some(mut rules) = reduced_rule(basis) else {
-        return full_rules(basis);
-    };
+    let (p, elements) = (basis.degree(), basis.elements());
+    let rules = reduced_rule(p, elements);
+    let mut rules = rules.unwrap_or_else(|| panic!("degree {p} has no reduced rule"));
     for rule in &mut rules {
-        rule.resize(basis.degree() + 1, (0.5, 0.0));
+        // An element between two points has one all the same, of no weight.
+        let place = rule.first().map_or(0.5, |point| point.0);
+        rule.resize(p + 1, (place, 0.0));
     }
     rules
 }

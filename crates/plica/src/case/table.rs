@@ -35,7 +35,7 @@ pub const KEYS: &[Key] = &[
         above(-1.0).below(0.5).because("the law is compressible"),
         "Poisson's ratio ν."),
     key("material.neo-hookean.volumetric", Word(&["logarithmic", "quadratic"]), "", Or("\"logarithmic\""), ANY,
-        "What resists a change of volume: λ/2 (ln J)², the paper's, or λ/4 (J² − 1 − 2 ln J), which stays elliptic where the wall expands strongly."),
+        "What resists a change of volume: λ/2 (ln J)², the paper's, or λ/4 (J² − 1 − 2 ln J), which stays elliptic where the wall expands strongly and needs ν ≥ 0."),
 
     key("muscles.<name>.direction", Word(&["circular", "longitudinal"]), "", Always("\"circular\""), ANY,
         "Whether it shortens the wall around the tube or lengthens it along the tube."),
@@ -64,7 +64,7 @@ pub const KEYS: &[Key] = &[
         "Degree of the splines, in every direction."),
     key("mesh.volumetric_integration", Word(&["full", "reduced"]), "", Or("\"full\""), ANY,
         "At how many points the wall's resistance to a change of volume is integrated: at all, as the paper does; or at about one to an \
-         element through the wall, so that a nearly incompressible wall does not lock where few elements are that thick; needs an odd degree."),
+         element through the wall, so that a nearly incompressible wall does not lock where few elements are that thick; needs degree 3 or 5."),
     key("mesh.refine", Tables, "", OrElse("the zones of the muscles, factor 3", "[{ zone = [0.5, 1.0], factor = 3.0 }]"), ANY,
         "Where elements along the tube are denser; `refine = []` for a uniform mesh. Where entries overlap the densest counts."),
     key("mesh.refine[].zone", Zone, "length", Always("[0.5, 1.0]"), ANY,

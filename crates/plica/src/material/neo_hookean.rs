@@ -4,8 +4,10 @@
 //!
 //! with U = λ/2 (ln J)², the paper's, or U = λ/4 (J² − 1 − 2 ln J) (Simo and Hughes 1998).
 //!
-//! Valid for J > 0. Where the wall expands strongly, ln J > 1, the first U is concave and the law no
-//! longer elliptic, far from where a nearly incompressible wall goes; the second is convex for every J.
+//! Valid for J > 0. Stretched by s along a line, a wave along it that moves along it meets the stiffness
+//! μ (1 + s⁻²) + λ (1 − ln J) s⁻² of the first, which a nearly incompressible wall loses where
+//! ln J > 1 + (μ/λ)(1 + s²), at ν = 0.495 beyond J = 3, far from where it goes; the second, convex in J for
+//! every J as long as λ ≥ 0, has μ (1 + s⁻²) + λ/2 (1 + J²) s⁻², and keeps it.
 
 use super::{Kept, Law, Moduli};
 use crate::tensor::{Real, Tensor2};

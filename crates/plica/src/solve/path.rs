@@ -479,8 +479,8 @@ fn accepted<P: Equilibrium>(
 ) -> (State<P::Load>, Option<SolverOf<P>>) {
     let solver = problem.tangent(&load, &u).into_shifted(0.0).ok();
     let negative = |solver: &SolverOf<P>| {
-        let indefinite = usize::from(solver.is_indefinite());
-        solver.negative_pivots().max(indefinite)
+        let away = usize::from(solver.leads_away());
+        solver.negative_pivots().max(away)
     };
     let state = State {
         load,

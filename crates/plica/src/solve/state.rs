@@ -67,7 +67,8 @@ pub struct State<L> {
     /// Its residual without drag, relative to the forces in play.
     pub imbalance: f64,
     /// Negative eigenvalues of its tangent that the solver knows of. A direct solver knows all: 0
-    /// if the state is stable. One that iterates may learn of one when the path goes on from here.
+    /// if the state is stable. One that iterates knows of one at least where its average does, and may learn of one
+    /// when the path goes on from here.
     /// A singular tangent, at the edge of stability, counts as one.
     pub negative_pivots: usize,
 }

@@ -40,8 +40,9 @@ pub trait Solver {
     /// none, 0, and only the iteration may tell.
     fn negative_pivots(&self) -> usize;
 
-    /// Whether the matrix is known not to be positive definite, without an iteration.
-    fn is_indefinite(&self) -> bool {
+    /// Whether what it leads to is known to lie on an unstable branch, without an iteration: the matrix is not
+    /// positive definite on displacements that the state's own symmetry allows.
+    fn leads_away(&self) -> bool {
         self.negative_pivots() > 0
     }
 

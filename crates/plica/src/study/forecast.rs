@@ -80,11 +80,13 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
             false => 40,
         };
         // The resistance to a change of volume has points of its own where it is integrated apart.
-        let at_point = match mesh.volumetric {
-            Integration::Full => at_point,
-            Integration::Reduced => 2 * at_point,
+        // And an average of their own.
+        let (at_point, averages) = match mesh.volumetric {
+            Integration::Full => (at_point, 1),
+            Integration::Reduced => (2 * at_point, 2),
         };
-        let harmonics = (rings / 2 + 2 * (mesh.degree as u64 + 1)) * banded(row / rings);
+        let made_of = (1 + averages) * (mesh.degree as u64 + 1);
+        let harmonics = (rings / 2 + made_of) * banded(row / rings);
         let low = 3 * banded(HarmonicTangent::low_row(rings as usize) as u64);
         let vectors = 40 * 8 * mesh.axial as u64 * row;
         return PROGRAM_BYTES + kept + at_point * points + harmonics + low + vectors;

@@ -376,8 +376,8 @@ impl Solver for HarmonicSystem {
             .map_or(0, |harmonics| harmonics[0])
     }
 
-    /// A state that is the same at every ring may stay so, whatever other harmonics it has lost.
-    fn is_indefinite(&self) -> bool {
+    /// A state that is the same at every ring stays so, whatever other harmonics it has lost.
+    fn leads_away(&self) -> bool {
         match self.negative_in_harmonics() {
             Some(harmonics) => harmonics[0] > 0,
             None => self.average_is_indefinite(),

@@ -149,10 +149,10 @@ impl Solver for TubeSolver {
             Self::Harmonic(system) => system.negative_pivots(),
         }
     }
-    fn is_indefinite(&self) -> bool {
+    fn leads_away(&self) -> bool {
         match self {
-            Self::Direct(factor) => factor.is_indefinite(),
-            Self::Harmonic(system) => system.is_indefinite(),
+            Self::Direct(factor) => factor.leads_away(),
+            Self::Harmonic(system) => system.leads_away(),
         }
     }
     fn solve(

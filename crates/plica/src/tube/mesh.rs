@@ -26,7 +26,7 @@ pub enum Integration {
     #[default]
     Full,
     /// About one point to an element through the wall, and p + 1 along and around, so that a nearly
-    /// incompressible wall does not lock.
+    /// incompressible wall does not lock where few elements are that thick. For degrees 3 and 5.
     Reduced,
 }
 

@@ -90,7 +90,7 @@ pub fn thin_shell(found: &mut Findings<'_>) -> Result<(), Trouble> {
         5e-3,
         "strain over the classical one, H → 0, n = 0",
         limit,
-        (1.0, "h/R√(3(1−ν²))"),
+        (1.0, "h/(R√(3(1−ν²)))"),
     );
     Ok(())
 }
@@ -127,13 +127,13 @@ pub fn column(found: &mut Findings<'_>) -> Result<(), Trouble> {
         1e-3,
         "strain over Euler's, L → ∞",
         limit,
-        (1.0, "π² I/A L²"),
+        (1.0, "π² I/(A L²)"),
     );
     let mut points = vec![(0.0, limit)];
     points.extend(ratios.into_iter().rev());
     found.picture(
         "column.png",
-        "Critical strain of a tube between sliding plates over that of Euler's column, π² I/A L², as it gets longer; at \
+        "Critical strain of a tube between sliding plates over that of Euler's column, π² I/(A L²), as it gets longer; at \
          1/L = 0 what the longest two extrapolate to.",
         Chart {
             x_label: "(*D*/*L*)^{2}".into(),

@@ -6,7 +6,7 @@ use crate::activation::Direction;
 use crate::assembly::Point;
 use crate::assembly::SplineTube;
 use crate::matrix::BlockBanded;
-use crate::spline::{Basis, control_wave, gauss_legendre};
+use crate::spline::{Basis, gauss_legendre};
 use crate::tube::{Axial, Imperfection, Load, Part, Shape, Support, Wave};
 
 /// Relative error of what only rounding disturbs.
@@ -165,14 +165,6 @@ pub fn splines(found: &mut Findings<'_>) -> Result<(), Trouble> {
         let expected = (degree as f64 + 1.0, "p + 1");
         found.row(quantity, order, expected, super::Tolerance::Absolute(0.1));
     }
-    found.case("spline circle")?;
-    let unit = control_wave(3, 60, 0);
-    found.within(
-        ROUNDING,
-        "height of a constant",
-        unit,
-        (1.0, "partition of unity"),
-    );
     Ok(())
 }
 
@@ -211,7 +203,7 @@ fn projection(degree: usize, elements: usize) -> Result<f64, Trouble> {
     Ok(squares.sum::<f64>().sqrt())
 }
 
-/// Volume of the tube at rest.
+/// No energy, no force, and the volume of a tube at rest.
 pub fn rest(found: &mut Findings<'_>) -> Result<(), Trouble> {
     let specimen = Specimen::new(3.0, 0.06, 0.495, [4, 60, 2]);
     let tube: &SplineTube = &specimen.problem(1).tube;
@@ -223,12 +215,14 @@ pub fn rest(found: &mut Findings<'_>) -> Result<(), Trouble> {
         .iter()
         .fold(0.0_f64, |most, r| most.max(r.abs()));
     found.nothing(1e-15, "largest residual", largest, "no stress");
-    let total: f64 = gauss_legendre(4).iter().map(|(_, w)| w).sum();
-    found.within(
-        ROUNDING,
-        "sum of Gauss's weights",
-        total,
-        (1.0, "an interval's length"),
-    );
+    // ∫ N N dV₀ on a displacement of one along the axis, twice.
+    let along = tube.control_values(|_, _, _| [1.0, 0.0, 0.0]);
+    let mut weighed = vec![0.0; along.len()];
+    tube.drag().multiply_add(1.0, &along, &mut weighed);
+    let volume: f64 = along.iter().zip(&weighed).map(|(u, m)| u * m).sum();
+    let (a, b) = (specimen.tube.inner_radius(), 0.5);
+    let exact = std::f64::consts::PI * (b * b - a * a) * specimen.tube.length;
+    let volume = volume * tube.sector.repeats();
+    found.within(1e-10, "volume", volume, (exact, "π (B² − A²) L"));
     Ok(())
 }

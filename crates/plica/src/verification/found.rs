@@ -176,6 +176,9 @@ pub struct Verification {
     pub charts: Vec<(String, String, Chart)>,
 }
 
+/// The first line of a page.
+pub const TITLE: &str = "# Verification, row by row";
+
 /// Pixels across a picture.
 const WIDTH: usize = 1000;
 
@@ -206,7 +209,7 @@ impl Verification {
             false => ("", "the quick one"),
         };
         let mut page = format!(
-            "# Verification, row by row\n\n\
+            "{TITLE}\n\n\
              Written by `plica verify{flag}`, {how}, version {}; {}. An error is over the reference, or\n\
              where the tolerance says ± in the unit of the quantity. Lengths are in D, stresses in E, energies in E·D³ (per length\n\
              E·D²). docs/verification.md tells how each row is found.\n\n{}",

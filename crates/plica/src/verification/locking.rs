@@ -1,9 +1,10 @@
 //! A thick cylinder that is nearly incompressible: how much too stiff it is, and what cures it.
 
 use super::found::{Findings, Trouble};
-use super::specimen::{Specimen, swelling, under};
+use super::specimen::{Specimen, energy, swelling, under};
+use crate::activation::{Direction, Muscle, Profile};
 use crate::draw::{Chart, Curve, Stroke};
-use crate::tube::Integration;
+use crate::tube::{Integration, Load, Support};
 
 /// A = 3, B = 9: the wall is a third of the diameter.
 const A: f64 = 0.5 / 3.0;
@@ -41,7 +42,7 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
     ] {
         for degree in [1, 2, 3] {
             found.go_on()?;
-            if degree == 2 && volumetric == Integration::Reduced {
+            if degree < 3 && volumetric == Integration::Reduced {
                 continue;
             }
             let points = THROUGH.map(|through| {
@@ -72,17 +73,14 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
             found.within(tolerance, quantity, computed, (exact, lame_says));
         }
         // What is asked of a coarse mesh is that it does not lock: the error is that of ν = 0.49.
-        for (degree, tolerance) in [(1, 3e-3), (3, 1e-4)] {
-            let through = if degree == 1 { 16 } else { 4 };
-            let computed = exact * (1.0 + off(nu, degree, through, Integration::Reduced)?);
-            let quantity = format!("u(A), p = {degree}, {through} elements, reduced integration");
-            found.within(tolerance, quantity, computed, (exact, lame_says));
-        }
+        let computed = exact * (1.0 + off(nu, 3, 4, Integration::Reduced)?);
+        let quantity = "u(A), p = 3, 4 elements, reduced integration";
+        found.within(1e-4, quantity, computed, (exact, lame_says));
     }
     found.picture(
         "locking.png",
         "Thick cylinder, ν = 0.4999: relative error of u(A) over elements through the wall, with the resistance to a change of \
-         volume integrated in full (dashed) and at about one point to an element through the wall (solid; degrees 1 and 3).",
+         volume integrated in full (dashed) and at about one point to an element through the wall (solid; degree 3).",
         Chart {
             x_label: "log_{2} elements".into(),
             y_label: "log_{10} error of *u*(*A*)".into(),
@@ -90,6 +88,41 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
             width_pt: 360.0,
             ..Chart::default()
         },
+    );
+    Ok(())
+}
+
+/// A thick, nearly incompressible tube whose middle contracts, with one element through its wall.
+pub fn contraction(found: &mut Findings<'_>) -> Result<(), Trouble> {
+    let W = |elements: [usize; 3], volumetric: Integration| -> Result<f64, Trouble> {
+        let mut specimen = Specimen {
+            volumetric,
+            ..Specimen::new(3.0, 0.2, 0.4999, elements)
+        };
+        specimen.tube.ends = [Support::Fixed; 2];
+        specimen.tube.muscles.push(Muscle {
+            name: String::new(),
+            direction: Direction::Circular,
+            zone: [0.5, 2.5],
+            profile: Profile::RaisedCosine,
+        });
+        let load = Load {
+            muscles: vec![0.6],
+            ..specimen.tube.rest()
+        };
+        let problem = specimen.problem(1);
+        Ok(energy(&problem, &under(&problem, &load, 4)?))
+    };
+    found.case("thick tube that contracts to 0.6, ν = 0.4999")?;
+    let fine = W([80, 60, 10], Integration::Full)?;
+    found.go_on()?;
+    let reduced = W([30, 60, 1], Integration::Reduced)?;
+    let source = "Plica itself, 80 × 10 elements, full";
+    found.within(
+        1e-2,
+        "W, 30 × 1 elements, reduced integration",
+        reduced,
+        (fine, source),
     );
     Ok(())
 }

@@ -27,7 +27,7 @@ mod routes;
 pub mod row;
 mod specimen;
 
-pub use found::{Findings, Observer, Trouble, Verification};
+pub use found::{Findings, Observer, TITLE, Trouble, Verification};
 pub use row::{Row, Tolerance};
 
 /// Something that is checked.
@@ -74,6 +74,11 @@ pub const CHECKS: &[Check] = &[
         "thick-cylinder",
         "a thick cylinder that is nearly incompressible",
         locking::thick_cylinder,
+    ),
+    quick(
+        "thick-contraction",
+        "a thick tube that contracts, with one element through it",
+        locking::contraction,
     ),
     quick(
         "orders",

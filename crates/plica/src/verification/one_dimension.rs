@@ -235,9 +235,11 @@ impl Balanced {
     }
 
     /// How many ways there are for a wave n around and k along to lower the energy: the negative
-    /// eigenvalues of the second variation. Pressure is thought of for k = 0 only.
+    /// eigenvalues of the second variation. Under pressure only for k = 0, where the area that it encloses
+    /// tells its work; panics else.
     pub fn negative(&self, n: usize, k: f64) -> usize {
         let wall = &self.wall;
+        assert!(k == 0.0 || wall.pressures == [0.0; 2]);
         let (_, mu) = wall.lame();
         let grown = [1.0, wall.grown[0], wall.grown[1]];
         let n = n as f64;
@@ -312,12 +314,16 @@ impl Balanced {
     }
 }
 
-/// Where a count first differs from none between two numbers, to the last digits.
+/// Where a count first differs from none between two numbers, to the last digits; not a number where it
+/// is none at the second, too.
 pub fn first<E>(
     mut stable: f64,
     mut unstable: f64,
     mut negative: impl FnMut(f64) -> Result<usize, E>,
 ) -> Result<f64, E> {
+    if negative(unstable)? == 0 {
+        return Ok(f64::NAN);
+    }
     while (unstable - stable).abs() > 1e-11 * unstable.abs() {
         let middle = 0.5 * (stable + unstable);
         if negative(middle)? > 0 {
@@ -361,7 +367,7 @@ impl Nodes {
             .collect();
         let weight = |i: usize| {
             let half = if i == 0 || i == DEGREE { 0.5 } else { 1.0 };
-            if i % 2 == 0 { half } else { -half }
+            if i.is_multiple_of(2) { half } else { -half }
         };
         let mut slopes = vec![vec![0.0; POINTS]; POINTS];
         for i in 0..POINTS {

@@ -18,6 +18,8 @@ const MAIN: &str = include_str!("main_case.toml");
 
 /// An independent axisymmetric solution of 302 × 5 cubic elements on the exact circle.
 const SPLINES: &str = "302 × 5 axisymmetric cubic elements";
+/// Plica itself, on another discretisation.
+const QUARTICS: &str = "Plica's own quartics, 255 × 60 × 8";
 /// A prototype of the same discretisation.
 const PROTOTYPE: &str = "three-dimensional prototype";
 
@@ -59,8 +61,9 @@ fn follow(
     Ok(())
 }
 
-/// Where an element's point of the reference lies.
-const READ_AT: f64 = 0.7534;
+/// Where the reference's radii were read, as far as can be told: fitted, to two of the digits, beside the narrowest
+/// place (a mirror of it on the other side would do). All three agree at one place; that is what the rows say.
+const READ_AT: f64 = 0.7535;
 
 /// Whether Lmax/L is this.
 fn is_at(problem: &TubeProblem, state: &State<Load>, length: f64) -> bool {
@@ -83,8 +86,6 @@ pub fn main_case(found: &mut Findings<'_>) -> Result<(), Trouble> {
         (1.10, 7.962128e-4),
         (1.13, 6.671367e-4),
     ];
-    // The reference read its radii at points of its own: all three are met at one of them, beside the
-    // narrowest place.
     let radii = [(1.00, 0.2125), (1.10, 0.1479), (1.13, 0.1451)];
     let angles = [(1.00, 59.0), (1.13, 73.0), (1.17, 82.0), (1.18, 86.0)];
     let (mesh, tolerance) = match found.full {
@@ -117,9 +118,9 @@ pub fn main_case(found: &mut Findings<'_>) -> Result<(), Trouble> {
         let wall = outer_wall(problem, state);
         for (at, reference) in radii {
             if is_at(problem, state, at) {
-                let beside = wall.reference_z.partition_point(|z| *z < READ_AT);
-                let quantity = format!("outer radius at z = {READ_AT}, Lmax/L = {at:.2}");
-                let radius = wall.points[beside].1;
+                let quantity = format!("outer radius at z = {READ_AT} (fitted), Lmax/L = {at:.2}");
+                let meridians = Meridians::of(&problem.tube, &state.load, &state.u);
+                let radius = meridians.walls(Face::Outer, &[0.0], &[READ_AT])[0].points[0].1;
                 found.row(
                     quantity,
                     radius,
@@ -148,8 +149,9 @@ pub fn main_case(found: &mut Findings<'_>) -> Result<(), Trouble> {
     let of = "Lmax/L of the lowest W";
     let paper = (1.13, "Okino et al. (2025), Fig. 4A");
     found.row(of, lowest.1, paper, Tolerance::Absolute(1e-9));
+    // "Near 1.19": a step more or less.
     let of = "first Lmax/L with an overhang, in steps of 0.01";
-    found.row(of, overhang, (1.19, SPLINES), Tolerance::Absolute(0.011));
+    found.row(of, overhang, (1.19, SPLINES), Tolerance::Absolute(0.0101));
     Ok(())
 }
 
@@ -177,7 +179,7 @@ pub fn narrowest(found: &mut Findings<'_>) -> Result<(), Trouble> {
             .any(|at| (length - at).abs() < 1e-9)
         {
             let quantity = format!("smallest outer radius at {length:.2}");
-            found.within(1e-4, quantity, radius, (reference, "255 × 60 × 8 quartics"));
+            found.within(1e-4, quantity, radius, (reference, QUARTICS));
         }
     }
     Ok(())
@@ -242,7 +244,7 @@ pub fn stability(found: &mut Findings<'_>) -> Result<(), Trouble> {
                 near.map_or(f64::NAN, |(_, lowest)| *lowest)
             };
             let quantity = format!("lowest eigenvalue, harmonic {n}, at {place:.2}");
-            let reference = (at(&quartics[n]), "255 × 60 × 8 quartics");
+            let reference = (at(&quartics[n]), QUARTICS);
             found.row(
                 quantity,
                 at(&cubics[n]),
@@ -317,7 +319,7 @@ pub fn meshes(found: &mut Findings<'_>) -> Result<(), Trouble> {
             errors[i].push(((mesh[0] as f64).log10(), off.log10()));
             // After the snap there is nothing to converge to: see docs/verification.md.
             if mesh[0] >= 305 && *place < 1.2 {
-                let reference = (finest[i], "1205 × 60 × 8 control points");
+                let reference = (finest[i], "Plica itself, 1205 × 60 × 8");
                 found.within(
                     1e-4,
                     format!("W at Lmax/L = {place}"),
@@ -389,12 +391,12 @@ pub fn relaxation_alone(found: &mut Findings<'_>) -> Result<(), Trouble> {
         before = now;
         Ok(())
     })?;
-    // The prototype's are brackets of 0.01, but the first.
+    // Brackets of 0.01; the first is "near" three digits, and its eigenvalue falls slowly.
     for (n, reference, tolerance) in [
         (2, 1.066, 3e-3),
-        (3, 1.075, 6e-3),
-        (4, 1.095, 6e-3),
-        (1, 1.095, 6e-3),
+        (3, 1.075, 5e-3),
+        (4, 1.095, 5e-3),
+        (1, 1.095, 5e-3),
     ] {
         let quantity = format!("Lmax/L at which harmonic {n} is lost");
         found.row(

@@ -206,7 +206,7 @@ pub fn thin_limit(found: &mut Findings<'_>) -> Result<(), Trouble> {
         let limit = limit(&ratios[1..]);
         found.case("thinner and thinner ring")?;
         let quantity = format!("p over that of a thin ring, H → 0, n = {n}");
-        found.within(2e-3, quantity, limit, (1.0, "(n²−1) E h³/12(1−ν²)R³"));
+        found.within(2e-3, quantity, limit, (1.0, "(n²−1) E h³/(12(1−ν²)R³)"));
         curves.push(Curve {
             label: format!("*n* = {n}"),
             points: std::iter::once((0.0, limit))
@@ -224,7 +224,7 @@ pub fn thin_limit(found: &mut Findings<'_>) -> Result<(), Trouble> {
     });
     found.picture(
         "thin-ring.png",
-        "Critical pressure of a ring over that of a thin ring, (n² − 1) E h³/12(1 − ν²)R³, as its wall thins; at H = 0 \
+        "Critical pressure of a ring over that of a thin ring, (n² − 1) E h³/(12(1 − ν²)R³), as its wall thins; at H = 0 \
          what the thinnest three extrapolate to.",
         Chart {
             x_label: "*H*/*D*".into(),

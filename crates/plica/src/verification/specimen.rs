@@ -167,5 +167,14 @@ pub fn lost(
         let next = from - values[0] * (to - from) / (values[1] - values[0]);
         (from, to, values) = (to, next, [values[1], lowest(next)?]);
     }
+    // Found, and not lost long before.
+    let halfway = lowest(0.5 * to)?;
+    if values[1].abs() > 1e-5 * halfway.abs() || halfway <= 0.0 {
+        let what = format!(
+            "lowest eigenvalue {:.1e} where it should be zero, {halfway:.1e} halfway",
+            values[1]
+        );
+        return Err(Trouble::Solve(what));
+    }
     Ok(to)
 }

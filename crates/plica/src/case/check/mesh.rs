@@ -47,8 +47,8 @@ pub(super) fn mesh(spec: &Spec, tube: &Tube, problems: &mut Problems) -> (Mesh, 
         let rule = format!("must be at least {} for degree {degree}", 2 * degree + 2);
         problems.value(AROUND, rule, Some("try 60".into()));
     }
-    if mesh.volumetric == Integration::Reduced && degree.is_multiple_of(2) {
-        let rule = format!("there is no such rule for splines of an even degree, {degree}");
+    if mesh.volumetric == Integration::Reduced && ![3, 5].contains(&degree) {
+        let rule = format!("there is such a rule for splines of degree 3 and 5, not for {degree}");
         let cure = "try degree 3, or \"full\"".to_owned();
         problems.value("mesh.volumetric_integration", rule, Some(cure));
     }

@@ -32,6 +32,16 @@ pub(super) fn tube(spec: &Spec, problems: &mut Problems) -> Tube {
         problems.value("tube.length", rule, Some(cure));
     }
     let spec::Material::NeoHookean(law) = &spec.material;
+    let ratio = "material.neo-hookean.poisson_ratio";
+    if matches!(law.volumetric, spec::Volumetric::Quadratic)
+        && law.poisson_ratio < 0.0
+        && problems.none_about(&[ratio])
+    {
+        let rule =
+            "the quadratic law has no lowest energy for a negative Poisson's ratio".to_owned();
+        let cure = "try 0.3, or volumetric = \"logarithmic\"".to_owned();
+        problems.value(ratio, rule, Some(cure));
+    }
     Tube {
         length,
         thickness,
