@@ -31,12 +31,13 @@ fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<Stri
 
 /// Runs a case.
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
+    // Before anything computes, which checking a case may do already.
+    threads::limit(arguments.threads)?;
     let (text, plan) = case_file::open(&arguments.case)?;
     let out = match &arguments.out {
         Some(out) => out.clone(),
         None => PathBuf::from("runs").join(case_file::stem(&arguments.case)),
     };
-    threads::limit(arguments.threads)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     study::fits(&plan).map_err(Failure::Study)?;

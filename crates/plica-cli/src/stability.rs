@@ -36,8 +36,9 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
         Wanted::State(_) => SavedState::read(&begin),
         Wanted::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
     };
-    let (_, plan) = case_file::open_with(&case, &own)?;
+    // Before anything computes, which checking a case may do already.
     threads::limit(arguments.threads)?;
+    let (_, plan) = case_file::open_with(&case, &own)?;
     fits(&plan).map_err(Failure::Study)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;

@@ -60,6 +60,8 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
         Trouble::Stopped => Failure::Interrupted("interrupted; nothing was written"),
         trouble => Failure::Files(trouble.to_string()),
     })?;
+    // First of all, whatever becomes of the files.
+    console::say(&held.text())?;
     let mut names = vec![PAGE.to_owned()];
     fs::write(&page, held.page()).map_err(file_trouble)?;
     match held.pictures() {
@@ -72,11 +74,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
         Err(error) => console::tell(&format!("warning: no pictures: {error}")),
     }
     let out = arguments.out.display();
-    console::say(&format!(
-        "{}written to {out}: {}\n",
-        held.text(),
-        names.join(", ")
-    ))?;
+    console::say(&format!("written to {out}: {}\n", names.join(", ")))?;
     if held.failed() > 0 {
         Err(Failure::Unfinished)
     } else {

@@ -48,7 +48,7 @@ shape = {{ mode = \"{mode}\" }}
 fn run(directory: &Path, name: &str, case: &str) {
     let file = format!("cases/{name}.toml");
     fs::write(directory.join(&file), case).unwrap();
-    let said = plica(directory, &["run", &file, "--out", name]);
+    let said = plica(directory, &["run", &file, "--out", name, "-t", "2"]);
     assert!(said.status.success(), "{name}: {}", text(&said.stderr));
 }
 

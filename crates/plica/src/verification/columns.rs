@@ -134,7 +134,7 @@ pub fn column(found: &mut Findings<'_>) -> Result<(), Trouble> {
     found.picture(
         "column.png",
         "Critical strain of a tube between sliding plates over that of Euler's column, π² I/(A L²), as it gets longer; at \
-         1/L = 0 what the longest two extrapolate to.",
+         D/L = 0 what the longest two extrapolate to.",
         Chart {
             x_label: "(*D*/*L*)^{2}".into(),
             y_label: "*ε*/*ε*_{Euler}".into(),

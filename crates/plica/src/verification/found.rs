@@ -212,7 +212,9 @@ impl Verification {
             "{TITLE}\n\n\
              Written by `plica verify{flag}`, {how}, version {}; {}. An error is over the reference, or\n\
              where the tolerance says ± in the unit of the quantity. Lengths are in D, stresses in E, energies in E·D³ (per length\n\
-             E·D²). docs/verification.md tells how each row is found.\n\n{}",
+             E·D²). docs/verification.md tells how each row is found. Unless a row says otherwise a ring has H = 0.06 and\n\
+             ν = 0.495; A and B are the wall's radii at rest, a and b those under load, θη and θζ what it has grown around and along, n waves around\n\
+             and m half waves along.\n\n{}",
             env!("CARGO_PKG_VERSION"),
             self.verdict(),
             in_markdown(&self.rows)

@@ -60,7 +60,7 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
     }
     for nu in [0.49, 0.499, 0.4999] {
         found.case(format!(
-            "thick cylinder, A = 3, B = 9, p = E/1000, ν = {nu}"
+            "thick cylinder, A = 3, B = 9 (in these units), pressure E/1000, ν = {nu}"
         ))?;
         // E = 1000, p = 1, lengths as they are: D = 18.
         let exact = 18.0 * lame(nu) * 1e-3;
@@ -69,12 +69,12 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
             (3, Integration::Reduced, "reduced", 1e-5),
         ] {
             let computed = exact * (1.0 + off(nu, degree, 16, volumetric)?);
-            let quantity = format!("u(A), p = {degree}, 16 elements, {name} integration");
+            let quantity = format!("u(A), degree {degree}, 16 elements, {name} integration");
             found.within(tolerance, quantity, computed, (exact, lame_says));
         }
         // What is asked of a coarse mesh is that it does not lock: the error is that of ν = 0.49.
         let computed = exact * (1.0 + off(nu, 3, 4, Integration::Reduced)?);
-        let quantity = "u(A), p = 3, 4 elements, reduced integration";
+        let quantity = "u(A), degree 3, 4 elements, reduced integration";
         found.within(1e-4, quantity, computed, (exact, lame_says));
     }
     found.picture(

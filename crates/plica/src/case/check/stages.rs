@@ -61,7 +61,7 @@ fn check_whole(tube: &Tube, begin: &Load, stages: &[Stage], problems: &mut Probl
         let cure = "write drive.NAME.diameter_ratio = 0.25 in a stage, NAME being a muscle's";
         problems.key(
             "stages",
-            "nothing is driven in any stage",
+            "nothing is driven in any stage to anything but where it begins",
             Some(cure.into()),
         );
     }
