@@ -1,11 +1,13 @@
 //! Rings in plane strain: under pressure, grown, and about to buckle.
 
 use super::found::{Findings, Trouble};
-use super::one_dimension::{Resistance, Wall, first};
+use super::one_dimension::{Balanced, Resistance, Wall, first};
 use super::specimen::{Specimen, energy, lost, stress, swelling, under};
 use crate::activation::Direction;
 use crate::draw::{Chart, Curve, Stroke};
 use crate::material::{Material, NeoHookean, Volumetric};
+use crate::solve::State;
+use crate::study::TubeProblem;
 use crate::tube::Load;
 use std::f64::consts::PI;
 
@@ -17,6 +19,30 @@ const ONE: &str = "one-dimensional solution";
 
 fn wall() -> Wall {
     Wall::new([A, B], NU)
+}
+
+/// A ring as Plica finds it.
+type Ring<'a> = (&'a TubeProblem, &'a State<Load>);
+
+/// Rows of its radii.
+fn radii(
+    found: &mut Findings<'_>,
+    tolerance: f64,
+    (problem, state): Ring<'_>,
+    balanced: &Balanced,
+) {
+    for ((name, R), r) in [("a", A), ("b", B)].into_iter().zip(balanced.radii()) {
+        let radius = R + swelling(problem, state, R);
+        found.within(tolerance, name, radius, (r, ONE));
+    }
+}
+
+/// Rows of its stresses around.
+fn stresses(found: &mut Findings<'_>, (problem, state): Ring<'_>, balanced: &Balanced) {
+    for ((name, R), sigma) in [("a", A), ("b", B)].into_iter().zip(balanced.stress()) {
+        let around = stress(problem, state, R)[2];
+        found.within(1e-4, format!("σθ({name})"), around, (sigma[1], ONE));
+    }
 }
 
 /// Displacements and stresses of a ring under a small pressure from inside: Lamé.
@@ -61,23 +87,8 @@ pub fn inflation(found: &mut Findings<'_>) -> Result<(), Trouble> {
         .balance(8)?;
         let state = under(&problem, &specimen.pressed(pressures), steps)?;
         found.case(format!("ring, p = {p} inside (a/A = {swollen})"))?;
-        let radius = |R: f64| R + swelling(&problem, &state, R);
-        let [a, b] = balanced.radii();
-        found.within(1e-5, "a", radius(A), (a, ONE));
-        found.within(1e-5, "b", radius(B), (b, ONE));
-        let [inner, outer] = balanced.stress();
-        found.within(
-            1e-4,
-            "σθ(a)",
-            stress(&problem, &state, A)[2],
-            (inner[1], ONE),
-        );
-        found.within(
-            1e-4,
-            "σθ(b)",
-            stress(&problem, &state, B)[2],
-            (outer[1], ONE),
-        );
+        radii(found, 1e-5, (&problem, &state), &balanced);
+        stresses(found, (&problem, &state), &balanced);
     }
     Ok(())
 }
@@ -132,25 +143,10 @@ pub fn growth(found: &mut Findings<'_>) -> Result<(), Trouble> {
         };
         let state = under(&problem, &load, 5)?;
         found.case(format!("closed ring, θη = {g}"))?;
-        let radius = |R: f64| R + swelling(&problem, &state, R);
-        let [a, b] = balanced.radii();
-        found.within(1e-6, "a", radius(A), (a, ONE));
-        found.within(1e-6, "b", radius(B), (b, ONE));
+        radii(found, 1e-6, (&problem, &state), &balanced);
         let W = energy(&problem, &state) / specimen.tube.length;
         found.within(1e-6, "W over length", W, (balanced.energy(), ONE));
-        let [inner, outer] = balanced.stress();
-        found.within(
-            1e-4,
-            "σθ(a)",
-            stress(&problem, &state, A)[2],
-            (inner[1], ONE),
-        );
-        found.within(
-            1e-4,
-            "σθ(b)",
-            stress(&problem, &state, B)[2],
-            (outer[1], ONE),
-        );
+        stresses(found, (&problem, &state), &balanced);
     }
     Ok(())
 }
