@@ -15,11 +15,17 @@
 //! draw it right in the sense of least squares: c_m of [`Sector::control_wave`].
 
 use super::spline_tube::bases;
+use super::spline_tube::{FEW_RINGS, Imperfect};
+use super::stress_free::{StressFree, slab_stress_free};
+use super::tables::Slab;
 use super::{Inverted, SplineTube};
 use crate::rings::Sector;
 use crate::spline::{Basis, Values, through, transfer};
 use crate::tube::{Axial, End, Imperfection, Mode, Part, Push, Shape, Support, Tube, Wave};
+use rayon::prelude::*;
+use std::borrow::Cow;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Distance from a held end, in D, over which a geometric imperfection that is the same all along
 /// the tube comes in.
@@ -110,6 +116,55 @@ pub(super) fn geometry(
 }
 
 impl SplineTube {
+    /// The tube with a stress-free shape that is displaced from its own.
+    pub(super) fn imperfect(mut self, displacement: Vec<f64>) -> Self {
+        let points = if self.sector.rings < FEW_RINGS {
+            let slabs = self.slabs.par_iter();
+            slabs
+                .map(|slab| self.slab_shape(slab, &displacement))
+                .collect()
+        } else {
+            let u = self.lanes.pad(&displacement);
+            let slabs = self.slabs.par_iter();
+            slabs
+                .map(|slab| {
+                    let pencils = 0..slab.elements;
+                    let shape =
+                        |lane| self.pencil_shape(slab, lane, &self.layers, &self.around, &u);
+                    pencils.flat_map(shape).collect()
+                })
+                .collect()
+        };
+        self.imperfect = Some(Arc::new(Imperfect {
+            displacement,
+            points,
+        }));
+        self
+    }
+
+    /// The stress-free shape as slab kernels read it, under displacements of the perfect tube.
+    fn slab_shape(&self, slab: &Slab, displacement: &[f64]) -> Vec<StressFree> {
+        let perfect = self.input(slab, (&[], None), displacement);
+        match self.degree() {
+            1 => slab_stress_free::<2>(&perfect),
+            2 => slab_stress_free::<3>(&perfect),
+            3 => slab_stress_free::<4>(&perfect),
+            4 => slab_stress_free::<5>(&perfect),
+            5 => slab_stress_free::<6>(&perfect),
+            degree => unreachable!("degree {degree} is refused by SplineTube::new"),
+        }
+    }
+
+    /// The stress-free shape of a slab as slab kernels read it, if it is not the perfect tube's.
+    pub(super) fn shape_of_slab(&self, number: usize) -> Option<Cow<'_, [StressFree]>> {
+        let imperfect = self.imperfect.as_ref()?;
+        Some(if self.sector.rings < FEW_RINGS {
+            Cow::Borrowed(&imperfect.points[number])
+        } else {
+            Cow::Owned(self.slab_shape(&self.slabs[number], &imperfect.displacement))
+        })
+    }
+
     /// u₀ of the stress-free shape X + u₀(X): control values numbered as unknowns are. None if the
     /// tube has no imperfection of its geometry.
     ///

@@ -6,7 +6,7 @@ use super::imperfection::geometry;
 use super::pencil::RingLanes;
 use super::ring_drag::RingDrag;
 use super::slab::SlabInput;
-use super::stress_free::{StressFree, slab_stress_free};
+use super::stress_free::StressFree;
 use super::supports::{Supports, left_by, motions_in_harmonic};
 use super::tables::{Around, Layer, Slab, full_rules, reduced_rules};
 use super::tangent::{SlabTangent, slab_tangent};
@@ -17,7 +17,6 @@ use crate::spline::{Basis, Circle, gauss_legendre, graded_breakpoints};
 use crate::tensor::Lanes;
 use crate::tube::{Integration, Load, Mesh, Tube};
 use rayon::prelude::*;
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A tube and the splines that carry its displacements.
@@ -211,55 +210,6 @@ impl SplineTube {
             Some(own) => ring.imperfect(first_ring(&own.displacement, self.sector.rings)),
             None => ring,
         }
-    }
-
-    /// The tube with a stress-free shape that is displaced from its own.
-    pub(super) fn imperfect(mut self, displacement: Vec<f64>) -> Self {
-        let points = if self.sector.rings < FEW_RINGS {
-            let slabs = self.slabs.par_iter();
-            slabs
-                .map(|slab| self.slab_shape(slab, &displacement))
-                .collect()
-        } else {
-            let u = self.lanes.pad(&displacement);
-            let slabs = self.slabs.par_iter();
-            slabs
-                .map(|slab| {
-                    let pencils = 0..slab.elements;
-                    let shape =
-                        |lane| self.pencil_shape(slab, lane, &self.layers, &self.around, &u);
-                    pencils.flat_map(shape).collect()
-                })
-                .collect()
-        };
-        self.imperfect = Some(Arc::new(Imperfect {
-            displacement,
-            points,
-        }));
-        self
-    }
-
-    /// The stress-free shape as slab kernels read it, under displacements of the perfect tube.
-    fn slab_shape(&self, slab: &Slab, displacement: &[f64]) -> Vec<StressFree> {
-        let perfect = self.input(slab, (&[], None), displacement);
-        match self.degree() {
-            1 => slab_stress_free::<2>(&perfect),
-            2 => slab_stress_free::<3>(&perfect),
-            3 => slab_stress_free::<4>(&perfect),
-            4 => slab_stress_free::<5>(&perfect),
-            5 => slab_stress_free::<6>(&perfect),
-            degree => unreachable!("degree {degree} is refused by SplineTube::new"),
-        }
-    }
-
-    /// The stress-free shape of a slab as slab kernels read it, if it is not the perfect tube's.
-    fn shape_of_slab(&self, number: usize) -> Option<Cow<'_, [StressFree]>> {
-        let imperfect = self.imperfect.as_ref()?;
-        Some(if self.sector.rings < FEW_RINGS {
-            Cow::Borrowed(&imperfect.points[number])
-        } else {
-            Cow::Owned(self.slab_shape(&self.slabs[number], &imperfect.displacement))
-        })
     }
 
     /// The degree p.
@@ -559,7 +509,7 @@ impl SplineTube {
         slab.z.iter().map(at).collect()
     }
 
-    fn input<'a>(
+    pub(super) fn input<'a>(
         &'a self,
         slab: &'a Slab,
         (inverse_stretch, stress_free): (&'a [(Lanes, Lanes)], Option<&'a [StressFree]>),
@@ -598,7 +548,7 @@ fn first_ring(u: &[f64], rings: usize) -> Vec<f64> {
 }
 
 /// Rings from which their elements share enough to be worked on as pencils.
-const FEW_RINGS: usize = 2;
+pub(super) const FEW_RINGS: usize = 2;
 
 /// Bytes of slab tangents that are held before they are summed.
 const SLAB_MEMORY: usize = 256 << 20;
