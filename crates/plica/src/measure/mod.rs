@@ -18,21 +18,27 @@
 //! | own axis | where the radii of the outer face have no first harmonic |
 //! | depth | outer radius at rest less the smallest outer radius about the own axis |
 //! | flatness | axial extent of the wall deeper than ¾ of the depth, over that deeper than ¼ |
+//! | flank | the straight line through the wall on one side of the narrowest place, where it is ¼ and ¾ of the depth below its radius at rest |
+//! | centre of rotation | the place with the least squared distance from the lines of a flank in two states or more |
 //! | gap | smallest distance of two points of a meridian of either face that lie a wall's thickness or more from each other along it; 0 if a meridian crosses itself |
 //! | shape | see [`Shape`] |
 //! | departure | amplitude √(aᶻ² + aᵨ²) of the largest wave cos n(φ − φ₀), n ≥ 1, in z and ρ around the outer face |
 
 mod gap;
 mod meridians;
+mod overlay;
+mod rotation;
 mod shape;
 mod wall;
 
 pub use meridians::{Departure, Meridians};
+pub use overlay::Overlay;
+pub use rotation::{Flank, Rotation};
 pub use shape::{Shape, Side};
 pub use wall::{Face, Wall, even};
 
 use crate::assembly::SplineTube;
-use crate::tube::Load;
+use crate::tube::{Load, Tube};
 
 /// The measures of one state; lengths in D.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +53,8 @@ pub struct Measures {
     pub overhang: f64,
     /// The side it overhangs on.
     pub side: Side,
+    /// Flatness of the outer face where it is deepest; 0 of a tube that is nowhere narrower than at rest.
+    pub flatness: f64,
     /// How near a wall comes to itself; 0 where it crosses itself, which nothing prevents.
     pub gap: f64,
     /// What the contracting region looks like.
@@ -86,12 +94,19 @@ impl Measures {
             unreachable!("a tube has a meridian")
         };
         let (z_at_min, outer_radius_min) = own_outer[deepest].narrowest();
+        let narrowed = Tube::OUTER_RADIUS - outer_radius_min >= Shape::LEAVES;
+        let flatness = if narrowed {
+            own_outer[deepest].flatness()
+        } else {
+            0.0
+        };
         Self {
             outer_radius_min,
             z_at_min,
             max_wall_angle_deg: angle,
             overhang,
             side,
+            flatness,
             gap,
             shape: Shape::of(
                 &own_outer[deepest],

@@ -65,18 +65,12 @@ impl Shape {
             Self::Invaginated
         } else if steepest_angle_deg >= Self::STEEP_DEG {
             Self::Square
-        } else if flatness(outer, depth) < Self::FLAT {
+        } else if outer.flatness() < Self::FLAT {
             Self::V
         } else {
             Self::U
         }
     }
-}
-
-/// Axial extent of the wall deeper than ¾ of the depth, over that deeper than ¼.
-fn flatness(wall: &Wall, depth: f64) -> f64 {
-    let extent = |part: f64| wall.extent_below(Tube::OUTER_RADIUS - part * depth);
-    extent(0.75) / extent(0.25)
 }
 
 impl std::fmt::Display for Side {

@@ -116,6 +116,30 @@ impl RunDirectory {
         manifest["verdict"].as_str().unwrap_or("running").to_owned()
     }
 
+    /// The version of the program that wrote it; empty if its manifest does not say.
+    pub fn written_by(&self) -> String {
+        let manifest = fs::read(self.path.join(MANIFEST)).unwrap_or_default();
+        let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
+        manifest["version"].as_str().unwrap_or_default().to_owned()
+    }
+
+    /// The rows of `history.csv`.
+    ///
+    /// # Errors
+    /// [`StudyError::File`] if it is not there, or not one of this version's.
+    pub fn history(&self) -> Result<Vec<Row>, StudyError> {
+        let path = self.path.join("history.csv");
+        let trouble = |error: csv::Error| StudyError::File {
+            path: path.clone(),
+            source: std::io::Error::other(error),
+        };
+        let mut table = csv::Reader::from_path(&path).map_err(trouble)?;
+        table
+            .deserialize()
+            .map(|row| row.map_err(trouble))
+            .collect()
+    }
+
     /// The files of the saved states, in the order of their numbers.
     ///
     /// # Errors

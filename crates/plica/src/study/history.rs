@@ -1,10 +1,10 @@
 //! One row per accepted state: the content of `history.csv`.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// An accepted state in numbers. Lengths in D, energies in E·D³ and pressures in E, unless the case
 /// gives units; forces relative to the forces in play.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Number of the state, from 0 (the tube at rest, or where it started).
     pub step: usize,
@@ -23,19 +23,19 @@ pub struct Row {
     /// Twist of the ileum end.
     pub ileum_twist_deg: f64,
     /// True pressure on the inner wall; none if the run has no pressures, as below.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inner_pressure: Option<f64>,
     /// True pressure on the outer wall.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outer_pressure: Option<f64>,
     /// Dead pressure on the inner wall, per area at rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inner_dead_pressure: Option<f64>,
     /// Dead pressure on the outer wall, per area at rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outer_dead_pressure: Option<f64>,
     /// Strain energy and the potential of the pressures, which is nothing at rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub potential: Option<f64>,
     /// Strain energy W = ∫ w det Fp dV₀, over the grown volume.
     pub energy: f64,
@@ -65,6 +65,8 @@ pub struct Row {
     pub overhang: f64,
     /// The side it invaginates to: colon, ileum or none.
     pub side: String,
+    /// Axial extent of the outer wall deeper than ¾ of the depth, over that deeper than ¼; 0 of a tube that is not narrowed.
+    pub flatness: f64,
     /// How near a wall comes to itself; 0 if it crosses itself.
     pub gap: f64,
     /// V, U, square, invaginated, swollen or collapsed; straight where nothing is contracted.

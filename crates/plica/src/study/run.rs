@@ -330,6 +330,7 @@ impl<'a> Record<'a> {
             max_wall_angle_deg: measures.max_wall_angle_deg,
             overhang: length * measures.overhang,
             side: measures.side.to_string(),
+            flatness: measures.flatness,
             gap: length * measures.gap,
             shape: measures.shape.to_string(),
             departure: length * measures.departure.amplitude,
