@@ -29,6 +29,7 @@
 
 mod advice;
 mod check;
+mod edit;
 mod keys;
 mod locate;
 mod problem;
@@ -40,6 +41,7 @@ mod starter;
 mod table;
 
 pub use advice::advice;
+pub use edit::{EditError, edited};
 pub use keys::{Given, Key, Kind, Limit, Range};
 pub use problem::{CaseError, Problem};
 pub use reference::reference;

@@ -6,6 +6,7 @@ use super::DrawError;
 use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen, Place};
 use super::colour::{line_colour, mix};
 use super::frame::Frame;
+use super::inset::Inset;
 use super::ticks::{Ticks, power_of_ten};
 
 /// Sizes of axis titles and of everything else, in points.
@@ -75,6 +76,8 @@ pub struct Chart {
     pub markers: Vec<Marker>,
     /// Values of x to point out.
     pub rules: Vec<Rule>,
+    /// Small tubes.
+    pub insets: Vec<Inset>,
     /// One unit of x as long as one unit of y.
     pub equal_aspect: bool,
     /// Height of the frame over its width, where the two axes need no equal units.
@@ -96,6 +99,7 @@ impl Default for Chart {
             curves: Vec::new(),
             markers: Vec::new(),
             rules: Vec::new(),
+            insets: Vec::new(),
             equal_aspect: false,
             proportion: 0.66,
             x_range: None,
@@ -131,6 +135,7 @@ impl Chart {
         self.draw_axes(&mut canvas, &frame, &x, &y)?;
         self.draw_rules(&mut canvas, &frame, &names);
         self.draw_curves(&mut canvas, &frame);
+        self.draw_insets(&mut canvas, &frame)?;
         self.draw_markers(&mut canvas, &frame);
         canvas.finish()?.to_png(self.width_pt * 25.4 / 72.0)
     }

@@ -157,7 +157,7 @@ impl Cutaway {
     }
 
     /// Start and length of what the panels cover along a direction.
-    fn extent<'a>(
+    pub(super) fn extent<'a>(
         &self,
         panels: impl Iterator<Item = &'a Panel>,
         direction: [f64; 3],

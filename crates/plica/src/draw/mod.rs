@@ -5,6 +5,7 @@
 //! | [`chart`] | curves against axes: energy paths, wall profiles |
 //! | [`cutaway`] | opened tubes, coloured by a field, over one colour bar |
 //! | `frame`, `notes` | a chart's frame; its legend, rules and markers |
+//! | [`inset`] | small tubes inside a chart |
 //! | `colour_bar` | the bar beneath the cut-aways |
 //! | [`section`] | the surfaces of a tube cut open along its axis, from any wall mapping |
 //! | [`raster`] | shaded surfaces: a z-buffer with smooth normals |
@@ -36,6 +37,7 @@ mod colour_bar;
 pub mod cutaway;
 mod frame;
 pub mod image;
+pub mod inset;
 mod label;
 mod light;
 mod notes;
@@ -47,6 +49,7 @@ pub use chart::{Chart, Curve, Marker, Rule, Stroke};
 pub use colour::Map;
 pub use cutaway::{Cutaway, Panel, Range};
 pub use image::Image;
+pub use inset::Inset;
 pub use raster::Surface;
 pub use section::Opening;
 

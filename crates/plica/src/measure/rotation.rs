@@ -80,7 +80,7 @@ impl Rotation {
     pub fn of(walls: &[&Wall], side: Side) -> Option<Self> {
         let flanks: Option<Vec<Flank>> = walls.iter().map(|wall| Flank::of(wall, side)).collect();
         let flanks = flanks?;
-        let ([first, .., last] | [first, last]) = flanks.as_slice() else {
+        let [first, .., last] = flanks.as_slice() else {
             return None;
         };
         // Least squares: Σ n (n · c − n · m) = 0 over the lines' normals n and middles m.
