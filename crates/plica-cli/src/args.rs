@@ -26,6 +26,9 @@ pub enum Command {
     /// Solve problems whose answer is known otherwise, and say how far off each is
     #[command(after_long_help = VERIFY_EPILOGUE)]
     Verify(VerifyArguments),
+    /// Run the computations of Okino et al. (2025) and lay them beside what the paper reports
+    #[command(after_long_help = REPRODUCE_EPILOGUE)]
+    Reproduce(ReproduceArguments),
     /// Say whether a case is sound, and what running it would take
     Check {
         /// The case file
@@ -104,6 +107,29 @@ pub struct VerifyArguments {
     pub threads: Option<u16>,
 }
 
+/// What `plica reproduce` takes.
+#[derive(Args, Debug)]
+pub struct ReproduceArguments {
+    /// Figures: fig3 to fig7, appendix-a, appendix-b [default: all]
+    #[arg(value_name = "FIGURE")]
+    pub figures: Vec<String>,
+    /// Coarser meshes than the paper's: some minutes [default]
+    #[arg(long, conflicts_with = "full")]
+    pub quick: bool,
+    /// The paper's mesh, and three dimensions where they matter: an hour or two
+    #[arg(long)]
+    pub full: bool,
+    /// List the figures and the cases that they are told from, and run none
+    #[arg(long)]
+    pub list: bool,
+    /// Directory to write to [default: runs/reproduction, or runs/reproduction-full]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads to use [default: all cores]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
 /// A tolerance that can be reached.
 fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -120,13 +146,14 @@ Examples:
   plica run tube.toml -o again -t 4
   plica stability runs/tube      where does its path become unstable, and how?
   plica verify                   is this program right?
+  plica reproduce fig4           a figure of the paper, beside what the paper reports
 
 A case file is described, key by key, in docs/case-file.md.
 
 Exit codes:
   0    done
   1    the run could not be finished: no equilibrium was found any more, or too little memory;
-       or a row of the verification is too far off
+       or a row of the verification is too far off, or a statement of the paper not met
   2    wrong arguments, or a case with problems
   3    files could not be read or written
   130  interrupted (Ctrl-C or SIGTERM); what was computed until then is written";
@@ -179,3 +206,17 @@ What it leaves behind:
 
 Ctrl-C or SIGTERM ends it after the problem at hand, some seconds at most, with nothing written. A
 second Ctrl-C ends it at once.";
+
+const REPRODUCE_EPILOGUE: &str = "\
+Each figure is told from runs of cases in cases/, some with keys changed; each statement of the paper
+stands beside what was found, and whether that agrees. docs/reproduction.md tells what is measured, and how.
+
+What it leaves behind:
+  reproduction.md     every statement of the paper, and whether it is met
+  fig3.md, ...        the figures: pictures, tables, what was run and how long it took
+  *.png               the pictures
+  runs/               the runs, each with the case as it was run
+
+Runs that are there already are not done again, and figures whose runs are all there are told along with those
+asked for. Ctrl-C or SIGTERM ends it after the solve at hand; the same command then goes on after the
+last run that was done. A second Ctrl-C ends it at once.";

@@ -4,7 +4,6 @@ use crate::failure::Failure;
 use crate::{case_file, console};
 use plica::case::advice;
 use plica::material::{Material, NeoHookean, Volumetric};
-use plica::solve::{Integrator, Scheme};
 use plica::spline::Circle;
 use plica::study::{Plan, fits, forecast};
 use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube};
@@ -33,11 +32,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         Symmetry::Fold(m) => format!("{m}-fold"),
         Symmetry::None => "none, the full tube".to_owned(),
     };
-    let scheme = match &plan.solver.scheme {
-        Scheme::Static => "static",
-        Scheme::PseudoTime(p) if p.integrator == Integrator::Newmark => "newmark",
-        Scheme::PseudoTime(_) => "dragged",
-    };
+    let scheme = plan.solver.scheme.name();
     let states = 1 + plan.stages.iter().map(|stage| stage.steps).sum::<usize>();
     let muscles: Vec<&str> = tube.muscles.iter().map(|m| m.name.as_str()).collect();
     let mut rows = vec![

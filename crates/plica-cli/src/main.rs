@@ -10,6 +10,7 @@ mod interrupt;
 mod message;
 mod new;
 mod progress;
+mod reproduce;
 mod run;
 mod stability;
 mod threads;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Stability(arguments) => stability::stability(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
+        Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Command::Check { case } => check::check(&case),
         Command::New { file } => new::new(&file),
         Command::Completions { shell } => new::completions(shell),

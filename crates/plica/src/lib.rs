@@ -19,6 +19,7 @@
 //! - [`draw`]: charts and shaded cut-aways from plain data.
 //! - [`report`]: the pictures of a run.
 //! - [`verification`]: problems whose answer is known otherwise.
+//! - [`reproduction`]: the paper's figures, beside what it reports.
 
 pub mod activation;
 pub mod assembly;
@@ -28,6 +29,7 @@ pub mod material;
 pub mod matrix;
 pub mod measure;
 pub mod report;
+pub mod reproduction;
 pub mod rings;
 pub mod solve;
 pub mod spline;

@@ -48,16 +48,20 @@ impl Chart {
                 frame.left + inset.shown.0 * frame.width,
                 frame.bottom() - inset.shown.1 * frame.height,
             );
-            // From the point to the edge of the tube that faces it.
+            // From the point to the nearest place on the edge of the tube's box.
             let from = frame.place(inset.at);
-            let below = from.1 > middle.1;
-            let edge = middle.1 + if below { 0.5 } else { -0.5 } * size.1;
+            let near =
+                |x: f64, middle: f64, size: f64| x.clamp(middle - 0.5 * size, middle + 0.5 * size);
+            let to = (
+                near(from.0, middle.0, size.0),
+                near(from.1, middle.1, size.1),
+            );
             let pen = Pen {
                 colour: [150; 3],
                 width: 0.5,
                 dash: (0.0, 0.0),
             };
-            canvas.line(from, (middle.0, edge), pen);
+            canvas.line(from, to, pen);
             let view = View {
                 right,
                 up,

@@ -27,6 +27,29 @@ pub enum Scheme {
     PseudoTime(PseudoTime),
 }
 
+impl Scheme {
+    /// What a case file calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Static => "static",
+            Self::PseudoTime(p) => match p.integrator {
+                Integrator::Newmark => "newmark",
+                Integrator::BackwardEuler => "dragged",
+            },
+        }
+    }
+}
+
+impl std::fmt::Display for Scheme {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())?;
+        match self {
+            Self::Static => Ok(()),
+            Self::PseudoTime(p) => write!(f, ", drag {}", p.drag),
+        }
+    }
+}
+
 /// Pseudo-time with a fixed drag: C u̇ + R(u) = 0 (Okino et al. 2025, Eqs. (15)–(18)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PseudoTime {

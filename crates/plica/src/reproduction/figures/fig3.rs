@@ -1,0 +1,105 @@
+//! Contraction alone, relaxation alone, and both.
+
+use super::super::job::Job;
+use super::super::page::{Page, energy};
+use super::super::pictures::{panel, tubes};
+use super::super::runs::Runs;
+use super::super::{Figure, Fineness, Trouble};
+use super::{axisymmetric, side};
+
+pub(super) const FIGURE: Figure = Figure {
+    name: "fig3",
+    title: "Fig. 3: contraction alone, relaxation alone, and both",
+    paper: "The paper's Fig. 3 shows three tubes: A contracts (Dmin/D = 0.25) and forms a V; B relaxes (Lmax/L = 1.2) and \
+            collapses; C does both (Lmax/L = 1.25) and invaginates.",
+    jobs,
+    tell,
+};
+
+fn jobs(fineness: Fineness) -> Vec<Job> {
+    let mut jobs = vec![
+        axisymmetric("contraction", fineness),
+        axisymmetric("relaxation", fineness),
+        axisymmetric("invagination", fineness),
+        Job::of("collapse").large(),
+    ];
+    if fineness == Fineness::Full {
+        let finer = Job::of("collapse").named("collapse-paper-mesh").large();
+        jobs.push(finer.on([305, 60, 8]).from("collapse", 7));
+    }
+    jobs
+}
+
+fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble> {
+    let [contraction, ring_buckled, both] =
+        ["contraction", "relaxation", "invagination"].map(|name| runs.get(name));
+    let (contraction, ring_buckled, both) = (contraction?, ring_buckled?, both?);
+    let collapse = runs.get(fineness.choose("collapse", "collapse-paper-mesh"))?;
+    let (a, b, c) = (contraction.last()?, collapse.last()?, both.last()?);
+
+    let never = contraction.rows.iter().all(|row| row.overhang < 1e-3);
+    page.claim(
+        "3A",
+        "contraction alone gives a V and no invagination",
+        format!(
+            "{}, steepest wall {:.0}°, no overhang in any state",
+            a.shape, a.max_wall_angle_deg
+        ),
+        a.shape == "V" && never,
+    );
+    let never = collapse.rows.iter().all(|row| row.shape != "invaginated");
+    page.claim(
+        "3B",
+        "relaxation alone makes the tube collapse, without invagination",
+        format!(
+            "collapsed at Lmax/L = {:.2}: harmonic {}, {:.3} D from round, narrowest radius {:.3} D",
+            b.length_ratio, b.departure_harmonic, b.departure, b.outer_radius_min
+        ),
+        b.shape == "collapsed" && b.departure > 0.05 && never,
+    );
+    page.claim(
+        "3C",
+        "both together make it invaginate",
+        side(c),
+        c.shape == "invaginated",
+    );
+
+    page.picture(
+        "tubes",
+        tubes(vec![
+            panel(
+                contraction,
+                a,
+                format!("A   *D*_{{min}}/*D* = 0.25: {}", a.shape),
+            )?,
+            panel(
+                collapse,
+                b,
+                format!("B   *L*_{{max}}/*L* = {:.2}: {}", b.length_ratio, b.shape),
+            )?,
+            panel(
+                both,
+                c,
+                format!(
+                    "C   *D*_{{min}}/*D* = 0.25, *L*_{{max}}/*L* = 1.25: {}",
+                    c.shape
+                ),
+            )?,
+        ])?,
+        "Tubes cut open, coloured by strain energy density; B is cut through its widest meridians",
+    );
+
+    let round = ring_buckled
+        .at(b.length_ratio)
+        .or_else(|_| ring_buckled.last())?;
+    page.text(format!(
+        "**B, told in full.** A tube that relaxes and cannot get longer is under compression. Kept axisymmetric it \
+         swells and then buckles in rings (`cases/relaxation.toml`); in three dimensions it turns oval first. At Lmax/L = {:.2} \
+         the oval has W = {} and the axisymmetric tube {} E D³ ({:.0} % more).",
+        round.length_ratio,
+        energy(b),
+        energy(round),
+        100.0 * (round.energy / b.energy - 1.0),
+    ));
+    Ok(())
+}
