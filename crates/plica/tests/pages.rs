@@ -77,6 +77,7 @@ fn the_columns_of_the_history_are_listed() {
         z_at_min: 0.0,
         max_wall_angle_deg: 0.0,
         overhang: 0.0,
+        flatness: 0.0,
         gap: 0.0,
         side: String::new(),
         shape: String::new(),

@@ -8,6 +8,7 @@ use crate::measure::{Face, Meridians, Wall, even};
 use crate::study::{self, Ending, Plan, Row, RunDirectory, SavedState, StudyError};
 use rayon::ThreadPoolBuilder;
 use std::collections::BTreeMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::thread;
@@ -201,6 +202,9 @@ impl Queue<'_> {
     /// The run; none if someone asked to stop.
     fn attempt(&self, job: &Job) -> Result<Option<Ran>, String> {
         let text = job.text();
+        // A state of another run is named from here on.
+        let own = self.folder.join(&job.name);
+        fs::create_dir_all(&own).map_err(|error| format!("{}: {error}", own.display()))?;
         let plan = plan(job, &text, self.folder).map_err(|error| {
             let problems: Vec<String> = error.problems.iter().map(ToString::to_string).collect();
             problems.join("; ")
