@@ -36,7 +36,7 @@ impl Flank {
         let points = &wall.points;
         let narrowest = (0..points.len()).min_by(|&a, &b| points[a].1.total_cmp(&points[b].1))?;
         let depth = Tube::OUTER_RADIUS - points[narrowest].1;
-        if !(depth > 0.0) {
+        if depth <= 0.0 {
             return None;
         }
         // Out of the narrowest place towards the end.
