@@ -33,7 +33,7 @@ pub const TITLE: &str = "# Okino et al. (2025), figure by figure";
 pub enum Fineness {
     /// Coarser meshes: minutes.
     Quick,
-    /// The paper's mesh, and three dimensions where they matter: an hour or two.
+    /// The paper's mesh, and three dimensions where they matter: hours.
     Full,
 }
 

@@ -151,7 +151,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
         "Perturbed tubes at Lmax/L = 1.25, cut open along the plane in which they lean, coloured by strain energy density",
     );
     page.text(
-        "The axisymmetric path of the main case is unstable sideways between Lmax/L = 1.179 and 1.198 (`plica stability`): any perturbation that has a part in \
+        "The axisymmetric path of the main case is unstable sideways between Lmax/L = 1.179 and 1.198 (`plica stability` of it on the paper's mesh; docs/stability.md): any perturbation that has a part in \
          harmonic 1 lets the tube tilt before it folds.",
     );
     Ok(())

@@ -210,12 +210,13 @@ fn compression(page: &mut Page, main: &Ran, row: &Row) -> Result<(), Trouble> {
 fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
     let (ours, papers) = (runs.get("invagination-coarse")?, runs.get("paper-scheme")?);
     let mut rows = vec![];
-    let mut largest = 0.0_f64;
+    let (mut largest, mut alike) = (0.0_f64, 0);
     for at in [1.0, 1.05, 1.1, 1.13, 1.17, 1.2, 1.25] {
         let (a, b) = (ours.at(at)?, papers.at(at)?);
         let off = (a.energy / b.energy - 1.0).abs();
         if a.shape == b.shape && a.side == b.side {
             largest = largest.max(off);
+            alike += 1;
         }
         rows.push(vec![
             format!("{at:.2}"),
@@ -231,10 +232,11 @@ fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
         "2",
         "the scheme: Newmark, ηD/(EΔτ) = 100",
         format!(
-            "takes {} solves, {:.0} s; Plica's own {} solves, {:.1} s ({ratio:.0} times less); energies differ by {largest:.0e} at most where the branch is the same",
-            papers.solves(), papers.seconds(), ours.solves(), ours.seconds()
+            "takes {} solves, {:.0} s; Plica's own {} solves, {:.1} s ({ratio:.0} times less); energies differ by {largest:.0e} at most in the {alike} of {} states below that are on the same branch",
+            papers.solves(), papers.seconds(), ours.solves(), ours.seconds(), rows.len()
         ),
-        largest < 1e-5 && papers.verdict == "complete",
+        // Before the fold there is but one branch.
+        largest < 1e-5 && alike >= 5 && papers.verdict == "complete",
     );
     page.text("**The two schemes**, on one mesh. Each state of the pseudo-time is then settled without drag (`solver.pseudo_time.settle`).");
     page.table(
