@@ -111,16 +111,14 @@ impl RunDirectory {
     /// How the run ended, as its manifest says: `complete`, `stopped`, `lost`, or `running` if it
     /// has not, or was killed.
     pub fn verdict(&self) -> String {
-        let manifest = fs::read(self.path.join(MANIFEST)).unwrap_or_default();
-        let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
-        manifest["verdict"].as_str().unwrap_or("running").to_owned()
+        let verdict = manifest(&self.path)["verdict"].as_str().map(String::from);
+        verdict.unwrap_or_else(|| "running".into())
     }
 
     /// The version of the program that wrote it; empty if its manifest does not say.
     pub fn written_by(&self) -> String {
-        let manifest = fs::read(self.path.join(MANIFEST)).unwrap_or_default();
-        let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
-        manifest["version"].as_str().unwrap_or_default().to_owned()
+        let version = manifest(&self.path)["version"].as_str().map(String::from);
+        version.unwrap_or_default()
     }
 
     /// The rows of `history.csv`.
@@ -300,11 +298,15 @@ impl RunDirectory {
     }
 }
 
+/// What the manifest in a directory says; nothing if there is none.
+fn manifest(path: &Path) -> serde_json::Value {
+    let bytes = fs::read(path.join(MANIFEST)).unwrap_or_default();
+    serde_json::from_slice(&bytes).unwrap_or_default()
+}
+
 /// Whether a directory is that of a former run: its manifest says so.
 fn is_a_run(path: &Path) -> bool {
-    let manifest = fs::read(path.join(MANIFEST)).unwrap_or_default();
-    serde_json::from_slice::<serde_json::Value>(&manifest)
-        .is_ok_and(|manifest| manifest["program"] == PROGRAM)
+    manifest(path)["program"] == PROGRAM
 }
 
 /// Takes what a former run wrote out of its directory, known by name; every other file stays. The
