@@ -9,6 +9,7 @@ mod failure;
 mod interrupt;
 mod message;
 mod new;
+mod pages;
 mod progress;
 mod reproduce;
 mod run;

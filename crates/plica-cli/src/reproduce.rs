@@ -4,7 +4,7 @@ use crate::args::ReproduceArguments;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
-use crate::{console, threads};
+use crate::{console, pages, threads};
 use plica::reproduction::{
     FIGURES, Figure, Fineness, Observer, Ran, SUMMARY, TITLE, Trouble, reproduce as tell,
 };
@@ -44,17 +44,7 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from(usual));
-    let file_trouble = |error| Failure::Files(format!("{}: {error}", out.display()));
-    // Before minutes of work, not after.
-    fs::create_dir_all(&out).map_err(file_trouble)?;
-    let summary = out.join(SUMMARY);
-    let written = fs::read_to_string(&summary).unwrap_or_default();
-    if summary.exists() && !written.starts_with(TITLE) {
-        return Err(Failure::Usage(format!(
-            "{}: there is such a page already, and it is none of plica reproduce's; choose another --out",
-            summary.display()
-        )));
-    }
+    pages::prepare(&out, SUMMARY, TITLE, "plica reproduce")?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     let mut watcher = Watcher(Ticker::new(interrupt));

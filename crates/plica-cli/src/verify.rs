@@ -4,7 +4,7 @@ use crate::args::VerifyArguments;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
-use crate::{console, threads};
+use crate::{console, pages, threads};
 use plica::verification::{CHECKS, Check, Observer, Row, TITLE, Trouble, verify as hold};
 use std::fs;
 
@@ -36,17 +36,9 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
         )));
     }
     threads::limit(arguments.threads)?;
-    // Before minutes of work, not after.
+    pages::prepare(&arguments.out, PAGE, TITLE, "plica verify")?;
     let file_trouble = |error| Failure::Files(format!("{}: {error}", arguments.out.display()));
-    fs::create_dir_all(&arguments.out).map_err(file_trouble)?;
     let page = arguments.out.join(PAGE);
-    let written = fs::read_to_string(&page).unwrap_or_default();
-    if page.exists() && !written.starts_with(TITLE) {
-        return Err(Failure::Usage(format!(
-            "{}: there is such a page already, and it is none of plica verify's; choose another --out",
-            page.display()
-        )));
-    }
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     let mut watch = Watcher {
