@@ -69,7 +69,7 @@ pub struct Figure {
 impl Figure {
     /// The runs that it is told from.
     pub fn jobs(&self, fineness: Fineness) -> Vec<Job> {
-        (self.jobs)(fineness)
+        distinct((self.jobs)(fineness))
     }
 
     /// The figure that a person means: by its name, or as `4`, `4A`, `Fig. 4`, `A` or `appendix a`.
@@ -99,6 +99,17 @@ impl Figure {
                     .any(|word| own == format!("{word}{bare}"))
         })
     }
+}
+
+/// Each run once: one name means one run.
+fn distinct(jobs: impl IntoIterator<Item = Job>) -> Vec<Job> {
+    let mut distinct: Vec<Job> = vec![];
+    for job in jobs {
+        if !distinct.iter().any(|other| other.name == job.name) {
+            distinct.push(job);
+        }
+    }
+    distinct
 }
 
 /// Is told what goes on, and may ask to stop.
@@ -165,12 +176,7 @@ pub fn reproduce(
         .iter()
         .filter(|figure| is_wanted(figure) || there(figure))
         .collect();
-    let mut jobs: Vec<Job> = vec![];
-    for job in told.iter().flat_map(|figure| figure.jobs(fineness)) {
-        if !jobs.iter().any(|other| other.name == job.name) {
-            jobs.push(job);
-        }
-    }
+    let jobs = distinct(told.iter().flat_map(|figure| figure.jobs(fineness)));
     let runs = Runs::of(&jobs, folder, observer)?;
     let mut pages = vec![];
     for figure in told {
@@ -299,7 +305,7 @@ mod tests {
     fn every_job_is_a_sound_case_and_one_name_means_one_run() {
         for fineness in [Fineness::Quick, Fineness::Full] {
             let mut jobs: Vec<Job> = vec![];
-            for job in FIGURES.iter().flat_map(|figure| figure.jobs(fineness)) {
+            for job in FIGURES.iter().flat_map(|figure| (figure.jobs)(fineness)) {
                 match jobs.iter().find(|other| other.name == job.name) {
                     Some(other) => assert_eq!(*other, job),
                     None => jobs.push(job),

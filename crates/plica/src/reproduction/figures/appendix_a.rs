@@ -91,13 +91,6 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
     if fineness == Fineness::Full {
         jobs.extend(RINGS.map(oval));
     }
-    // One name, one run.
-    let mut seen: Vec<String> = vec![];
-    jobs.retain(|job| {
-        let new = !seen.contains(&job.name);
-        seen.push(job.name.clone());
-        new
-    });
     jobs
 }
 
