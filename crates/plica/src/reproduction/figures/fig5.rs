@@ -3,8 +3,9 @@
 use super::super::job::Job;
 use super::super::page::{Page, energy};
 use super::super::pictures::{panel, tubes};
-use super::super::runs::{Ran, Runs};
+use super::super::runs::Runs;
 use super::super::{Figure, Fineness, Trouble};
+use super::ramps::{self, Ramps, outcome};
 use super::{COARSE, axisymmetric, first, is_folded, ratio, side};
 use crate::study::Row;
 
@@ -19,38 +20,36 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 /// The two cases, the panel of each, and its side.
-const CASES: [(&str, &str, &str); 2] =
-    [("5A", "colon-side", "colon"), ("5B", "ileum-side", "ileum")];
+const CASES: [ramps::Panel; 2] = [("5A", "colon-side", "colon"), ("5B", "ileum-side", "ileum")];
 
 /// Number of the state at Dmin/D = 0.25, before the relaxation.
 const CONTRACTED: usize = 15;
 
 /// Drags, and pseudo-time steps from Lmax/L = 1.0 to 1.25.
-fn map(fineness: Fineness) -> (&'static [f64], &'static [usize]) {
-    fineness.choose(
-        (&[1.0, 10.0, 100.0], &[25, 250]),
-        (&[0.1, 1.0, 10.0, 100.0, 1000.0], &[25, 250, 1000]),
-    )
+fn ramps(fineness: Fineness) -> Ramps {
+    Ramps {
+        panels: CASES,
+        drags: fineness.choose(&[1.0, 10.0, 100.0], &[0.1, 1.0, 10.0, 100.0, 1000.0]),
+        steps: fineness.choose(&[25, 250], &[25, 250, 1000]),
+        way: (0.25, "L"),
+    }
 }
 
-fn name(case: &str, drag: f64, ramp: usize) -> String {
-    format!("{case}-drag-{drag}-ramp-{ramp}")
+fn coarse(case: &str) -> String {
+    format!("{case}-coarse")
 }
 
 fn jobs(fineness: Fineness) -> Vec<Job> {
     let mut jobs = vec![];
     for (_, case, _) in CASES {
         jobs.push(axisymmetric(case, fineness));
-        let coarse = format!("{case}-coarse");
-        jobs.push(Job::of(case).named(&coarse).on(COARSE));
-        let (drags, ramps) = map(fineness);
-        for &drag in drags {
-            for &ramp in ramps {
-                let job = Job::of(case).named(name(case, drag, ramp)).on(COARSE);
-                jobs.push(dragged(job.from(&coarse, CONTRACTED).bare(), drag, ramp));
-            }
-        }
+        jobs.push(Job::of(case).named(coarse(case)).on(COARSE));
     }
+    // In one ramp, from the contracted tube on.
+    jobs.extend(ramps(fineness).jobs(|case| {
+        let job = Job::of(case).on(COARSE).from(&coarse(case), CONTRACTED);
+        job.with("stages[1].steps", 1).with("stages[2].steps", 1)
+    }));
     jobs.push(Job::of("other-side").on(COARSE));
     let mirrored = Job::of("other-side")
         .named("other-side-of-ileum-side")
@@ -63,17 +62,6 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
             .with("stages[5].drive.colon.displacement", 0.0),
     );
     jobs
-}
-
-/// In one ramp of pseudo-time from the contracted tube on.
-fn dragged(job: Job, drag: f64, ramp: usize) -> Job {
-    job.with("stages[1].steps", 1)
-        .with("stages[2].steps", 1)
-        .with("solver.scheme", "\"dragged\"")
-        .with("solver.pseudo_time.drag", format!("{drag:?}"))
-        .with("solver.pseudo_time.ramp", ramp)
-        .with("solver.pseudo_time.tolerance", "1e-4")
-        .with("solver.pseudo_time.hold", 20000)
 }
 
 fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble> {
@@ -121,46 +109,24 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
          product of drag and rate: where it is too large the wall cannot follow, and the relaxing zone buckles by itself. \
          `reproduce` shows the static scheme in the figure.",
     );
-    let (drags, ramps) = map(fineness);
-    let mut heads = vec!["ηD/(EΔτ)".to_owned()];
-    for (panel, ..) in CASES {
-        heads.extend(
-            ramps
-                .iter()
-                .map(|n| format!("{panel}, {:.1e} per step", 0.25 / *n as f64)),
-        );
-    }
-    let mut rows = vec![];
-    let mut still = vec!["none (static)".to_owned()];
     let (mut as_printed, mut otherwise, mut neither) = (0, 0, 0);
-    for (_, case, _) in CASES {
-        let ran = runs.get(case)?;
-        still.extend(vec![outcome(ran, ran.last()?); ramps.len()]);
-    }
-    rows.push(still);
-    for &drag in drags {
-        let mut row = vec![format!("{drag}")];
-        for (_, case, towards) in CASES {
-            for &ramp in ramps {
-                let ran = runs.get(&name(case, drag, ramp))?;
-                let last = ran.last()?;
-                let buckled = ran.verdict != "complete" || has_buckled(runs, case, last)?;
-                match () {
-                    () if buckled => neither += 1,
-                    () if is_folded(last, towards) => as_printed += 1,
-                    () => otherwise += 1,
-                }
-                row.push(if buckled {
-                    "the zone buckles".into()
-                } else {
-                    outcome(ran, last)
-                });
-            }
+    let without = [
+        outcome(runs.get(CASES[0].1)?)?,
+        outcome(runs.get(CASES[1].1)?)?,
+    ];
+    ramps(fineness).table(page, runs, &without, |(_, case, towards), ran| {
+        let last = ran.last()?;
+        if ran.verdict != "complete" || has_buckled(runs, case, last)? {
+            neither += 1;
+            return Ok("the zone buckles".into());
         }
-        rows.push(row);
-    }
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    page.table(&heads, rows);
+        if is_folded(last, towards) {
+            as_printed += 1;
+        } else {
+            otherwise += 1;
+        }
+        outcome(ran)
+    })?;
     page.claim(
         "5",
         "A folds to the colon, B to the ileum (at ηD/(EΔτ) = 100, the rate is not given)",
@@ -174,16 +140,8 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
 const HIGHER: f64 = 1.5;
 
 fn has_buckled(runs: &Runs, case: &str, last: &Row) -> Result<bool, Trouble> {
-    let coarse = runs.get(&format!("{case}-coarse"))?;
-    Ok(last.energy > HIGHER * coarse.last()?.energy)
-}
-
-fn outcome(ran: &Ran, row: &Row) -> String {
-    match ran.verdict.as_str() {
-        "complete" if row.shape == "invaginated" => row.side.clone(),
-        "complete" => row.shape.clone(),
-        _ => "lost".into(),
-    }
+    let by_itself = runs.get(&coarse(case))?.last()?;
+    Ok(last.energy > HIGHER * by_itself.energy)
 }
 
 /// The energies of both branches.
@@ -199,8 +157,7 @@ fn branches(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
         .into_iter()
         .zip(["other-side", "other-side-of-ileum-side"])
     {
-        let coarse = runs.get(&format!("{case}-coarse"))?;
-        let (own, other) = (coarse.last()?, runs.get(pushed)?.last()?);
+        let (own, other) = (runs.get(&coarse(case))?.last()?, runs.get(pushed)?.last()?);
         let differ = other.energy / own.energy - 1.0;
         rows.push(vec![
             panel.into(),

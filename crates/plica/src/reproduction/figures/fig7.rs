@@ -5,6 +5,7 @@ use super::super::page::{Page, energy};
 use super::super::pictures::{panel, tubes};
 use super::super::runs::Runs;
 use super::super::{Figure, Fineness, Trouble};
+use super::ramps::{self, Ramps, outcome};
 use super::{COARSE, axisymmetric, is_folded, mesh, side};
 
 pub(super) const FIGURE: Figure = Figure {
@@ -17,22 +18,19 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 /// Panel, case, and the end that is pushed.
-const CASES: [(&str, &str, &str); 2] =
-    [("7A", "push-colon", "colon"), ("7B", "push-ileum", "ileum")];
+const CASES: [ramps::Panel; 2] = [("7A", "push-colon", "colon"), ("7B", "push-ileum", "ileum")];
 
 /// Number of the state of Fig. 5B at Lmax/L = 1.17.
 const SQUARE: usize = 32;
 
 /// Drags, and pseudo-time steps to a push of 0.15 D.
-fn map(fineness: Fineness) -> (&'static [f64], &'static [usize]) {
-    fineness.choose(
-        (&[1.0, 10.0], &[30, 150]),
-        (&[0.1, 1.0, 10.0, 100.0], &[30, 150, 600]),
-    )
-}
-
-fn name(case: &str, drag: f64, ramp: usize) -> String {
-    format!("{case}-drag-{drag}-ramp-{ramp}")
+fn ramps(fineness: Fineness) -> Ramps {
+    Ramps {
+        panels: CASES,
+        drags: fineness.choose(&[1.0, 10.0], &[0.1, 1.0, 10.0, 100.0]),
+        steps: fineness.choose(&[30, 150], &[30, 150, 600]),
+        way: (0.15, "D"),
+    }
 }
 
 fn jobs(fineness: Fineness) -> Vec<Job> {
@@ -45,29 +43,13 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
         let job = Job::of(case).from(run, SQUARE);
         job.with("stages[1].steps", 1).with("stages[2].steps", 1)
     };
-    let (drags, ramps) = map(fineness);
+    let coarse = |case| from(case, "ileum-side-coarse").on(COARSE);
     for (_, case, _) in CASES {
         jobs.push(from(case, "ileum-side").on(mesh(fineness)));
-        let still = from(case, "ileum-side-coarse").named(format!("{case}-static"));
-        jobs.push(
-            still
-                .on(COARSE)
-                .bare()
-                .with("solver", "{ scheme = \"static\" }"),
-        );
-        for &drag in drags {
-            for &ramp in ramps {
-                let job = from(case, "ileum-side-coarse").named(name(case, drag, ramp));
-                let job = job.on(COARSE).bare().with("stages[3].steps", 1);
-                jobs.push(
-                    job.with("solver.pseudo_time.drag", format!("{drag:?}"))
-                        .with("solver.pseudo_time.ramp", ramp)
-                        .with("solver.pseudo_time.tolerance", "1e-4")
-                        .with("solver.pseudo_time.hold", 20000),
-                );
-            }
-        }
+        let still = coarse(case).named(format!("{case}-static")).bare();
+        jobs.push(still.with("solver", "{ scheme = \"static\" }"));
     }
+    jobs.extend(ramps(fineness).jobs(|case| coarse(case).with("stages[3].steps", 1)));
     jobs
 }
 
@@ -105,52 +87,23 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
          is the drag. The figure's setting is backward Euler with ηD/(EΔτ) = 5 and a push of 0.001 D per pseudo-time step, settled without drag \
          after every 0.01 D. Below, the whole push is one ramp.",
     );
-    let (drags, ramps) = map(fineness);
-    let mut heads = vec!["ηD/(EΔτ)".to_owned()];
-    for (panel, ..) in CASES {
-        heads.extend(
-            ramps
-                .iter()
-                .map(|n| format!("{panel}, {:.1e} D per step", 0.15 / *n as f64)),
-        );
-    }
-    let mut rows = vec![];
-    let mut still = vec!["none (static)".to_owned()];
-    let mut sides = vec![];
-    for (_, case, _) in CASES {
-        let last = runs.get(&format!("{case}-static"))?.last()?;
-        sides.push(last.side.clone());
-        still.extend(vec![last.side.clone(); ramps.len()]);
-    }
-    rows.push(still);
+    let still = |case| runs.get(&format!("{case}-static")).and_then(outcome);
+    let without = [still(CASES[0].1)?, still(CASES[1].1)?];
     let (mut as_printed, mut all) = (0, 0);
-    for &drag in drags {
-        let mut row = vec![format!("{drag}")];
-        for (_, case, towards) in CASES {
-            for &ramp in ramps {
-                let ran = runs.get(&name(case, drag, ramp))?;
-                let last = ran.last()?;
-                all += 1;
-                as_printed += usize::from(is_folded(last, towards));
-                row.push(match ran.verdict.as_str() {
-                    "complete" => last.side.clone(),
-                    _ => "lost".into(),
-                });
-            }
-        }
-        rows.push(row);
-    }
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    page.table(&heads, rows);
+    ramps(fineness).table(page, runs, &without, |(_, _, towards), ran| {
+        all += 1;
+        as_printed += usize::from(is_folded(ran.last()?, towards));
+        outcome(ran)
+    })?;
     page.claim(
         "7",
         "the pushed side invaginates",
         format!(
             "with drag in {as_printed} of {all} settings; without, both pushes go to the {}",
-            if sides[0] == sides[1] {
-                sides[0].clone()
+            if without[0] == without[1] {
+                without[0].clone()
             } else {
-                format!("{} and the {}", sides[0], sides[1])
+                format!("{} and the {}", without[0], without[1])
             }
         ),
         as_printed == all,

@@ -7,6 +7,7 @@ mod fig4;
 mod fig5;
 mod fig6;
 mod fig7;
+mod ramps;
 
 use super::job::Job;
 use super::{Figure, Fineness, Trouble};
