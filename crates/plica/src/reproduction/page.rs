@@ -156,10 +156,7 @@ impl Page {
             };
             vec![
                 format!("`{}`{lost}", took.name),
-                format!(
-                    "[`{0}`](https://github.com/plica/plica/blob/main/cases/{0}.toml)",
-                    took.case
-                ),
+                format!("`cases/{}.toml`", took.case),
                 took.mesh.clone(),
                 took.scheme.clone(),
                 took.states.to_string(),
