@@ -79,6 +79,7 @@ fn the_columns_of_the_history_are_listed() {
         overhang: 0.0,
         flatness: 0.0,
         gap: 0.0,
+        lumen: 0.88,
         side: String::new(),
         shape: String::new(),
         departure: 0.0,

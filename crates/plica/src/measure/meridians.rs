@@ -176,6 +176,20 @@ impl<'a> Meridians<'a> {
         centred
     }
 
+    /// Smallest width across a face, whose meridians are those at the angles of [`Meridians::around`].
+    pub(super) fn narrowest_across(&self, walls: &[Wall]) -> f64 {
+        // Half a turn on is a meridian of the same kind: half a sector on if an odd number of them makes the tube.
+        let odd = self.mean.is_some() && self.tube.sector.repeats() % 2.0 == 1.0;
+        let on = if odd { walls.len() / 2 } else { 0 };
+        let across = |(i, wall): (usize, &Wall)| {
+            let opposite = &walls[(i + on) % walls.len()];
+            let pairs = wall.points.iter().zip(&opposite.points);
+            pairs.fold(f64::INFINITY, |least, (a, b)| least.min(a.1 + b.1))
+        };
+        let widths = walls.iter().enumerate().map(across);
+        widths.fold(f64::INFINITY, f64::min)
+    }
+
     /// A point per element along the tube.
     fn every_element(&self) -> Vec<f64> {
         even(self.tube, self.tube.axial.elements() + 1)

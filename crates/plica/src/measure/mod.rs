@@ -21,6 +21,7 @@
 //! | flank | the straight line through the wall on one side of the narrowest place, where it is ¼ and ¾ of the depth below its radius at rest |
 //! | centre of rotation | the place with the least squared distance from the lines of a flank in two states or more |
 //! | gap | smallest distance of two points of a meridian of either face that lie a wall's thickness or more from each other along it; 0 if a meridian crosses itself |
+//! | lumen | smallest ρ(φ) + ρ(φ + π) of two points of the inner face that lay opposite each other at rest; negative where the wall has passed through the wall across |
 //! | shape | see [`Shape`] |
 //! | departure | amplitude √(aᶻ² + aᵨ²) of the largest wave cos n(φ − φ₀), n ≥ 1, in z and ρ around the outer face |
 
@@ -57,6 +58,8 @@ pub struct Measures {
     pub flatness: f64,
     /// How near a wall comes to itself; 0 where it crosses itself, which nothing prevents.
     pub gap: f64,
+    /// Narrowest width of the lumen; negative where walls have passed through each other.
+    pub lumen: f64,
     /// What the contracting region looks like.
     pub shape: Shape,
     /// How far it is from axisymmetric.
@@ -84,6 +87,7 @@ impl Measures {
             .chain(&inner)
             .map(|wall| wall.gap(tube.tube.thickness));
         let gap = gaps.fold(f64::INFINITY, f64::min);
+        let lumen = meridians.narrowest_across(&inner);
 
         let [own_outer, own_inner] = meridians.about_own_axis([&outer, &inner]);
         let narrowest = |&i: &usize| own_outer[i].narrowest().1;
@@ -108,6 +112,7 @@ impl Measures {
             side,
             flatness,
             gap,
+            lumen,
             shape: Shape::of(
                 &own_outer[deepest],
                 &own_inner[deepest],

@@ -87,6 +87,7 @@ fn a_shift_that_takes_the_axis_out_of_the_lumen_bends_no_wall_and_narrows_nothin
     let off = found.outer_radius_min - 0.5;
     assert!(off.abs() < 2e-5, "{off}");
     assert_eq!((found.overhang, found.side), (0.0, Side::None));
+    assert!((found.lumen - 0.88).abs() < 4e-5, "{}", found.lumen);
     // The meridian on the lee side goes through the axis as straight as it came.
     let rest = whole.tube.rest();
     let meridians = Meridians::of(&whole, &rest, &u);
@@ -138,6 +139,8 @@ fn an_oval_is_as_narrow_as_its_short_axis_wherever_that_points() {
             (found.outer_radius_min / expected - 1.0).abs() < 1e-3,
             "{found:?}"
         );
+        let open = found.lumen / (0.8 * round.lumen) - 1.0;
+        assert!(open.abs() < 1e-3 && round.lumen > 0.3, "{found:?}");
     }
 }
 
@@ -148,7 +151,11 @@ fn departures_of_a_fold_are_its_harmonics() {
         let scale = 1.0 + 0.02 * (3.0 * y.atan2(x)).cos();
         [z, scale * x, scale * y]
     });
-    let found = measures(&fold, &u).departure;
+    let measured = measures(&fold, &u);
+    // A crest lies across from a trough: nowhere is it narrower than a round one, but for what waves of the second
+    // order and a polygon of 24 make of it.
+    assert!((measured.lumen / 0.88 - 1.0).abs() < 1e-3, "{measured:?}");
+    let found = measured.departure;
     assert_eq!(found.harmonic, 3);
     // e^{iφ} cos 3φ: waves of four turns and of two, flattened as the splines draw them.
     let drawn = |turns| fold.sector.control_wave(1) / fold.sector.control_wave(turns);
@@ -158,4 +165,16 @@ fn departures_of_a_fold_are_its_harmonics() {
         off.abs() < 0.01 && found.crest.abs() < 1e-6,
         "{found:?}, off by {off}"
     );
+}
+
+#[test]
+fn walls_that_have_passed_through_each_other_leave_a_lumen_of_negative_width() {
+    let whole = tube(24);
+    let flat = |short: f64| {
+        let u = moved(&whole, |[z, x, y]| [z, 1.4 * x, short * y]);
+        measures(&whole, &u).lumen
+    };
+    let (open, crossed) = (flat(0.1), flat(-0.1));
+    assert!((open - 0.088).abs() < 1e-4, "{open}");
+    assert!((crossed + 0.088).abs() < 1e-4, "{crossed}");
 }

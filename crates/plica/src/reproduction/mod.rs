@@ -18,7 +18,7 @@ mod runs;
 
 pub use figures::FIGURES;
 pub use job::Job;
-pub use page::{Claim, Item, Page, Took};
+pub use page::{Claim, Item, Page, Took, Verdict};
 pub use runs::{Ran, Runs};
 
 use crate::draw::DrawError;
@@ -208,10 +208,14 @@ impl Reproduction {
         let mut text = String::new();
         for page in &self.pages {
             for claim in &page.claims {
-                let verdict = if claim.agrees { "agrees " } else { "DIFFERS" };
+                let word = claim.verdict.word();
+                let verdict = match claim.verdict {
+                    Verdict::Differs => word.to_uppercase(),
+                    _ => word.into(),
+                };
                 let _ = writeln!(
                     text,
-                    "{:<4} {verdict}  {}\n              {}",
+                    "{:<4} {verdict:<9}  {}\n                {}",
                     claim.panel, claim.paper, claim.found
                 );
             }
@@ -219,21 +223,20 @@ impl Reproduction {
                 let _ = writeln!(text, "{}: not told to the end: {trouble}", page.figure.name);
             }
         }
-        let claims = self
-            .pages
-            .iter()
-            .map(|page| page.claims.len())
-            .sum::<usize>();
-        let agree = self
-            .pages
-            .iter()
-            .flat_map(|page| &page.claims)
-            .filter(|claim| claim.agrees);
-        let _ = writeln!(
-            text,
-            "{} of {claims} statements of the paper agree",
-            agree.count()
-        );
+        let told = |verdict| {
+            self.pages
+                .iter()
+                .map(|page| page.told(verdict))
+                .sum::<usize>()
+        };
+        let [agree, explained, differ] =
+            [Verdict::Agrees, Verdict::Explained, Verdict::Differs].map(told);
+        let of = agree + explained + differ;
+        let _ = write!(text, "{agree} of {of} statements of the paper agree");
+        if explained > 0 {
+            let _ = write!(text, ", {explained} explained");
+        }
+        text.push('\n');
         text
     }
 

@@ -15,7 +15,34 @@ pub struct Claim {
     /// What Plica finds.
     pub found: String,
     /// Whether that agrees.
-    pub agrees: bool,
+    pub verdict: Verdict,
+}
+
+/// What became of a statement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Plica finds the same.
+    Agrees,
+    /// Plica does not get there, and the page shows why.
+    Explained,
+    /// Plica finds something else.
+    Differs,
+}
+
+impl Verdict {
+    /// Of a statement that either holds or does not.
+    pub fn of(holds: bool) -> Self {
+        if holds { Self::Agrees } else { Self::Differs }
+    }
+
+    /// In a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Agrees => "agrees",
+            Self::Explained => "explained",
+            Self::Differs => "differs",
+        }
+    }
 }
 
 /// A run, and what it took.
@@ -30,6 +57,43 @@ pub struct Took {
     cg_iterations: usize,
     seconds: f64,
     verdict: String,
+    gap: Nearest,
+    lumen: Nearest,
+}
+
+/// Where along a run walls are nearest, and from where on they have met.
+#[derive(Clone, Debug, PartialEq)]
+struct Nearest {
+    least: f64,
+    at: String,
+    met: Option<String>,
+}
+
+impl Nearest {
+    fn of(rows: &[Row], distance: fn(&Row) -> f64) -> Self {
+        let least = rows
+            .iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let met = rows.iter().find(|row| distance(row) <= 0.0);
+        Self {
+            least: least.map_or(f64::INFINITY, distance),
+            at: least.map_or_else(String::new, place),
+            met: met.map(place),
+        }
+    }
+
+    /// As a cell of a table.
+    fn told(&self) -> String {
+        match &self.met {
+            Some(from) => format!("**met** from {from} on"),
+            None => format!("{:.3} at {}", self.least, self.at),
+        }
+    }
+}
+
+/// Where on the path a state is.
+fn place(row: &Row) -> String {
+    format!("{:.2}", row.length_ratio)
 }
 
 /// Something on a page, in its order.
@@ -68,12 +132,23 @@ impl Page {
         }
     }
 
-    pub(super) fn claim(&mut self, panel: &'static str, paper: &str, found: String, agrees: bool) {
+    /// A statement that agrees if it holds, and differs if not.
+    pub(super) fn claim(&mut self, panel: &'static str, paper: &str, found: String, holds: bool) {
+        self.judge(panel, paper, found, Verdict::of(holds));
+    }
+
+    pub(super) fn judge(
+        &mut self,
+        panel: &'static str,
+        paper: &str,
+        found: String,
+        verdict: Verdict,
+    ) {
         self.claims.push(Claim {
             panel,
             paper: paper.into(),
             found,
-            agrees,
+            verdict,
         });
     }
 
@@ -115,13 +190,20 @@ impl Page {
             cg_iterations: ran.cg_iterations(),
             seconds: ran.seconds(),
             verdict: ran.verdict.clone(),
+            gap: Nearest::of(&ran.rows, |row| row.gap),
+            lumen: Nearest::of(&ran.rows, |row| row.lumen),
         });
+    }
+
+    /// How many claims got a verdict.
+    pub fn told(&self, verdict: Verdict) -> usize {
+        let has = |claim: &&Claim| claim.verdict == verdict;
+        self.claims.iter().filter(has).count()
     }
 
     /// Claims that are not met, and 1 if the figure could not be told to the end.
     pub fn failed(&self) -> usize {
-        let differ = self.claims.iter().filter(|claim| !claim.agrees).count();
-        differ + usize::from(self.trouble.is_some())
+        self.told(Verdict::Differs) + usize::from(self.trouble.is_some())
     }
 
     /// The name of its file.
@@ -163,6 +245,8 @@ impl Page {
                 took.solves.to_string(),
                 took.cg_iterations.to_string(),
                 format!("{:.1}", took.seconds),
+                took.gap.told(),
+                took.lumen.told(),
             ]
         });
         let heads = [
@@ -174,7 +258,12 @@ impl Page {
             "solves",
             "CG iterations",
             "seconds",
+            "gap, D",
+            "lumen, D",
         ];
+        page += "Nothing keeps walls apart here, as in the paper: the last two columns say how near the wall comes to itself along a \
+                 meridian, and how narrow the lumen gets, with the Lmax/L of that state; past a state where walls have met nothing \
+                 is physical.\n\n";
         page += &table(&heads.map(String::from), &rows.collect::<Vec<_>>());
         page
     }
@@ -187,19 +276,19 @@ pub(super) fn claims(claims: &[Claim]) -> String {
             claim.panel.to_owned(),
             claim.paper.clone(),
             claim.found.clone(),
-            verdict(claim).to_owned(),
+            verdict(claim),
         ]
     });
     let heads = ["", "the paper", "Plica", ""].map(String::from);
     table(&heads, &rows.collect::<Vec<_>>())
 }
 
-/// In a word.
-pub(super) fn verdict(claim: &Claim) -> &'static str {
-    if claim.agrees {
-        "agrees"
-    } else {
-        "**differs**"
+/// In a word, loud where it differs.
+pub(super) fn verdict(claim: &Claim) -> String {
+    let word = claim.verdict.word();
+    match claim.verdict {
+        Verdict::Differs => format!("**{word}**"),
+        _ => word.into(),
     }
 }
 

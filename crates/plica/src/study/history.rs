@@ -69,6 +69,8 @@ pub struct Row {
     pub flatness: f64,
     /// How near a wall comes to itself; 0 if it crosses itself.
     pub gap: f64,
+    /// Narrowest width of the lumen; negative where walls have passed through each other.
+    pub lumen: f64,
     /// V, U, square, invaginated, swollen or collapsed; straight where nothing is contracted.
     pub shape: String,
     /// How far the outer wall is from axisymmetric: amplitude of its largest wave around.
@@ -84,4 +86,16 @@ pub struct Row {
     /// `output.harmonics` (only 0 if it twists). Any other only at the lowest eigenvalue of the
     /// run's own tangent: `any:1` if it is negative, unknown if its sign does not show.
     pub unstable_harmonics: String,
+}
+
+impl Row {
+    /// Whether the wall crosses itself somewhere, which nothing prevents.
+    pub fn crosses_itself(&self) -> bool {
+        self.gap == 0.0
+    }
+
+    /// Whether opposite walls touch, or have passed through each other.
+    pub fn has_closed(&self) -> bool {
+        self.lumen <= 0.0
+    }
 }

@@ -332,6 +332,7 @@ impl<'a> Record<'a> {
             side: measures.side.to_string(),
             flatness: measures.flatness,
             gap: length * measures.gap,
+            lumen: length * measures.lumen,
             shape: measures.shape.to_string(),
             departure: length * measures.departure.amplitude,
             departure_harmonic: measures.departure.harmonic,

@@ -245,15 +245,17 @@ impl fmt::Display for Summary {
             ),
         };
         line(f, "invaginates", side)?;
-        let crosses: Vec<&Row> = self.rows.iter().filter(|row| row.gap == 0.0).collect();
-        if let [first, .., last] | [first @ last] = crosses.as_slice() {
-            let (count, span) = (crosses.len(), span(first, last));
-            let physical = "nothing holds it apart, and what it does there is not physical";
-            line(
-                f,
-                "wall crosses itself",
-                format!("at {count} state(s), {span}: {physical}"),
-            )?;
+        let physical = "nothing holds it apart, and what it does there is not physical";
+        let meets: [(&str, fn(&Row) -> bool); 2] = [
+            ("wall crosses itself", Row::crosses_itself),
+            ("lumen is closed", Row::has_closed),
+        ];
+        for (name, meets) in meets {
+            let states: Vec<&Row> = self.rows.iter().filter(|row| meets(row)).collect();
+            if let [first, .., last] | [first @ last] = states.as_slice() {
+                let (count, span) = (states.len(), span(first, last));
+                line(f, name, format!("at {count} state(s), {span}: {physical}"))?;
+            }
         }
         line(
             f,

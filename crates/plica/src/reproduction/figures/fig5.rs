@@ -111,8 +111,8 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
     );
     let (mut as_printed, mut otherwise, mut neither) = (0, 0, 0);
     let without = [
-        outcome(runs.get(CASES[0].1)?)?,
-        outcome(runs.get(CASES[1].1)?)?,
+        outcome(runs.get(&coarse(CASES[0].1))?)?,
+        outcome(runs.get(&coarse(CASES[1].1))?)?,
     ];
     ramps(fineness).table(page, runs, &without, |(_, case, towards), ran| {
         let last = ran.last()?;
