@@ -58,6 +58,15 @@ fn a_summary_of_someone_else_s_is_not_replaced() {
     fs::write(&page, "# My notes\n").unwrap();
     let said = plica(&directory, &["reproduce", "fig6", "--out", "."]);
     assert_eq!(said.status.code(), Some(2));
-    assert!(text(&said.stderr).contains("none of plica reproduce's"));
+    assert!(text(&said.stderr).contains("plica reproduce did not write it"));
     assert_eq!(fs::read_to_string(&page).unwrap(), "# My notes\n");
+    // Nor anything else that lies there: a run of the user's own could have the name of one of these.
+    fs::remove_file(&page).unwrap();
+    let own = directory.join("runs/invagination");
+    fs::create_dir_all(&own).unwrap();
+    fs::write(own.join("history.csv"), "mine").unwrap();
+    let said = plica(&directory, &["reproduce", "fig6", "--out", "."]);
+    assert_eq!(said.status.code(), Some(2));
+    assert!(text(&said.stderr).contains("choose another --out"));
+    assert_eq!(fs::read_to_string(own.join("history.csv")).unwrap(), "mine");
 }

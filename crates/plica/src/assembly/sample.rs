@@ -33,12 +33,18 @@ pub struct Sample {
     pub jacobian: f64,
     /// Strain energy density w(Fe), per grown volume, in E.
     pub energy_density: f64,
+    /// Cauchy stress, in E: rows and columns (z, outwards, around) at the middle of the point's element.
+    pub stress: Tensor2,
+    /// Grown over ungrown length, along and around: θζ, θη.
+    pub grown: [f64; 2],
+    /// Angle of the middle of the point's element, in radians.
+    pub element_angle: f64,
 }
 
 impl SplineTube {
     /// The fields at a point under a load. Points outside the wall are read from the splines of
     /// the nearest element. Where the resistance to a change of volume is integrated apart, its energy is that
-    /// of the nearest of its points through the wall: between them volume is not what the wall resists.
+    /// of the nearest of its points through the wall, and so is its stress: between them volume is not what the wall resists.
     pub fn sample(&self, load: &Load, u: &[f64], at: Point) -> Sample {
         let sample = self.sample_here(load, u, at);
         let Some(volume) = &self.volume else {
@@ -54,6 +60,7 @@ impl SplineTube {
         let there = volume.sample_here(load, u, Point { radius, ..at });
         Sample {
             energy_density: sample.energy_density + there.energy_density,
+            stress: sum(sample.stress, there.stress),
             jacobian: there.jacobian,
             ..sample
         }
@@ -110,14 +117,23 @@ impl SplineTube {
         // From the element's frame to the laboratory.
         let (sin, cos) = (element * alpha).sin_cos();
         let turned = |x: [f64; 3]| [x[0], x[1] * cos - x[2] * sin, x[1] * sin + x[2] * cos];
+        let (energy_density, P) = match self.law {
+            Material::NeoHookean(law) => (law.energy(&Fe), law.stress(&Fe)),
+        };
+        let jacobian = Fe.determinant();
         Sample {
             reference: turned(reference),
             position: turned(position),
-            jacobian: Fe.determinant(),
-            energy_density: match self.law {
-                Material::NeoHookean(law) => law.energy(&Fe),
-            },
+            jacobian,
+            energy_density,
+            stress: P.times(Fe.transpose()).scaled(1.0 / jacobian), // σ = P Feᵀ / det Fe
+            grown: [theta_z, theta_t],
+            element_angle: element * alpha,
             elastic: Fe,
         }
     }
+}
+
+fn sum(a: Tensor2, b: Tensor2) -> Tensor2 {
+    Tensor2([0, 1, 2].map(|i| [0, 1, 2].map(|j| a.0[i][j] + b.0[i][j])))
 }

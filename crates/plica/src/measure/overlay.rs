@@ -70,7 +70,7 @@ impl Wall {
         }
         while step > FINE {
             step *= 0.5;
-            let (low, high) = (at - step, at + step);
+            let (low, high) = ((at - step).max(-reach), (at + step).min(reach));
             look(low);
             at = look(high).0;
         }

@@ -67,7 +67,8 @@ impl Wall {
     pub fn flatness(&self) -> f64 {
         let depth = Tube::OUTER_RADIUS - self.narrowest().1;
         let extent = |part: f64| self.extent_below(Tube::OUTER_RADIUS - part * depth);
-        extent(0.75) / extent(0.25)
+        let (deep, wide) = (extent(0.75), extent(0.25));
+        if wide > 0.0 { deep / wide } else { 0.0 }
     }
 
     /// Axial extent of the part that lies deeper than a radius.

@@ -83,6 +83,12 @@ impl Job {
         self.with("start.state", format!("\"../{run}/{file}\""))
     }
 
+    /// The name of the run that it starts from, if it starts from one.
+    pub fn parent(&self) -> Option<String> {
+        let start = self.changes.iter().find(|(key, _)| key == "start.state")?;
+        Some(start.1.split('/').nth(1)?.to_owned())
+    }
+
     /// Of which only the history is kept.
     #[must_use]
     pub fn bare(self) -> Self {

@@ -49,7 +49,7 @@ impl Fineness {
     fn sentence(self) -> &'static str {
         self.choose(
             "Written by `plica reproduce --quick`: coarser meshes than the paper's.",
-            "Written by `plica reproduce --full`: the paper's mesh, and three dimensions where they matter.",
+            "Written by `plica reproduce --full`: figures on the paper's mesh, maps of many runs on coarser ones (each page says which, under *What was run*).",
         )
     }
 }
@@ -223,26 +223,45 @@ impl Reproduction {
                 let _ = writeln!(text, "{}: not told to the end: {trouble}", page.figure.name);
             }
         }
+        text += &self.count();
+        text.push('\n');
+        text
+    }
+
+    /// How many of the paper's statements agree.
+    fn count(&self) -> String {
         let told = |verdict| {
-            self.pages
-                .iter()
-                .map(|page| page.told(verdict))
-                .sum::<usize>()
+            let pages = self.pages.iter();
+            pages.map(|page| page.told(verdict)).sum::<usize>()
         };
         let [agree, explained, differ] =
             [Verdict::Agrees, Verdict::Explained, Verdict::Differs].map(told);
         let of = agree + explained + differ;
-        let _ = write!(text, "{agree} of {of} statements of the paper agree");
+        let mut text = format!("{agree} of {of} statements of the paper agree");
         if explained > 0 {
             let _ = write!(text, ", {explained} explained");
         }
-        text.push('\n');
+        let torn = self.pages.iter().filter(|page| page.trouble.is_some());
+        match torn.count() {
+            0 => {}
+            torn => {
+                let _ = write!(text, "; {torn} figures could not be told to the end");
+            }
+        }
         text
     }
 
     /// The summary, in Markdown.
     pub fn summary(&self) -> String {
-        let mut page = format!("{TITLE}\n\n{}\n\n", self.fineness.sentence());
+        let mut page = format!(
+            "{TITLE}\n\n{} {}.\n\n\
+             - *agrees*: Plica finds the same.\n\
+             - *explained*: it finds something else, or does not get there, and the page of the figure shows why.\n\
+             - *differs*: it finds something else, and nobody knows why.\n\
+             - *added*: the paper does not say.\n\n",
+            self.fineness.sentence(),
+            self.count()
+        );
         page += "| | the paper | Plica | |\n|---|---|---|---|\n";
         for told in &self.pages {
             for claim in &told.claims {
@@ -315,7 +334,7 @@ mod tests {
                 }
             }
             for job in &jobs {
-                let starts = job.changes.iter().find(|(key, _)| key == "start.state");
+                let starts = job.parent();
                 // A state to start from is there only when the run before it is done.
                 let text = job.text();
                 match crate::case::read(&text, &job.name) {
@@ -330,13 +349,16 @@ mod tests {
                         );
                     }
                 }
-                if let Some((_, file)) = starts {
-                    let from = file.split('/').nth(1).unwrap();
+                // And that comes before it.
+                if let Some(from) = starts {
+                    let at = |name: &str| jobs.iter().position(|other| other.name == name);
                     assert!(
-                        jobs.iter().any(|other| other.name == from),
-                        "{}: {file}",
+                        at(&from) < at(&job.name) && at(&from).is_some(),
+                        "{}",
                         job.name
                     );
+                    let parent = &jobs[at(&from).unwrap()];
+                    assert!(job.large || !parent.large && parent.parent().is_none());
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use super::runs::Ran;
 use super::{Figure, Fineness};
+use crate::solve::Scheme;
 use crate::study::Row;
 use std::fmt::Write;
 
@@ -27,6 +28,8 @@ pub enum Verdict {
     Explained,
     /// Plica finds something else.
     Differs,
+    /// The paper does not say; Plica adds it.
+    Added,
 }
 
 impl Verdict {
@@ -41,6 +44,7 @@ impl Verdict {
             Self::Agrees => "agrees",
             Self::Explained => "explained",
             Self::Differs => "differs",
+            Self::Added => "added",
         }
     }
 }
@@ -57,16 +61,16 @@ pub struct Took {
     cg_iterations: usize,
     seconds: f64,
     verdict: String,
-    gap: Nearest,
-    lumen: Nearest,
+    gap: String,
+    lumen: String,
 }
 
-/// Where along a run walls are nearest, and from where on they have met.
+/// How near walls come along a run, and in which states they have met.
 #[derive(Clone, Debug, PartialEq)]
 struct Nearest {
     least: f64,
-    at: String,
-    met: Option<String>,
+    state: usize,
+    met: Vec<[usize; 2]>,
 }
 
 impl Nearest {
@@ -74,26 +78,43 @@ impl Nearest {
         let least = rows
             .iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let met = rows.iter().find(|row| distance(row) <= 0.0);
+        let met = rows.iter().filter(|row| distance(row) <= 0.0);
         Self {
             least: least.map_or(f64::INFINITY, distance),
-            at: least.map_or_else(String::new, place),
-            met: met.map(place),
+            state: least.map_or(0, |row| row.step),
+            met: spans(met.map(|row| row.step)),
         }
     }
 
-    /// As a cell of a table.
-    fn told(&self) -> String {
-        match &self.met {
-            Some(from) => format!("**met** from {from} on"),
-            None => format!("{:.3} at {}", self.least, self.at),
+    /// As a cell of a table; a dash where the least is no less than what a straight tube has.
+    fn told(&self, straight: f64) -> String {
+        if self.met.is_empty() && self.least > 0.99 * straight {
+            return "–".into();
         }
+        if self.met.is_empty() {
+            return format!("{:.3} in state {}", self.least, self.state);
+        }
+        let spans = self.met.iter().map(|[from, to]| {
+            if from == to {
+                format!("{from}")
+            } else {
+                format!("{from} to {to}")
+            }
+        });
+        format!("**met** in {}", spans.collect::<Vec<_>>().join(", "))
     }
 }
 
-/// Where on the path a state is.
-fn place(row: &Row) -> String {
-    format!("{:.2}", row.length_ratio)
+/// Spans of numbers that follow each other.
+fn spans(numbers: impl Iterator<Item = usize>) -> Vec<[usize; 2]> {
+    let mut spans: Vec<[usize; 2]> = vec![];
+    for number in numbers {
+        match spans.last_mut() {
+            Some([_, last]) if *last + 1 == number => *last = number,
+            _ => spans.push([number; 2]),
+        }
+    }
+    spans
 }
 
 /// Something on a page, in its order.
@@ -184,14 +205,14 @@ impl Page {
                 "{} × {} × {}, {rings}",
                 mesh.axial, mesh.around, mesh.thickness
             ),
-            scheme: plan.solver.scheme.to_string(),
+            scheme: scheme(ran),
             states: ran.rows.len(),
             solves: ran.solves(),
             cg_iterations: ran.cg_iterations(),
             seconds: ran.seconds(),
             verdict: ran.verdict.clone(),
-            gap: Nearest::of(&ran.rows, |row| row.gap),
-            lumen: Nearest::of(&ran.rows, |row| row.lumen),
+            gap: Nearest::of(&ran.rows, |row| row.gap).told(plan.tube.thickness),
+            lumen: Nearest::of(&ran.rows, |row| row.lumen).told(2.0 * plan.tube.inner_radius()),
         });
     }
 
@@ -245,8 +266,8 @@ impl Page {
                 took.solves.to_string(),
                 took.cg_iterations.to_string(),
                 format!("{:.1}", took.seconds),
-                took.gap.told(),
-                took.lumen.told(),
+                took.gap.clone(),
+                took.lumen.clone(),
             ]
         });
         let heads = [
@@ -261,9 +282,17 @@ impl Page {
             "gap, D",
             "lumen, D",
         ];
-        page += "Nothing keeps walls apart here, as in the paper: the last two columns say how near the wall comes to itself along a \
-                 meridian, and how narrow the lumen gets, with the Lmax/L of that state; past a state where walls have met nothing \
-                 is physical.\n\n";
+        let seconds: f64 = self.took.iter().map(|took| took.seconds).sum();
+        let _ = writeln!(
+            page,
+            "{} runs by plica {}, {seconds:.0} s if done one after the other. A run of one ring takes one thread, and as many go side \
+             by side as there are threads; one of many rings is given all of them, but for those of Appendix B.\n\n\
+             Nothing keeps walls apart, and the paper's equations have no contact either. The gap is how near the wall comes to itself \
+             along a meridian, the lumen how narrow it gets; where walls have **met**, in the states of those numbers, the state is not \
+             physical (one after them may be, though the way to it was not).\n",
+            self.took.len(),
+            env!("CARGO_PKG_VERSION")
+        );
         page += &table(&heads.map(String::from), &rows.collect::<Vec<_>>());
         page
     }
@@ -306,4 +335,59 @@ fn table(heads: &[String], rows: &[Vec<String>]) -> String {
 /// How a state is told in a table: W with five digits.
 pub(super) fn energy(row: &Row) -> String {
     format!("{:.4e}", row.energy)
+}
+
+/// How states were found, as far as it differs from run to run.
+fn scheme(ran: &Ran) -> String {
+    let scheme = &ran.plan.solver.scheme;
+    match scheme {
+        Scheme::Static => scheme.to_string(),
+        Scheme::PseudoTime(p) => {
+            let settled = if p.settle { "settled" } else { "not settled" };
+            format!("{scheme}, steps ramped over {}, {settled}", p.ramp)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn page() -> Page {
+        Page::new(&super::super::FIGURES[0])
+    }
+
+    #[test]
+    fn what_does_not_hold_differs_and_counts() {
+        let mut page = page();
+        page.claim("3A", "it holds", "yes".into(), true);
+        page.claim("3B", "it does not", "no".into(), false);
+        page.judge("3C", "it cannot", "for a reason".into(), Verdict::Explained);
+        assert_eq!(page.failed(), 1);
+        let text = page.markdown(Fineness::Quick);
+        assert!(
+            text.contains("| 3B | it does not | no | **differs** |"),
+            "{text}"
+        );
+        assert!(text.contains("| 3C | it cannot | for a reason | explained |"));
+        page.trouble = Some("a run is missing".into());
+        assert_eq!(page.failed(), 2);
+    }
+
+    #[test]
+    fn walls_that_met_are_told_by_their_states() {
+        assert_eq!(spans([1, 2, 4].into_iter()), [[1, 2], [4, 4]]);
+        assert!(spans(std::iter::empty()).is_empty());
+        let nearest = |least, met: &[[usize; 2]]| Nearest {
+            least,
+            state: 7,
+            met: met.to_vec(),
+        };
+        assert_eq!(nearest(0.06, &[]).told(0.06), "–");
+        assert_eq!(nearest(0.02, &[]).told(0.06), "0.020 in state 7");
+        assert_eq!(
+            nearest(0.0, &[[1, 2], [4, 4]]).told(0.06),
+            "**met** in 1 to 2, 4"
+        );
+    }
 }

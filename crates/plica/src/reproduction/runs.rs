@@ -65,15 +65,23 @@ impl Runs {
     ) -> Result<Self, Trouble> {
         let mut runs = Self::default();
         let mut waves: Vec<Vec<&Job>> = vec![vec![]; 3];
+        let mut anew: Vec<&str> = vec![];
         for job in jobs {
-            match opened(job, folder) {
+            // What starts from a run that is done again is done again too.
+            let parent = job.parent();
+            let stale = parent
+                .as_ref()
+                .is_some_and(|name| anew.contains(&name.as_str()));
+            let there = if stale { None } else { opened(job, folder) };
+            if there.is_none() {
+                anew.push(&job.name);
+            }
+            match there {
                 Some(ran) => {
                     runs.done.insert(job.name.clone(), ran);
                 }
                 None if job.large => waves[2].push(job),
-                None if job.changes.iter().any(|(key, _)| key == "start.state") => {
-                    waves[1].push(job)
-                }
+                None if parent.is_some() => waves[1].push(job),
                 None => waves[0].push(job),
             }
         }

@@ -7,6 +7,7 @@
 //! around them instead, with gathers.)
 
 mod real;
+mod symmetric;
 mod tensor2;
 
 pub use real::{LANES, Lanes, Real};

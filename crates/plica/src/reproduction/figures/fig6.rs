@@ -24,7 +24,7 @@ const ZONE: [f64; 2] = [0.5, 1.75];
 /// a thick line in a printed figure.
 const NEARLY: f64 = 0.02;
 /// How far they may be shifted along the axis: the two relaxations push the region to opposite ends.
-const REACH: f64 = 0.5;
+const REACH: f64 = 1.0;
 
 fn jobs(fineness: Fineness) -> Vec<Job> {
     ["colon-side", "ileum-side"]

@@ -49,9 +49,33 @@ fn side(row: &Row) -> String {
     }
 }
 
-/// Whether a state is invaginated toward an end.
+/// Overhang from which a wall counts as folded over, in D: its thickness.
+const FOLD: f64 = 0.06;
+
+/// Whether a state is invaginated toward an end, by more than its wall is thick.
 fn is_folded(row: &Row, side: &str) -> bool {
-    row.shape == "invaginated" && row.side == side
+    row.shape == "invaginated" && row.side == side && row.overhang > FOLD
+}
+
+/// In words, where an axisymmetric path is unstable, and to which harmonics: the whole tube would leave it there.
+fn unstable(rows: &[Row]) -> String {
+    let known = |row: &&Row| !["none", "unknown"].contains(&row.unstable_harmonics.as_str());
+    let places: Vec<String> = rows
+        .iter()
+        .filter(known)
+        .map(|row| {
+            let pairs = row.unstable_harmonics.split(' ');
+            let harmonics: Vec<&str> = pairs
+                .map(|pair| pair.split(':').next().unwrap_or(pair))
+                .collect();
+            format!("{:.2} (n = {})", row.length_ratio, harmonics.join(", "))
+        })
+        .collect();
+    if places.is_empty() {
+        "nowhere".into()
+    } else {
+        places.join(", ")
+    }
 }
 
 /// The first state of a shape.
