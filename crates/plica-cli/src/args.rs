@@ -29,6 +29,9 @@ pub enum Command {
     /// Run the computations of Okino et al. (2025) and lay them beside what the paper reports
     #[command(after_long_help = REPRODUCE_EPILOGUE)]
     Reproduce(ReproduceArguments),
+    /// Write states of a run as files of VTK, for ParaView and PyVista
+    #[command(after_long_help = EXPORT_EPILOGUE)]
+    Export(ExportArguments),
     /// Say whether a case is sound, and what running it would take
     Check {
         /// The case file
@@ -130,6 +133,26 @@ pub struct ReproduceArguments {
     pub threads: Option<u16>,
 }
 
+/// What `plica export` takes.
+#[derive(Args, Debug)]
+pub struct ExportArguments {
+    /// The directory of a run
+    #[arg(value_name = "RUN_DIR")]
+    pub run: PathBuf,
+    /// Number of a state whose volume is written; may be given again [default: the last saved]
+    #[arg(long, value_name = "N", conflicts_with = "all")]
+    pub state: Vec<usize>,
+    /// Write the volume of every saved state
+    #[arg(long)]
+    pub all: bool,
+    /// Write volumes as linear cells too, for filters that cannot follow curved ones
+    #[arg(long)]
+    pub linear: bool,
+    /// Threads to use [default: all cores]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
 /// A tolerance that can be reached.
 fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -146,6 +169,7 @@ Examples:
   plica run tube.toml -o again -t 4
   plica stability runs/tube      where does its path become unstable, and how?
   plica verify                   is this program right?
+  plica export runs/tube         its states for ParaView
   plica reproduce fig4           a figure of the paper, beside what the paper reports
 
 A case file is described, key by key, in docs/case-file.md.
@@ -220,3 +244,17 @@ What it leaves behind:
 Runs that are there already are not done again, and figures whose runs are all there are told along with those
 asked for. Ctrl-C or SIGTERM ends it after the solve at hand; the same command then goes on after the
 last run that was done. A second Ctrl-C ends it at once.";
+
+const EXPORT_EPILOGUE: &str = "\
+What it leaves in the directory of the run:
+  vtk/walls.pvd    the surface of the wall at every saved state: open this in ParaView
+  vtk/volume.pvd   the wall itself at the chosen states, as curved cells that are the splines exactly
+  vtk/linear.pvd   with --linear, the same cut into straight cells
+  vtk/walls/, volume/, linear/
+                   the files of the states
+
+Every file has displacement, det Fe, grown stretches, strain energy density, Cauchy and von Mises stress, principal
+stretches with their directions, and Green-Lagrange strain; docs/run-directory.md tells what each is. States that were
+written before stay in the collections.
+
+Ctrl-C or SIGTERM ends it after the file at hand.";

@@ -1,8 +1,8 @@
 //! Reading a case from disk.
 
 use crate::failure::Failure;
-use plica::case::{self, Open};
-use plica::study::{Plan, SavedState};
+use plica::case::{self, Open, Wanted};
+use plica::study::{Plan, RunDirectory, SavedState};
 use std::io::Read;
 use std::path::Path;
 
@@ -50,6 +50,18 @@ pub fn open_with(path: &Path, named: &Open<'_>) -> Result<(String, Plan), Failur
             error,
         }),
     }
+}
+
+/// The plan of a run that is there. Where it began is its own first state; the modes of its imperfections it has kept.
+pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
+    let own = |wanted: Wanted<'_>| match wanted {
+        Wanted::State(_) => {
+            SavedState::read(&directory.path().join(RunDirectory::name_of_state(0)))
+        }
+        Wanted::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
+    };
+    let (_, plan) = open_with(&directory.path().join("case.toml"), &own)?;
+    Ok(plan)
 }
 
 /// The name of a case: that of its file, without the ending.

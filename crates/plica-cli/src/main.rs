@@ -5,6 +5,7 @@ mod args;
 mod case_file;
 mod check;
 mod console;
+mod export;
 mod failure;
 mod interrupt;
 mod message;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Stability(arguments) => stability::stability(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
+        Command::Export(arguments) => export::export(&arguments),
         Command::Check { case } => check::check(&case),
         Command::New { file } => new::new(&file),
         Command::Completions { shell } => new::completions(shell),

@@ -5,13 +5,12 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{case_file, console, threads};
-use plica::case::Wanted;
 use plica::draw::DrawError;
 use plica::report::{mode_pictures, stability_pictures};
 use plica::stability::{
     ModesRequest, Observer, Request, Spectrum, StabilityError, Station, follow, lowest_modes,
 };
-use plica::study::{Plan, RunDirectory, SavedState, fits};
+use plica::study::{Plan, RunDirectory, fits};
 use plica::tube::{Load, Tube};
 
 /// How close critical values are bracketed, unless told otherwise.
@@ -29,16 +28,9 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
         };
         return Err(Failure::Usage(none.to_string()));
     }
-    // Where a run began is its own first state; the modes of its imperfections it has kept.
-    let begin = arguments.run.join("states/state-0000.safetensors");
-    let case = arguments.run.join("case.toml");
-    let own = |wanted: Wanted<'_>| match wanted {
-        Wanted::State(_) => SavedState::read(&begin),
-        Wanted::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
-    };
     // Before anything computes, which checking a case may do already.
     threads::limit(arguments.threads)?;
-    let (_, plan) = case_file::open_with(&case, &own)?;
+    let plan = case_file::of_run(&directory)?;
     fits(&plan).map_err(Failure::Study)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;

@@ -18,6 +18,8 @@
 //! - [`case`]: the case file as written, and what it means.
 //! - [`draw`]: charts and shaded cut-aways from plain data.
 //! - [`report`]: the pictures of a run.
+//! - [`vtk`]: files of VTK from plain data.
+//! - [`export`]: states as files of VTK.
 //! - [`verification`]: problems whose answer is known otherwise.
 //! - [`reproduction`]: the paper's figures, beside what it reports.
 
@@ -25,6 +27,7 @@ pub mod activation;
 pub mod assembly;
 pub mod case;
 pub mod draw;
+pub mod export;
 pub mod material;
 pub mod matrix;
 pub mod measure;
@@ -38,3 +41,4 @@ pub mod study;
 pub mod tensor;
 pub mod tube;
 pub mod verification;
+pub mod vtk;

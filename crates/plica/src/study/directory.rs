@@ -2,6 +2,7 @@
 
 use super::{NamedMode, Row, SavedState, StudyError};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,7 @@ use std::path::{Path, PathBuf};
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
 /// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
 /// | `*.png` | pictures |
+/// | `vtk/` | states as files of VTK, in a folder and a collection for each kind |
 /// | `imperfections/mode-NN.safetensors` | a mode that imperfection NN has the shape of |
 /// | `stability.csv`, `eigenvalues.csv`, `eigenpairs.csv`, `modes/` | what a test of stability found |
 #[derive(Debug)]
@@ -143,10 +145,25 @@ impl RunDirectory {
     /// # Errors
     /// [`StudyError::File`] if they cannot be listed; none are no error.
     pub fn states(&self) -> Result<Vec<PathBuf>, StudyError> {
-        let folder = self.path.join("states");
+        Ok(self
+            .numbered("states", STATE_ENDING)?
+            .into_values()
+            .collect())
+    }
+
+    /// The files `state-N` with an ending in a folder, by their numbers.
+    ///
+    /// # Errors
+    /// [`StudyError::File`] if they cannot be listed; none are no error.
+    pub fn numbered(
+        &self,
+        folder: &str,
+        ending: &str,
+    ) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
+        let folder = self.path.join(folder);
         let entries = match fs::read_dir(&folder) {
             Ok(entries) => entries,
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(vec![]),
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(BTreeMap::new()),
             Err(source) => {
                 return Err(StudyError::File {
                     path: folder,
@@ -155,11 +172,9 @@ impl RunDirectory {
             }
         };
         let files = entries.flatten().map(|entry| entry.path());
-        let mut numbered: Vec<(usize, PathBuf)> = files
-            .filter_map(|file| Some((number_of_state(&file, STATE_ENDING)?, file)))
-            .collect();
-        numbered.sort();
-        Ok(numbered.into_iter().map(|(_, file)| file).collect())
+        Ok(files
+            .filter_map(|file| Some((number_of_state(&file, ending)?, file)))
+            .collect())
     }
 
     /// The relative path of the file of a saved state, by the number of its row.
@@ -321,10 +336,17 @@ fn clear(path: &Path) -> Result<(), StudyError> {
             .map(|name| path.join(name)),
     );
     old.extend(modes(&path.join("imperfections")));
-    for (folder, ending) in [("profiles", "csv"), ("states", STATE_ENDING)] {
+    for (folder, ending) in [
+        ("profiles", "csv"),
+        ("states", STATE_ENDING),
+        ("vtk/walls", "vtp"),
+        ("vtk/volume", "vtu"),
+        ("vtk/linear", "vtu"),
+    ] {
         let mine = |file: &Path, ending| number_of_state(file, ending).is_some();
         old.extend(files(&path.join(folder)).filter(|f| mine(f, ending) || mine(f, "part")));
     }
+    old.extend(["walls", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))));
     old.push(path.join(MANIFEST));
     remove(old)
 }
@@ -420,7 +442,7 @@ mod tests {
     fn a_former_run_is_replaced_when_asked_and_other_files_stay() {
         let path = scratch("former-run");
         RunDirectory::create(&path, "first", false).unwrap();
-        for folder in ["profiles", "states"] {
+        for folder in ["profiles", "states", "vtk/walls"] {
             fs::create_dir_all(path.join(folder)).unwrap();
         }
         for name in [
@@ -431,6 +453,9 @@ mod tests {
             "states/mine.safetensors",
             "logo.png",
             "energy.png",
+            "vtk/walls/state-0003.vtp",
+            "vtk/walls.pvd",
+            "vtk/mine.vtu",
         ] {
             fs::write(path.join(name), name).unwrap();
         }
@@ -443,6 +468,8 @@ mod tests {
         assert!(stays("states/mine.safetensors") && !stays("states/state-0004.part"));
         assert!(!stays("energy.png") && !stays("profiles/state-0003.csv"));
         assert!(!stays("states/state-0003.safetensors"));
+        assert!(stays("vtk/mine.vtu") && !stays("vtk/walls.pvd"));
+        assert!(!stays("vtk/walls/state-0003.vtp"));
         fs::remove_dir_all(path).unwrap();
     }
 }

@@ -1,0 +1,120 @@
+//! The fields that points have.
+
+use super::node::{Node, Turn};
+use super::nodes::Nodes;
+use crate::study::Scale;
+use crate::vtk::Column;
+
+/// A field: its name, the names of its components (none if it is a number), and how it is packed.
+pub struct Field {
+    /// What it is called in a file.
+    pub name: &'static str,
+    /// What its components are called.
+    pub components: &'static [&'static str],
+    /// Its numbers at all points.
+    pub column: fn(&Nodes, &Scale) -> Column,
+}
+
+const XYZ: &[&str] = &["x", "y", "z"];
+
+/// All fields.
+pub const FIELDS: &[Field] = &[
+    Field {
+        name: "displacement",
+        components: XYZ,
+        column: |nodes, scale| {
+            let length = scale.length as f32;
+            several(nodes, |node, turn| {
+                turn.of_short(node.displacement).map(|x| length * x)
+            })
+        },
+    },
+    Field {
+        name: "det_Fe",
+        components: &[],
+        column: |nodes, _| single(nodes, |node| node.jacobian),
+    },
+    Field {
+        name: "theta_zeta",
+        components: &[],
+        column: |nodes, _| single(nodes, |node| node.grown[0]),
+    },
+    Field {
+        name: "theta_eta",
+        components: &[],
+        column: |nodes, _| single(nodes, |node| node.grown[1]),
+    },
+    Field {
+        name: "strain_energy_density",
+        components: &[],
+        column: |nodes, scale| {
+            let stress = scale.stress as f32;
+            single(nodes, |node| stress * node.energy_density)
+        },
+    },
+    Field {
+        name: "cauchy_stress",
+        components: &["xx", "yy", "zz", "xy", "yz", "xz"],
+        column: |nodes, scale| {
+            let stress = scale.stress as f32;
+            several(nodes, |node, turn| {
+                turn.of_tensor(node.stress).map(|x| stress * x)
+            })
+        },
+    },
+    Field {
+        name: "von_mises_stress",
+        components: &[],
+        column: |nodes, scale| {
+            let stress = scale.stress as f32;
+            single(nodes, |node| stress * von_mises(node.stress))
+        },
+    },
+    Field {
+        name: "elastic_stretch",
+        components: &["1", "2", "3"],
+        column: |nodes, _| several(nodes, |node, _| node.stretches),
+    },
+    Field {
+        name: "elastic_direction_1",
+        components: XYZ,
+        column: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[0])),
+    },
+    Field {
+        name: "elastic_direction_2",
+        components: XYZ,
+        column: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[1])),
+    },
+    Field {
+        name: "elastic_direction_3",
+        components: XYZ,
+        column: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[2])),
+    },
+    Field {
+        name: "green_lagrange_strain",
+        components: &[
+            "zeta-zeta",
+            "eta-eta",
+            "xi-xi",
+            "zeta-eta",
+            "eta-xi",
+            "zeta-xi",
+        ],
+        column: |nodes, _| several(nodes, |node, _| node.strain),
+    },
+];
+
+fn single(nodes: &Nodes, of: impl Fn(&Node) -> f32) -> Column {
+    Column::of(nodes.all(|node, _| of(node)))
+}
+
+fn several<const N: usize>(nodes: &Nodes, of: impl Fn(&Node, &Turn) -> [f32; N]) -> Column {
+    Column::of(nodes.all(of).flatten())
+}
+
+/// √(3/2 s : s), s the deviator of σ.
+fn von_mises([xx, yy, zz, xy, yz, xz]: [f32; 6]) -> f32 {
+    let apart = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    let shear = xy * xy + yz * yz + xz * xz;
+    (0.5 * apart + 3.0 * shear).sqrt()
+}

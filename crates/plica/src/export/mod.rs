@@ -1,0 +1,130 @@
+//! States as files of VTK, for ParaView and PyVista.
+//!
+//! Coordinates are (x, y, z), the tube along z from the colon end on; lengths and stresses are in the units of the case. A
+//! spline of degree p is a polynomial of degree p on every element, so that Lagrange hexahedra of that degree are the
+//! wall itself, not near it.
+//!
+//! | field | meaning |
+//! |---|---|
+//! | `displacement` | from where the point was at rest |
+//! | `det_Fe` | elastic change of volume |
+//! | `theta_zeta`, `theta_eta` | grown over ungrown length, along and around |
+//! | `strain_energy_density` | w, per grown volume |
+//! | `cauchy_stress` | σ in (x, y, z): xx, yy, zz, xy, yz, xz |
+//! | `von_mises_stress` | √(3/2 s : s), s the deviator of σ |
+//! | `elastic_stretch` | principal stretches of Fe, largest first |
+//! | `elastic_direction_1` to `_3` | their directions in the deformed wall, unit vectors |
+//! | `green_lagrange_strain` | ½ (FᵀF − 1) in the axes of the wall at rest, along ζ, around η, outwards ξ: ζζ, ηη, ξξ, ζη, ηξ, ζξ |
+
+mod fields;
+mod node;
+mod nodes;
+
+use crate::assembly::SplineTube;
+use crate::study::{Plan, Row, SavedState, Scale};
+use crate::vtk::Document;
+use fields::FIELDS;
+use nodes::Nodes;
+
+/// Writes states of a run.
+pub struct Exporter {
+    tube: SplineTube,
+    scale: Scale,
+}
+
+/// What is written of a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum What {
+    /// The surface of the wall, as `.vtp`.
+    Walls,
+    /// The wall, as Lagrange hexahedra of the spline's degree, `.vtu`.
+    Volume,
+    /// The wall, as linear hexahedra between the same points, `.vtu`.
+    Linear,
+}
+
+impl What {
+    /// Everything that can be written.
+    pub const ALL: [Self; 3] = [Self::Walls, Self::Volume, Self::Linear];
+
+    /// What its folder and its collection are called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Walls => "walls",
+            Self::Volume => "volume",
+            Self::Linear => "linear",
+        }
+    }
+
+    /// The ending of its files.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Walls => "vtp",
+            Self::Volume | Self::Linear => "vtu",
+        }
+    }
+}
+
+/// Pieces that a span is cut into on a surface: a cubic looks smooth.
+const PIECES: usize = 3;
+
+impl Exporter {
+    /// Of a run.
+    pub fn new(plan: &Plan) -> Self {
+        let rings = plan.mesh.rings(plan.symmetry);
+        Self {
+            tube: SplineTube::new(&plan.tube, &plan.mesh, rings),
+            scale: Scale::of(plan.units.as_ref()),
+        }
+    }
+
+    /// Points that a file has.
+    pub fn points(&self, what: What) -> usize {
+        let lattice = match what {
+            What::Walls => Nodes::lattice_of_walls(&self.tube, PIECES),
+            What::Volume | What::Linear => Nodes::lattice(&self.tube),
+        };
+        lattice.points().iter().product()
+    }
+
+    /// The bytes of a file.
+    pub fn bytes(&self, what: What, state: &SavedState, row: &Row) -> Vec<u8> {
+        let (tube, length) = (&self.tube, self.scale.length);
+        let lattice = match what {
+            What::Walls => Nodes::lattice_of_walls(tube, PIECES),
+            What::Volume | What::Linear => Nodes::lattice(tube),
+        };
+        let nodes = Nodes::of(tube, &state.load, &state.u, lattice);
+        let points: Vec<[f64; 3]> = nodes
+            .all(|node, turn| turn.of(node.position))
+            .map(|x| x.map(|x| length * x))
+            .collect();
+        let mut file = match what {
+            What::Volume => Document::grid(&points, &lattice.lagrange()),
+            What::Linear => Document::grid(&points, &lattice.linear()),
+            What::Walls => {
+                let (cells, faces) = lattice.skin();
+                let mut file = Document::surface(&points, &cells);
+                file.cell_data("face", faces.into_iter());
+                file
+            }
+        };
+        drop(points);
+        for (name, value) in [
+            ("state", row.step as f64),
+            ("length_ratio", row.length_ratio),
+            ("diameter_ratio", row.diameter_ratio),
+            ("energy", row.energy),
+        ] {
+            file.value(name, value);
+        }
+        for field in FIELDS {
+            file.point_data(
+                field.name,
+                field.components,
+                (field.column)(&nodes, &self.scale),
+            );
+        }
+        file.bytes()
+    }
+}

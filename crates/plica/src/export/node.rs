@@ -1,0 +1,113 @@
+//! What is known of a point of the wall, in (x, y, z).
+#![allow(non_snake_case)] // the formulas keep the letters of their sources
+
+use crate::assembly::Sample;
+use crate::tensor::Tensor2;
+
+/// A point, and the fields there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node {
+    /// Where it is, in D.
+    pub position: [f64; 3],
+    /// From where it was at rest, in D.
+    pub displacement: [f32; 3],
+    /// det Fe.
+    pub jacobian: f32,
+    /// θζ and θη.
+    pub grown: [f32; 2],
+    /// w, in E.
+    pub energy_density: f32,
+    /// σ in E: xx, yy, zz, xy, yz, xz.
+    pub stress: [f32; 6],
+    /// Principal stretches of Fe, largest first.
+    pub stretches: [f32; 3],
+    /// Their directions.
+    pub directions: [[f32; 3]; 3],
+    /// ½ (FᵀF − 1): ζζ, ηη, ξξ, ζη, ηξ, ζξ.
+    pub strain: [f32; 6],
+}
+
+/// A turn about the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    sin: f64,
+    cos: f64,
+}
+
+impl Turn {
+    /// By an angle, in radians.
+    pub fn by(angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self { sin, cos }
+    }
+
+    /// A vector, turned.
+    pub fn of(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let Self { sin, cos } = self;
+        [x * cos - y * sin, x * sin + y * cos, z]
+    }
+
+    /// The same of one stored short.
+    pub fn of_short(&self, x: [f32; 3]) -> [f32; 3] {
+        self.of(x.map(f64::from)).map(|x| x as f32)
+    }
+
+    /// A symmetric tensor (xx, yy, zz, xy, yz, xz), turned.
+    pub fn of_tensor(&self, t: [f32; 6]) -> [f32; 6] {
+        let [xx, yy, zz, xy, yz, xz] = t.map(f64::from);
+        let Self { sin: s, cos: c } = *self;
+        [
+            c * c * xx - 2.0 * c * s * xy + s * s * yy,
+            s * s * xx + 2.0 * c * s * xy + c * c * yy,
+            zz,
+            c * s * (xx - yy) + (c * c - s * s) * xy,
+            s * xz + c * yz,
+            c * xz - s * yz,
+        ]
+        .map(|x| x as f32)
+    }
+}
+
+impl Node {
+    /// From what a tube says of a point.
+    pub fn of(sample: &Sample) -> Self {
+        let turn = Turn::by(sample.element_angle);
+        // From (z, outwards, around) to (x, y, z), and to the laboratory.
+        let out = |[z, x, y]: [f64; 3]| [x, y, z];
+        let vector = |v: [f64; 3]| turn.of(out(v));
+        let tensor = |t: &Tensor2| {
+            let t = t.0;
+            let [zz, xx, yy] = [0, 1, 2].map(|i| t[i][i]);
+            turn.of_tensor([xx, yy, zz, t[1][2], t[2][0], t[1][0]].map(|x| x as f32))
+        };
+        let Fe = sample.elastic;
+        let pairs = Fe.times(Fe.transpose()).eigenpairs(); // b = Fe Feᵀ
+        let [theta_z, theta_t] = sample.grown;
+        let mut F = Fe;
+        for row in &mut F.0 {
+            (row[0], row[2]) = (theta_z * row[0], theta_t * row[2]);
+        }
+        let C = F.transpose().times(F).0;
+        let E = |i: usize, j: usize| 0.5 * (C[i][j] - f64::from(u8::from(i == j)));
+        let (position, reference) = (out(sample.position), out(sample.reference));
+        Self {
+            position,
+            displacement: [0, 1, 2].map(|i| (position[i] - reference[i]) as f32),
+            jacobian: sample.jacobian as f32,
+            grown: sample.grown.map(|x| x as f32),
+            energy_density: sample.energy_density as f32,
+            stress: tensor(&sample.stress),
+            stretches: pairs.map(|(square, _)| square.max(0.0).sqrt() as f32),
+            directions: pairs.map(|(_, v)| vector(pointed(v)).map(|x| x as f32)),
+            strain: [(0, 0), (2, 2), (1, 1), (0, 2), (2, 1), (0, 1)].map(|(i, j)| E(i, j) as f32),
+        }
+    }
+}
+
+/// Of a direction and its opposite, the one whose largest component is positive: neighbours then point alike.
+fn pointed(v: [f64; 3]) -> [f64; 3] {
+    let largest = v
+        .iter()
+        .fold(0.0_f64, |m, x| if x.abs() > m.abs() { *x } else { m });
+    if largest < 0.0 { v.map(|x| -x) } else { v }
+}

@@ -1,0 +1,184 @@
+//! Cells between points that lie in rows, rows in layers.
+
+use super::hexahedron;
+
+/// Points (i, j, k), the first index fastest; the second closes on itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lattice {
+    /// Spans between points, in each direction.
+    pub spans: [usize; 3],
+    /// Degree of the cells that it may be cut into: it divides the spans.
+    pub degree: usize,
+}
+
+/// Cells by the numbers of their points.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cells {
+    /// Points of every cell, one after the other.
+    pub points: Vec<i64>,
+    /// How many each has.
+    pub each: usize,
+    /// What VTK calls their kind by number.
+    pub kind: u8,
+}
+
+/// VTK_QUAD.
+const QUADRILATERAL: u8 = 9;
+/// VTK_HEXAHEDRON.
+const HEXAHEDRON: u8 = 12;
+/// VTK_LAGRANGE_HEXAHEDRON.
+const LAGRANGE_HEXAHEDRON: u8 = 72;
+
+impl Lattice {
+    /// Points in each direction.
+    pub fn points(&self) -> [usize; 3] {
+        let [i, j, k] = self.spans;
+        [i + 1, j, k + 1]
+    }
+
+    /// The number of a point.
+    fn number(&self, [i, j, k]: [usize; 3]) -> i64 {
+        let [across, around, _] = self.points();
+        (i + across * (j % around + around * k)) as i64
+    }
+
+    /// Lagrange hexahedra of the degree.
+    pub fn lagrange(&self) -> Cells {
+        self.cut(self.degree, LAGRANGE_HEXAHEDRON)
+    }
+
+    /// Linear hexahedra, one per span.
+    pub fn linear(&self) -> Cells {
+        self.cut(1, HEXAHEDRON)
+    }
+
+    fn cut(&self, degree: usize, kind: u8) -> Cells {
+        let nodes = hexahedron(degree);
+        let [across, around, along] = self.spans.map(|spans| spans / degree);
+        let mut points = Vec::with_capacity(across * around * along * nodes.len());
+        for k in 0..along {
+            for j in 0..around {
+                for i in 0..across {
+                    let at =
+                        |n: &[usize; 3]| [i * degree + n[0], j * degree + n[1], k * degree + n[2]];
+                    points.extend(nodes.iter().map(|n| self.number(at(n))));
+                }
+            }
+        }
+        Cells {
+            points,
+            each: nodes.len(),
+            kind,
+        }
+    }
+
+    /// The quadrilaterals that bound it, seen from outside, and which face each is of: lower and upper end of the first
+    /// direction, then of the last.
+    pub fn skin(&self) -> (Cells, Vec<u8>) {
+        let [across, around, along] = self.spans;
+        let (mut points, mut faces) = (vec![], vec![]);
+        let mut add = |face: u8, corners: [[usize; 3]; 4], outwards: bool| {
+            let mut corners = corners.map(|at| self.number(at));
+            if !outwards {
+                corners.reverse();
+            }
+            points.extend(corners);
+            faces.push(face);
+        };
+        for (face, i) in [(0, 0), (1, across)] {
+            for k in 0..along {
+                for j in 0..around {
+                    let corners = [[i, j, k], [i, j + 1, k], [i, j + 1, k + 1], [i, j, k + 1]];
+                    add(face, corners, face == 1);
+                }
+            }
+        }
+        for (face, k) in [(2, 0), (3, along)] {
+            for j in 0..around {
+                for i in 0..across {
+                    let corners = [[i, j, k], [i + 1, j, k], [i + 1, j + 1, k], [i, j + 1, k]];
+                    add(face, corners, face == 3);
+                }
+            }
+        }
+        let cells = Cells {
+            points,
+            each: 4,
+            kind: QUADRILATERAL,
+        };
+        (cells, faces)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LATTICE: Lattice = Lattice {
+        spans: [2, 12, 4],
+        degree: 2,
+    };
+
+    /// A thick ring.
+    fn place(number: i64) -> [f64; 3] {
+        let [across, around, _] = LATTICE.points();
+        let number = number as usize;
+        let (i, j, k) = (
+            number % across,
+            number / across % around,
+            number / across / around,
+        );
+        let angle = std::f64::consts::TAU * j as f64 / around as f64;
+        let radius = 1.0 + 0.1 * i as f64;
+        [radius * angle.cos(), radius * angle.sin(), 0.2 * k as f64]
+    }
+
+    /// Six times the volume between a triangle and the origin.
+    fn cone([a, b, c]: [i64; 3]) -> f64 {
+        let [a, b, c] = [a, b, c].map(place);
+        let across = [0, 1, 2].map(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            b[j] * c[k] - b[k] * c[j]
+        });
+        a[0] * across[0] + a[1] * across[1] + a[2] * across[2]
+    }
+
+    #[test]
+    fn the_skin_is_closed_and_looks_outwards() {
+        let (cells, faces) = LATTICE.skin();
+        assert_eq!(faces.len(), cells.points.len() / cells.each);
+        let mut edges = std::collections::BTreeMap::new();
+        let mut volume = 0.0;
+        for quad in cells.points.chunks(4) {
+            for i in 0..4 {
+                let (from, to) = (quad[i], quad[(i + 1) % 4]);
+                *edges.entry((from.min(to), from.max(to))).or_insert(0) +=
+                    if from < to { 1 } else { -1 };
+            }
+            volume += (cone([quad[0], quad[1], quad[2]]) + cone([quad[0], quad[2], quad[3]])) / 6.0;
+        }
+        assert!(edges.values().all(|&sum| sum == 0));
+        // A polygon of twelve.
+        let sector = 12.0 * 0.5 * (std::f64::consts::TAU / 12.0).sin();
+        let expected = sector * (1.2_f64.powi(2) - 1.0) * 0.8;
+        assert!((volume - expected).abs() < 1e-12, "{volume} {expected}");
+    }
+
+    #[test]
+    fn cells_have_their_corners_in_a_right_handed_order() {
+        for cells in [LATTICE.lagrange(), LATTICE.linear()] {
+            for cell in cells.points.chunks(cells.each) {
+                let at = |i: usize| place(cell[i]);
+                let [o, a, b, c] = [at(0), at(1), at(3), at(4)];
+                let edge = |p: [f64; 3]| [0, 1, 2].map(|i| p[i] - o[i]);
+                let [a, b, c] = [a, b, c].map(edge);
+                let triple = a[0] * (b[1] * c[2] - b[2] * c[1])
+                    + a[1] * (b[2] * c[0] - b[0] * c[2])
+                    + a[2] * (b[0] * c[1] - b[1] * c[0]);
+                assert!(triple > 0.0);
+            }
+        }
+        assert_eq!(LATTICE.lagrange().points.len(), 6 * 2 * 27);
+        assert_eq!(LATTICE.linear().points.len(), 2 * 12 * 4 * 8);
+    }
+}

@@ -1,0 +1,254 @@
+"""Reads the VTK files of a run with VTK, and holds them against the run's own tables.
+
+    python scripts/check_vtk.py RUN_DIR
+
+The run is axisymmetric or not, in units of D and E, and `plica export RUN_DIR --linear` (with or without --state) was done.
+"""
+
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+GAUSS = 6  # points in each direction; the volume of a cubic map takes five
+
+
+def read(path):
+    """A grid or a surface."""
+    kinds = {".vtu": vtk.vtkXMLUnstructuredGridReader, ".vtp": vtk.vtkXMLPolyDataReader}
+    reader = kinds[path.suffix]()
+    reader.SetFileName(str(path))
+    reader.Update()
+    assert reader.GetErrorCode() == 0, path
+    return reader.GetOutput()
+
+
+def field(data, name):
+    array = data.GetPointData().GetArray(name)
+    assert array is not None, f"no field {name}"
+    return vtk_to_numpy(array).astype(float)
+
+
+def functions(cell, places):
+    """Values and slopes of a cell's functions at places in it, by VTK."""
+    nodes = cell.GetNumberOfPoints()
+    # One after the other in linear cells, side by side in others.
+    linear = cell.GetCellType() == vtk.VTK_HEXAHEDRON
+    values, slopes = [], []
+    for place in places:
+        n, d = [0.0] * nodes, [0.0] * (3 * nodes)
+        cell.InterpolateFunctions(list(place), n)
+        cell.InterpolateDerivs(list(place), d)
+        values.append(n)
+        slopes.append(np.reshape(d, (3, nodes)) if linear else np.reshape(d, (nodes, 3)).T)
+    return np.array(values), np.array(slopes)
+
+
+def gauss():
+    at, weights = np.polynomial.legendre.leggauss(GAUSS)
+    at, weights = 0.5 * (at + 1), 0.5 * weights
+    places = np.stack(np.meshgrid(at, at, at, indexing="ij"), axis=-1).reshape(-1, 3)
+    return places, np.einsum("i,j,k->ijk", weights, weights, weights).ravel()
+
+
+def cells_of(grid):
+    cells = grid.GetNumberOfCells()
+    connectivity = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(cells, -1)
+    return np.array_split(connectivity, max(1, cells // 2000))
+
+
+def volume_of(grid, positions):
+    """The volume of a grid whose points are at positions, as VTK maps its cells."""
+    places, weights = gauss()
+    _, slopes = functions(grid.GetCell(0), places)
+    volume, smallest = 0.0, np.inf
+    for some in cells_of(grid):
+        jacobian = np.linalg.det(np.einsum("qan,cni->cqai", slopes, positions[some]))
+        smallest = min(smallest, jacobian.min())
+        volume += np.einsum("cq,q->", jacobian, weights)
+    assert smallest > 0, "a cell is turned inside out"
+    return volume
+
+
+def mechanics(rest, now, slopes, values, some, theta):
+    """The model again, from what VTK draws: elastic deformation gradient, total strain and more at places of cells."""
+    of_rest = np.einsum("qan,cni->cqia", slopes, rest[some])
+    of_now = np.einsum("qan,cni->cqia", slopes, now[some])
+    f = of_now @ np.linalg.inv(of_rest)
+    # Along, outwards, around, where the point was at rest.
+    x = np.einsum("qn,cni->cqi", values, rest[some])
+    outwards = x[..., :2] / np.linalg.norm(x[..., :2], axis=-1, keepdims=True)
+    zero = np.zeros(x.shape[:-1])
+    axes = np.stack(
+        [
+            np.stack([zero, zero, zero + 1], -1),
+            np.stack([outwards[..., 0], outwards[..., 1], zero], -1),
+            np.stack([-outwards[..., 1], outwards[..., 0], zero], -1),
+        ],
+        axis=-1,
+    )
+    columns = f @ axes
+    along, around = (np.einsum("qn,cn->cq", values, t[some]) for t in theta)
+    elastic = columns / np.stack([along, zero + 1, around], -1)[..., None, :]
+    jacobian = np.linalg.det(elastic)
+    nu = 0.495
+    mu, lame = 1 / (2 * (1 + nu)), nu / ((1 + nu) * (1 - 2 * nu))
+    first = (elastic**2).sum(axis=(-1, -2))
+    energy = 0.5 * mu * (first - 3) - mu * np.log(jacobian) + 0.5 * lame * np.log(jacobian) ** 2
+    left = elastic @ np.swapaxes(elastic, -1, -2)
+    stress = (mu * (left - np.eye(3)) + lame * np.log(jacobian)[..., None, None] * np.eye(3)) / jacobian[..., None, None]
+    strain = 0.5 * (np.swapaxes(columns, -1, -2) @ columns - np.eye(3))
+    return np.linalg.det(of_rest), along * around, jacobian, energy, stress, strain
+
+
+def close(what, found, expected, tolerance):
+    off = abs(found - expected) / abs(expected)
+    print(f"{what:<58} {found:.8e}  {expected:.8e}  off {off:.0e} of {tolerance:.0e}")
+    assert off <= tolerance, what
+
+
+def meridian(grid, normal):
+    """Radii and places of the points in which VTK cuts a grid by a plane through the axis, on one side."""
+    plane = vtk.vtkPlane()
+    plane.SetNormal(*normal)
+    cutter = vtk.vtkCutter()
+    cutter.SetCutFunction(plane)
+    cutter.SetInputData(grid)
+    cutter.Update()
+    points = vtk_to_numpy(cutter.GetOutput().GetPoints().GetData()).astype(float)
+    return points
+
+
+def check_state(run, number, row, profile):
+    print(f"state {number}")
+    grid = read(run / "vtk" / "volume" / f"state-{number:04}.vtu")
+    assert grid.GetCellType(0) == vtk.VTK_LAGRANGE_HEXAHEDRON
+    now = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
+    rest = now - field(grid, "displacement")
+    theta = [field(grid, "theta_zeta"), field(grid, "theta_eta")]
+    volume = volume_of(grid, now)
+    # A polygon of splines with 60 points is a circle to 1e-7.
+    close("volume at rest, of a hollow cylinder", volume_of(grid, rest), np.pi * (0.25 - 0.44**2) * 3, 1e-5)
+
+    # W from the map that VTK draws, by the formulas of the model.
+    places, weights = gauss()
+    values, slopes = functions(grid.GetCell(0), places)
+    energy = swollen = 0.0
+    for some in cells_of(grid):
+        size, grown, j, w, _, _ = mechanics(rest, now, slopes, values, some, theta)
+        energy += np.einsum("cq,q->", size * grown * w, weights)
+        swollen += np.einsum("cq,q->", size * grown * j, weights)
+    close("volume, and the integral of det F over the volume at rest", volume, swollen, 1e-5)
+    if float(row["energy"]) > 1e-8:
+        close("energy of what VTK draws, and W of history.csv", energy, float(row["energy"]), 1e-3)
+
+    # And every field at every node.
+    corners = np.array(grid.GetCell(0).GetParametricCoords()).reshape(-1, 3)
+    values, slopes = functions(grid.GetCell(0), corners)
+    names = ["det_Fe", "strain_energy_density", "cauchy_stress", "green_lagrange_strain"]
+    fields = [field(grid, name) for name in names]
+    worst = np.zeros(4)
+    for some in cells_of(grid):
+        _, _, j, w, stress, strain = mechanics(rest, now, slopes, values, some, theta)
+        six = lambda t, order: np.stack([t[..., a, b] for a, b in order], -1)
+        stress = six(stress, [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)])
+        # Axes: along, outwards, around.
+        strain = six(strain, [(0, 0), (2, 2), (1, 1), (0, 2), (2, 1), (0, 1)])
+        for i, (found, of) in enumerate(zip([j, w, stress, strain], fields)):
+            worst[i] = max(worst[i], abs(found - of[some]).max() / max(1e-3, abs(of).max()))
+    for name, off in zip(names, worst):
+        print(f"{name}: at every node what the model says of VTK's map, to {off:.0e} of its largest")
+        assert off < 1e-3, name
+
+    # A straight copy has the same points, and nearly the same volume.
+    linear = read(run / "vtk" / "linear" / f"state-{number:04}.vtu")
+    assert linear.GetCellType(0) == vtk.VTK_HEXAHEDRON
+    assert np.array_equal(vtk_to_numpy(linear.GetPoints().GetData()), now)
+    close("volume of straight cells", volume_of(linear, now), volume, 1e-2)
+
+    # The outer and the inner wall, where VTK's cells have them, are those of the profile.
+    z, r = now[:, 2], np.hypot(now[:, 0], now[:, 1])
+    outside, inside = rest[:, 0] ** 2 + rest[:, 1] ** 2 > 0.4999**2, rest[:, 0] ** 2 + rest[:, 1] ** 2 < 0.4401**2
+    for name, of in [("outer", outside), ("inner", inside)]:
+        at = {round(float(p["reference_z"]), 9): (float(p[f"{name}_z"]), float(p[f"{name}_r"])) for p in profile}
+        seen = 0
+        for point in np.flatnonzero(of):
+            known = at.get(round(float(rest[point, 2]), 9))
+            if known:
+                seen += 1
+                assert np.hypot(z[point] - known[0], r[point] - known[1]) < 1e-6, (name, point)
+        print(f"{name} wall: {seen} points are where the profile has them")
+        assert seen > 10
+
+    # A slice of the linear copy by VTK lies between the walls of the profile.
+    cut = meridian(linear, (0.3, 1.0, 0.0))
+    for points, name in [(cut, "slice of the straight cells")]:
+        radii = np.hypot(points[:, 0], points[:, 1])
+        lowest = min(float(p["inner_r"]) for p in profile)
+        highest = max(float(p["outer_r"]) for p in profile)
+        assert lowest - 2e-3 < radii.min() and radii.max() < highest + 2e-3, name
+    print(f"slice: {len(cut)} points, radii {radii.min():.4f} to {radii.max():.4f}")
+
+    # Fields among themselves: stress symmetric by construction; stretches and directions.
+    stretch, j = field(grid, "elastic_stretch"), field(grid, "det_Fe")
+    assert np.allclose(stretch.prod(axis=1), j, rtol=1e-5)
+    assert (np.diff(stretch, axis=1) <= 1e-6).all()
+    directions = [field(grid, f"elastic_direction_{i}") for i in (1, 2, 3)]
+    for a, direction in enumerate(directions):
+        for b, other in enumerate(directions):
+            assert np.allclose((direction * other).sum(axis=1), float(a == b), atol=1e-5)
+    # The law's own: principal Cauchy stresses from the stretches (neo-Hookean), along the directions.
+    nu = 0.495
+    mu, lame = 1 / (2 * (1 + nu)), nu / ((1 + nu) * (1 - 2 * nu))
+    principal = (mu * (stretch**2 - 1) + (lame * np.log(j))[:, None]) / j[:, None]
+    s = field(grid, "cauchy_stress")
+    tensor = np.stack([s[:, [0, 3, 5]], s[:, [3, 1, 4]], s[:, [5, 4, 2]]], axis=1)
+    for i, direction in enumerate(directions):
+        along = np.einsum("ni,nij,nj->n", direction, tensor, direction)
+        assert np.allclose(along, principal[:, i], atol=2e-5 * max(1.0, abs(principal).max())), i
+    deviator = principal - principal.mean(axis=1, keepdims=True)
+    mises = np.sqrt(1.5 * (deviator**2).sum(axis=1))
+    assert np.allclose(field(grid, "von_mises_stress"), mises, atol=2e-5 * max(1.0, mises.max()))
+
+    # The total Green-Lagrange strain: its determinant is that of F.
+    e = field(grid, "green_lagrange_strain")
+    c = 2 * np.stack([e[:, [0, 3, 5]], e[:, [3, 1, 4]], e[:, [5, 4, 2]]], axis=1) + np.eye(3)
+    assert np.allclose(np.sqrt(np.linalg.det(c)), j * theta[0] * theta[1], rtol=1e-4)
+
+    # The surface is closed, looks outwards, and holds the same volume.
+    walls = read(run / "vtk" / "walls" / f"state-{number:04}.vtp")
+    edges = vtk.vtkFeatureEdges()
+    edges.SetInputData(walls)
+    edges.BoundaryEdgesOn()
+    edges.NonManifoldEdgesOn()
+    edges.FeatureEdgesOff()
+    edges.ManifoldEdgesOff()
+    edges.Update()
+    assert edges.GetOutput().GetNumberOfCells() == 0, "the surface has holes"
+    points = vtk_to_numpy(walls.GetPoints().GetData())
+    quads = vtk_to_numpy(walls.GetPolys().GetConnectivityArray()).reshape(-1, 4)
+    a, b, c, d = (points[quads[:, i]] for i in range(4))
+    six = np.einsum("ni,ni->n", a, np.cross(b, c)) + np.einsum("ni,ni->n", a, np.cross(c, d))
+    close("volume within the surface", six.sum() / 6, volume, 1e-2)
+
+
+def main():
+    run = Path(sys.argv[1])
+    rows = {int(row["step"]): row for row in csv.DictReader(open(run / "history.csv"))}
+    volumes = sorted((run / "vtk" / "volume").glob("state-*.vtu"))
+    assert volumes, "no volumes"
+    for path in volumes:
+        number = int(path.stem.split("-")[1])
+        profile = list(csv.DictReader(open(run / "profiles" / f"{path.stem}.csv")))
+        check_state(run, number, rows[number], profile)
+    for name in ["walls", "volume", "linear"]:
+        text = (run / "vtk" / f"{name}.pvd").read_text()
+        named = [run / "vtk" / part.split('"')[0] for part in text.split('file="')[1:]]
+        assert named and all(path.exists() for path in named), name
+        print(f"{name}.pvd names {len(named)} files")
+
+
+main()
