@@ -24,6 +24,7 @@ fn unsettled() -> Job {
     let job = Job::of("paper-scheme").named("paper-scheme-not-settled");
     job.on(COARSE)
         .with("solver.pseudo_time.settle", false)
+        .with("solver.pseudo_time.hold", 20000)
         .bare()
 }
 

@@ -6,7 +6,7 @@ use super::super::pictures::{panel, tubes};
 use super::super::runs::Runs;
 use super::super::{Figure, Fineness, Trouble};
 use super::ramps::{self, Ramps, outcome};
-use super::{COARSE, axisymmetric, is_folded, mesh, side};
+use super::{COARSE, COARSER, axisymmetric, is_folded, mesh, side};
 
 pub(super) const FIGURE: Figure = Figure {
     name: "fig7",
@@ -44,8 +44,9 @@ fn coarse(case: &'static str) -> Job {
 }
 
 /// The paper's scheme: Newmark with ηD/(EΔτ) = 100, ten pseudo-time steps to each push of 0.01 D.
-fn newmark(case: &'static str) -> Job {
-    let job = coarse(case).named(format!("{case}-newmark")).bare();
+fn newmark(case: &'static str, fineness: Fineness) -> Job {
+    let job = from(case, "ileum-side-coarse").named(format!("{case}-newmark"));
+    let job = job.on(fineness.choose(COARSER, COARSE)).bare();
     job.with("solver.scheme", "\"newmark\"")
         .with("solver.pseudo_time.drag", "100.0")
 }
@@ -60,7 +61,7 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
         let still = coarse(case).named(format!("{case}-static")).bare();
         jobs.push(still.with("solver", "{ scheme = \"static\" }"));
     }
-    jobs.extend(CASES.map(|(_, case, _)| newmark(case)));
+    jobs.extend(CASES.map(|(_, case, _)| newmark(case, fineness)));
     jobs.extend(ramps(fineness).jobs(|case| coarse(case).with("stages[3].steps", 1)));
     jobs
 }
@@ -114,7 +115,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
     ));
     let mut papers = vec![];
     for (panel, case, towards) in CASES {
-        let ran = runs.get(&newmark(case).name)?;
+        let ran = runs.get(&newmark(case, fineness).name)?;
         papers.push((
             format!("{panel}: {}", outcome(ran)?),
             is_folded(ran.last()?, towards),

@@ -32,6 +32,9 @@ fn mesh(fineness: Fineness) -> [usize; 3] {
 /// A mesh for what takes many runs.
 const COARSE: [usize; 3] = [155, 60, 5];
 
+/// A mesh for what takes many solves, in a hurry.
+const COARSER: [usize; 3] = [105, 60, 4];
+
 /// A case on the mesh of axisymmetric tubes.
 fn axisymmetric(case: &'static str, fineness: Fineness) -> Job {
     Job::of(case).on(mesh(fineness))
@@ -40,8 +43,13 @@ fn axisymmetric(case: &'static str, fineness: Fineness) -> Job {
 /// Whether a wall overhangs, and towards which end: told of a state.
 fn side(row: &Row) -> String {
     if row.shape == "invaginated" {
+        let crosses = if row.crosses_itself() {
+            " (the wall has met itself)"
+        } else {
+            ""
+        };
         format!(
-            "invaginated toward the {}, {:.3} D deep",
+            "invaginated toward the {}, {:.3} D deep{crosses}",
             row.side, row.overhang
         )
     } else {
