@@ -32,6 +32,12 @@ pub enum Command {
     /// Write states of a run as files of VTK, for ParaView and PyVista
     #[command(after_long_help = EXPORT_EPILOGUE)]
     Export(ExportArguments),
+    /// Draw states of a run, cut open and coloured by a field
+    #[command(after_long_help = RENDER_EPILOGUE)]
+    Render(RenderArguments),
+    /// Draw the whole path of a run as an animation, the tube above its energy
+    #[command(after_long_help = ANIMATE_EPILOGUE)]
+    Animate(AnimateArguments),
     /// Say whether a case is sound, and what running it would take
     Check {
         /// The case file
@@ -153,6 +159,124 @@ pub struct ExportArguments {
     pub threads: Option<u16>,
 }
 
+/// What `plica render` takes.
+#[derive(Args, Debug)]
+pub struct RenderArguments {
+    /// The directory of a run
+    #[arg(value_name = "RUN_DIR")]
+    pub run: PathBuf,
+    /// Number of a state to draw; given again, they stand one below the other [default: the last saved]
+    #[arg(long, value_name = "N")]
+    pub state: Vec<usize>,
+    /// How it is drawn
+    #[command(flatten)]
+    pub look: LookArguments,
+}
+
+/// What `plica animate` takes.
+#[derive(Args, Debug)]
+pub struct AnimateArguments {
+    /// The directory of a run
+    #[arg(value_name = "RUN_DIR")]
+    pub run: PathBuf,
+    /// States shown in a second
+    #[arg(long, value_name = "N", default_value = "6", value_parser = frames)]
+    pub fps: f64,
+    /// How it is drawn
+    #[command(flatten)]
+    pub look: LookArguments,
+}
+
+/// How states are drawn.
+#[derive(Args, Debug)]
+pub struct LookArguments {
+    /// What the wall is coloured by
+    #[arg(long, value_name = "FIELD", default_value = "energy", value_parser = fields())]
+    pub field: String,
+    /// Angle of the wall that is taken away: 180 is the near half, 90 its upper quarter, 0 nothing
+    #[arg(long, value_name = "DEG", default_value = "180", value_parser = cutaway)]
+    pub cutaway: f64,
+    /// From where: oblique, front, above, colon, ileum, or a direction UP,NEAR,ALONG
+    #[arg(long, value_name = "VIEW", default_value = "oblique", value_parser = view, allow_hyphen_values = true)]
+    pub view: Direction,
+    /// Ends of the colour bar [default: chosen from what is there]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
+    pub range: Option<Ends>,
+    /// Width of the picture in pixels
+    #[arg(long, value_name = "PX", default_value = "1800", value_parser = clap::value_parser!(u16).range(200..=8000))]
+    pub width: u16,
+    /// File to write to [default: in pictures/ of the run]
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Threads to use [default: all cores]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// A direction of the viewer: (up, towards the viewer, along the tube).
+pub type Direction = [f64; 3];
+
+/// The two ends of a colour bar.
+pub type Ends = [f64; 2];
+
+/// The names of fields.
+fn fields() -> clap::builder::PossibleValuesParser {
+    plica::report::Field::ALL.map(|field| field.name()).into()
+}
+
+/// An angle to take away.
+fn cutaway(text: &str) -> Result<f64, String> {
+    match text.strip_suffix("deg").unwrap_or(text).parse::<f64>() {
+        Ok(x) if (0.0..=350.0).contains(&x) => Ok(x),
+        _ => Err("must be an angle from 0 to 350 degrees".into()),
+    }
+}
+
+/// States in a second.
+fn frames(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if (0.1..=60.0).contains(&x) => Ok(x),
+        _ => Err("must be a number from 0.1 to 60".into()),
+    }
+}
+
+/// A direction by name, or three numbers.
+fn view(text: &str) -> Result<Direction, String> {
+    if let Some((_, view)) = crate::render::VIEWS.iter().find(|(name, _)| *name == text) {
+        return Ok(*view);
+    }
+    let names = crate::render::VIEWS.map(|(name, _)| name);
+    let rule = format!(
+        "must be {}, or three numbers UP,NEAR,ALONG, and not along the tube itself",
+        names.join(", ")
+    );
+    let Some(numbers) = numbers::<3>(text) else {
+        return Err(rule);
+    };
+    let aside = numbers[0].hypot(numbers[1]);
+    if aside > 1e-3 * numbers[2].abs() {
+        Ok(numbers)
+    } else {
+        Err(rule)
+    }
+}
+
+/// The ends of a colour bar.
+fn range(text: &str) -> Result<Ends, String> {
+    match numbers::<2>(text) {
+        Some([low, high]) if low < high => Ok([low, high]),
+        _ => Err("must be two numbers LOW,HIGH, the first below the second".into()),
+    }
+}
+
+/// Numbers between commas.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers = text.split(',').map(|word| word.trim().parse::<f64>());
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().ok()?;
+    let finite = numbers.iter().all(|x| x.is_finite());
+    numbers.try_into().ok().filter(|_| finite)
+}
+
 /// A tolerance that can be reached.
 fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -169,6 +293,8 @@ Examples:
   plica run tube.toml -o again -t 4
   plica stability runs/tube      where does its path become unstable, and how?
   plica verify                   is this program right?
+  plica render runs/tube         its last state as a picture
+  plica animate runs/tube        its whole path as an animation
   plica export runs/tube         its states for ParaView
   plica reproduce fig4           a figure of the paper, beside what the paper reports
 
@@ -258,3 +384,19 @@ stretches with their directions, and Green-Lagrange strain; docs/run-directory.m
 written before stay in the collections.
 
 Ctrl-C or SIGTERM ends it after the file at hand.";
+
+const RENDER_EPILOGUE: &str = "\
+Examples:
+  plica render runs/tube --state 15 --state 40 --field von-mises
+  plica render runs/tube --cutaway 90 --view colon --out figure.png
+  plica render runs/tube --view 0.2,1,-0.5 --range 0,0.1 --width 3600
+
+Without --out the picture goes to pictures/ in the directory of the run, named by field and states. Needs no display.";
+
+const ANIMATE_EPILOGUE: &str = "\
+One picture per saved state, all of one scale and one colour bar; the last stays longer. The file is an animated PNG: browsers
+play it, slides and web pages take it, and programs that know no animation show the first state. Where ffmpeg is at hand,
+  ffmpeg -i energy-path.apng -pix_fmt yuv420p energy.mp4
+makes a film of it.
+
+Ctrl-C or SIGTERM ends it after the pictures at hand, with nothing written.";

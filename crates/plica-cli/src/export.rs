@@ -2,46 +2,33 @@
 
 use crate::args::ExportArguments;
 use crate::failure::Failure;
+use crate::finished::Finished;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
-use crate::{case_file, console, threads};
+use crate::{console, threads};
 use plica::export::{Exporter, What};
-use plica::study::{Plan, Row, RunDirectory, SavedState};
+use plica::study::RunDirectory;
 use plica::vtk::collection;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Writes states of a run as files of VTK.
 pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
-    let directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
-    let saved = directory
-        .numbered("states", "safetensors")
-        .map_err(Failure::Study)?;
-    let Some((&last, _)) = saved.last_key_value() else {
-        return Err(Failure::Usage(format!(
-            "{}: the run has saved no states; set output.states_every in its case and run it again",
-            arguments.run.display()
-        )));
-    };
-    for state in &arguments.state {
-        if !saved.contains_key(state) {
-            return Err(Failure::Usage(format!(
-                "state {state} is not saved in {}; these are: {}",
-                arguments.run.display(),
-                listed(&saved)
-            )));
-        }
-    }
+    let run = Finished::open(&arguments.run)?;
+    run.has(&arguments.state)?;
     threads::limit(arguments.threads)?;
-    let plan = case_file::of_run(&directory)?;
-    let rows = directory.history().map_err(Failure::Study)?;
+    let last = run.last();
     let chosen = |state: usize| match (arguments.all, arguments.state.as_slice()) {
         (true, _) => true,
         (_, []) => state == last,
         (_, states) => states.contains(&state),
     };
-    let mut files: Vec<(What, usize)> = saved.keys().map(|&state| (What::Walls, state)).collect();
-    for state in saved.keys().copied().filter(|&state| chosen(state)) {
+    let mut files: Vec<(What, usize)> = run
+        .saved
+        .keys()
+        .map(|&state| (What::Walls, state))
+        .collect();
+    for state in run.saved.keys().copied().filter(|&state| chosen(state)) {
         files.push((What::Volume, state));
         if arguments.linear {
             files.push((What::Linear, state));
@@ -52,15 +39,12 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let mut ticker = Ticker::new(interrupt);
     console::tell(&format!(
         "{}\nstates of {}",
-        plan.title,
+        run.plan.title,
         arguments.run.display()
     ));
     let mut work = Work {
-        exporter: Exporter::new(&plan),
-        plan: &plan,
-        directory: &directory,
-        saved: &saved,
-        rows: &rows,
+        exporter: Exporter::new(&run.plan),
+        run: &run,
         written: BTreeMap::new(),
     };
     for (done, &(what, state)) in files.iter().enumerate() {
@@ -74,7 +58,7 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let stopped = ticker.stop();
     ticker.finish();
     for what in work.written.keys() {
-        collect(&directory, *what)?;
+        collect(&run.directory, *what)?;
     }
     let mut text = String::new();
     for (what, (files, bytes)) in &work.written {
@@ -97,30 +81,18 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
 /// What it takes to write a file, and what is written.
 struct Work<'a> {
     exporter: Exporter,
-    plan: &'a Plan,
-    directory: &'a RunDirectory,
-    saved: &'a BTreeMap<usize, PathBuf>,
-    rows: &'a [Row],
+    run: &'a Finished,
     /// Files and bytes of each kind.
     written: BTreeMap<What, (usize, usize)>,
 }
 
 impl Work<'_> {
     fn write(&mut self, what: What, number: usize) -> Result<(), Failure> {
-        let path = &self.saved[&number];
-        let trouble =
-            |why: &dyn std::fmt::Display| Failure::Files(format!("{}: {why}", path.display()));
-        let state = SavedState::read(path).map_err(|error| trouble(&error))?;
-        state
-            .belongs_to(self.plan)
-            .map_err(|error| trouble(&error))?;
-        let row = self.rows.iter().find(|row| row.step == number);
-        let row = row.ok_or_else(|| trouble(&"history.csv has no such state"))?;
-        let bytes = self.exporter.bytes(what, &state, row);
+        let (state, row) = self.run.state(number)?;
+        let bytes = self.exporter.bytes(what, &state, &row);
         let name = format!("{}/state-{number:04}.{}", folder(what), what.ending());
-        self.directory
-            .write(&name, &bytes)
-            .map_err(Failure::Study)?;
+        let written = self.run.directory.write(&name, &bytes);
+        written.map_err(Failure::Study)?;
         let (files, size) = self.written.entry(what).or_default();
         (*files, *size) = (*files + 1, *size + bytes.len());
         Ok(())
@@ -151,15 +123,4 @@ fn collect(directory: &RunDirectory, what: What) -> Result<(), Failure> {
     directory
         .write(&collection_of(what), text.as_bytes())
         .map_err(Failure::Study)
-}
-
-/// The numbers of saved states, in few words.
-fn listed(saved: &BTreeMap<usize, PathBuf>) -> String {
-    let numbers: Vec<String> = saved.keys().map(ToString::to_string).collect();
-    match numbers.as_slice() {
-        [first, .., last] if numbers.len() > 12 => {
-            format!("{} of them from {first} to {last}", numbers.len())
-        }
-        _ => numbers.join(", "),
-    }
 }

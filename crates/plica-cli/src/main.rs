@@ -7,11 +7,13 @@ mod check;
 mod console;
 mod export;
 mod failure;
+mod finished;
 mod interrupt;
 mod message;
 mod new;
 mod pages;
 mod progress;
+mod render;
 mod reproduce;
 mod run;
 mod stability;
@@ -38,6 +40,8 @@ fn main() -> ExitCode {
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Command::Export(arguments) => export::export(&arguments),
+        Command::Render(arguments) => render::render(&arguments),
+        Command::Animate(arguments) => render::animate(&arguments),
         Command::Check { case } => check::check(&case),
         Command::New { file } => new::new(&file),
         Command::Completions { shell } => new::completions(shell),

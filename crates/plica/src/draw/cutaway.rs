@@ -54,6 +54,8 @@ pub struct Cutaway {
     pub map: Map,
     /// Direction of the viewer in the tube's coordinates; any but along z.
     pub toward: [f64; 3],
+    /// Points that every panel makes room for beside its own: of all pictures of an animation.
+    pub room: Vec<[f64; 3]>,
     /// Printed width in points.
     pub width_pt: f64,
 }
@@ -67,6 +69,7 @@ impl Default for Cutaway {
             range: Range::Automatic,
             map: Map::default(),
             toward: [0.42, 1.0, -0.35],
+            room: Vec::new(),
             width_pt: 510.0,
         }
     }
@@ -156,6 +159,15 @@ impl Cutaway {
         canvas.finish()?.to_png(self.width_pt * 25.4 / 72.0)
     }
 
+    /// The values at the two ends of the colour bar.
+    ///
+    /// # Errors
+    /// As [`Cutaway::png`].
+    pub fn ends(&self) -> Result<(f64, f64), DrawError> {
+        let scale = self.scale()?;
+        Ok((scale.low, scale.high))
+    }
+
     /// Start and length of what the panels cover along a direction.
     pub(super) fn extent<'a>(
         &self,
@@ -163,6 +175,7 @@ impl Cutaway {
         direction: [f64; 3],
     ) -> Result<(f64, f64), DrawError> {
         let points = panels.flat_map(|p| &p.surfaces).flat_map(|s| &s.points);
+        let points = points.chain(&self.room);
         let (low, high) = ends(points.map(|&p| dot(p, direction)));
         if high > low {
             Ok((low, high - low))

@@ -15,6 +15,7 @@
 //! | `label` | `*z*/*D*`, `*L*_{max}`, `10^{−3}` |
 //! | `canvas` | lines and texts on a page measured in points; the one file that names kuva |
 //! | [`image`] | pixels, and PNG in and out |
+//! | `animation` | pictures that follow each other |
 //!
 //! Every picture is plain data with a `png(width_px)` method; nothing here reads a file, prints, or knows a model.
 //! Lengths on a page are points (1/72 inch), so that texts of 8 and 9 points come out as such in a journal's column.
@@ -30,6 +31,7 @@
 //! assert!(chart.png(900).is_ok());
 //! ```
 
+mod animation;
 mod canvas;
 pub mod chart;
 pub mod colour;
@@ -45,6 +47,7 @@ pub mod raster;
 pub mod section;
 mod ticks;
 
+pub use animation::animation;
 pub use chart::{Chart, Curve, Marker, Rule, Stroke};
 pub use colour::Map;
 pub use cutaway::{Cutaway, Panel, Range};

@@ -1,22 +1,65 @@
 //! A tube cut open, as a picture shows it.
 
+use super::Field;
 use crate::assembly::{Point, SplineTube};
 use crate::draw::{Opening, Surface};
 use crate::tube::Load;
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
-/// Position (z, x, y) and strain energy density.
+/// What of a tube is shown, and what it is coloured by.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// How much of the wall is taken away, and how finely the rest is drawn.
+    pub opening: Opening,
+    /// Its colour.
+    pub field: Field,
+    /// By how much values are multiplied.
+    pub factor: f64,
+}
+
+/// Position (z, x, y) and the value of the field.
 type Sampled = ([f64; 3], f64);
+
+impl Look {
+    /// The near half taken away, coloured by strain energy density.
+    pub fn half(tube: &SplineTube) -> Self {
+        Self {
+            opening: Opening {
+                points: [2 * tube.axial.elements() + 1, 97, 13],
+                ..Opening::HALF
+            },
+            field: Field::EnergyDensity,
+            factor: 1.0,
+        }
+    }
+
+    /// With an angle of the wall taken away, in degrees: 180 the near half, 90 its upper quarter, 0 nothing.
+    #[must_use]
+    pub fn cut(mut self, degrees: f64) -> Self {
+        self.opening.kept = (degrees.to_radians(), TAU);
+        let around = 1.0 + 192.0 * (1.0 - degrees / 360.0);
+        self.opening.points[1] = around as usize;
+        self
+    }
+}
 
 /// The surfaces of a tube with its near half taken away, coloured by strain energy density; the
 /// meridian at the angle `upwards` is uppermost.
 pub fn opened(tube: &SplineTube, load: &Load, u: &[f64], upwards: f64) -> Vec<Surface> {
+    looked_at(tube, load, u, upwards, &Look::half(tube))
+}
+
+/// The surfaces of a tube; the meridian at the angle `upwards` is uppermost.
+pub fn looked_at(
+    tube: &SplineTube,
+    load: &Load,
+    u: &[f64],
+    upwards: f64,
+    look: &Look,
+) -> Vec<Surface> {
     let along = tube.axial.elements();
-    let opening = Opening {
-        points: [2 * along + 1, 97, 13],
-        ..Opening::HALF
-    };
     let sample = |zeta: f64, angle: f64, xi: f64| {
         let at = zeta * along as f64;
         let element = (at as usize).min(along - 1);
@@ -24,14 +67,12 @@ pub fn opened(tube: &SplineTube, load: &Load, u: &[f64], upwards: f64) -> Vec<Su
         let z = from + (to - from) * (at - element as f64);
         let radius = tube.tube.inner_radius() + xi * tube.tube.thickness;
         let sample = tube.sample(load, u, Point { z, radius, angle });
-        // What rounding leaves of a wall without stress is no energy.
-        let density = sample.energy_density;
-        (sample.position, if density < 1e-12 { 0.0 } else { density })
+        (sample.position, look.factor * look.field.of(&sample))
     };
     // Where every meridian is the same, one is sampled and turned.
     let axisymmetric = tube.sector.rings == 1;
     let known: RefCell<HashMap<[u64; 2], Sampled>> = RefCell::default();
-    opening.surfaces(|zeta, angle, xi| {
+    look.opening.surfaces(|zeta, angle, xi| {
         if !axisymmetric {
             let ([z, x, y], value) = sample(zeta, angle + upwards, xi);
             let (sin, cos) = upwards.sin_cos();

@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
 /// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
 /// | `*.png` | pictures |
+/// | `pictures/` | states and paths drawn on request |
 /// | `vtk/` | states as files of VTK, in a folder and a collection for each kind |
 /// | `imperfections/mode-NN.safetensors` | a mode that imperfection NN has the shape of |
 /// | `stability.csv`, `eigenvalues.csv`, `eigenpairs.csv`, `modes/` | what a test of stability found |
@@ -346,6 +347,13 @@ fn clear(path: &Path) -> Result<(), StudyError> {
         let mine = |file: &Path, ending| number_of_state(file, ending).is_some();
         old.extend(files(&path.join(folder)).filter(|f| mine(f, ending) || mine(f, "part")));
     }
+    old.extend(files(&path.join("pictures")).filter(|file| {
+        let name = file
+            .file_name()
+            .and_then(|name| name.to_str())
+            .unwrap_or_default();
+        name.contains("-state-") && name.ends_with(".png") || name.ends_with("-path.apng")
+    }));
     old.extend(["walls", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))));
     old.push(path.join(MANIFEST));
     remove(old)
@@ -442,7 +450,7 @@ mod tests {
     fn a_former_run_is_replaced_when_asked_and_other_files_stay() {
         let path = scratch("former-run");
         RunDirectory::create(&path, "first", false).unwrap();
-        for folder in ["profiles", "states", "vtk/walls"] {
+        for folder in ["profiles", "states", "vtk/walls", "pictures"] {
             fs::create_dir_all(path.join(folder)).unwrap();
         }
         for name in [
@@ -456,6 +464,9 @@ mod tests {
             "vtk/walls/state-0003.vtp",
             "vtk/walls.pvd",
             "vtk/mine.vtu",
+            "pictures/energy-state-0003.png",
+            "pictures/energy-path.apng",
+            "pictures/mine.png",
         ] {
             fs::write(path.join(name), name).unwrap();
         }
@@ -468,6 +479,8 @@ mod tests {
         assert!(stays("states/mine.safetensors") && !stays("states/state-0004.part"));
         assert!(!stays("energy.png") && !stays("profiles/state-0003.csv"));
         assert!(!stays("states/state-0003.safetensors"));
+        assert!(stays("pictures/mine.png") && !stays("pictures/energy-path.apng"));
+        assert!(!stays("pictures/energy-state-0003.png"));
         assert!(stays("vtk/mine.vtu") && !stays("vtk/walls.pvd"));
         assert!(!stays("vtk/walls/state-0003.vtp"));
         fs::remove_dir_all(path).unwrap();

@@ -1,0 +1,85 @@
+//! A run that is there: its plan, its history and its saved states.
+
+use crate::case_file;
+use crate::failure::Failure;
+use plica::study::{Plan, Row, RunDirectory, SavedState};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A run that is there.
+pub struct Finished {
+    /// Its directory.
+    pub directory: RunDirectory,
+    /// What was computed.
+    pub plan: Plan,
+    /// Its accepted states.
+    pub rows: Vec<Row>,
+    /// The files of its saved states, by their numbers; at least one.
+    pub saved: BTreeMap<usize, PathBuf>,
+}
+
+impl Finished {
+    /// Opens the directory of a run.
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        let directory = RunDirectory::open(path).map_err(Failure::Study)?;
+        let saved = directory
+            .numbered("states", "safetensors")
+            .map_err(Failure::Study)?;
+        if saved.is_empty() {
+            return Err(Failure::Usage(format!(
+                "{}: the run has saved no states; set output.states_every in its case and run it again",
+                path.display()
+            )));
+        }
+        let plan = case_file::of_run(&directory)?;
+        let rows = directory.history().map_err(Failure::Study)?;
+        Ok(Self {
+            directory,
+            plan,
+            rows,
+            saved,
+        })
+    }
+
+    /// The number of the last saved state.
+    pub fn last(&self) -> usize {
+        self.saved.last_key_value().map_or(0, |(&number, _)| number)
+    }
+
+    /// Refuses numbers of states that are not saved.
+    pub fn has(&self, states: &[usize]) -> Result<(), Failure> {
+        match states.iter().find(|state| !self.saved.contains_key(state)) {
+            None => Ok(()),
+            Some(state) => Err(Failure::Usage(format!(
+                "state {state} is not saved in {}; these are: {}",
+                self.directory.path().display(),
+                self.listed()
+            ))),
+        }
+    }
+
+    /// A saved state, and its row.
+    pub fn state(&self, number: usize) -> Result<(SavedState, Row), Failure> {
+        let path = &self.saved[&number];
+        let trouble =
+            |why: &dyn std::fmt::Display| Failure::Files(format!("{}: {why}", path.display()));
+        let state = SavedState::read(path).map_err(|error| trouble(&error))?;
+        state
+            .belongs_to(&self.plan)
+            .map_err(|error| trouble(&error))?;
+        let row = self.rows.iter().find(|row| row.step == number);
+        let row = row.ok_or_else(|| trouble(&"history.csv has no such state"))?;
+        Ok((state, row.clone()))
+    }
+
+    /// The numbers of saved states, in few words.
+    fn listed(&self) -> String {
+        let numbers: Vec<String> = self.saved.keys().map(ToString::to_string).collect();
+        match numbers.as_slice() {
+            [first, .., last] if numbers.len() > 12 => {
+                format!("{} of them from {first} to {last}", numbers.len())
+            }
+            _ => numbers.join(", "),
+        }
+    }
+}

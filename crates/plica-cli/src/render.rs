@@ -1,0 +1,116 @@
+//! `plica render` and `plica animate`.
+
+use crate::args::{AnimateArguments, LookArguments, RenderArguments};
+use crate::failure::Failure;
+use crate::finished::Finished;
+use crate::interrupt::Interrupt;
+use crate::ticker::Ticker;
+use crate::{console, threads};
+use plica::draw::DrawError;
+use plica::report::{self, Appearance, Field, Shown};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// Directions of the viewer that have a name: (up, towards the viewer, along the tube).
+pub const VIEWS: [(&str, [f64; 3]); 5] = [
+    ("oblique", [0.42, 1.0, -0.35]),
+    ("front", [0.0, 1.0, 0.0]),
+    ("above", [1.0, 0.35, 0.0]),
+    ("colon", [0.3, 0.5, -1.0]),
+    ("ileum", [0.3, 0.5, 1.0]),
+];
+
+/// The most states in one picture: more are too small to see.
+const MOST: usize = 12;
+
+/// Draws states of a run.
+pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
+    let run = Finished::open(&arguments.run)?;
+    run.has(&arguments.state)?;
+    if arguments.state.len() > MOST {
+        return Err(Failure::Usage(format!(
+            "{} states in one picture are too many to see; {MOST} at most",
+            arguments.state.len()
+        )));
+    }
+    threads::limit(arguments.look.threads)?;
+    let numbers = match arguments.state.as_slice() {
+        [] => vec![run.last()],
+        states => states.to_vec(),
+    };
+    let look = appearance(&arguments.look);
+    let states: Result<Vec<Shown>, Failure> = numbers.iter().map(|&n| run.state(n)).collect();
+    let png = report::render(&run.plan, &states?, &look).map_err(trouble)?;
+    let names: Vec<String> = numbers.iter().map(|n| format!("{n:04}")).collect();
+    let usual = format!("{}-state-{}.png", look.field.name(), names.join("-"));
+    write(&run, arguments.look.out.as_deref(), &usual, &png)
+}
+
+/// Draws the whole path of a run as a picture that moves.
+pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
+    let run = Finished::open(&arguments.run)?;
+    threads::limit(arguments.look.threads)?;
+    let look = appearance(&arguments.look);
+    let interrupt = Interrupt::listen()
+        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
+    let numbers: Vec<usize> = run.saved.keys().copied().collect();
+    let states: Result<Vec<Shown>, Failure> = numbers.iter().map(|&n| run.state(n)).collect();
+    let states = states?;
+    let ticker = Mutex::new(Ticker::new(interrupt));
+    let told = |done: usize| {
+        let mut ticker = ticker.lock().unwrap_or_else(|e| e.into_inner());
+        ticker.working("drawing", done as f64 / states.len() as f64);
+        !ticker.stop()
+    };
+    let seconds = 1.0 / arguments.fps;
+    let drawn = report::animate(&run.plan, &states, &run.rows, &look, seconds, &told);
+    ticker
+        .into_inner()
+        .unwrap_or_else(|e| e.into_inner())
+        .finish();
+    match drawn.map_err(trouble)? {
+        Some(bytes) => {
+            let usual = format!("{}-path.apng", look.field.name());
+            write(&run, arguments.look.out.as_deref(), &usual, &bytes)
+        }
+        None => Err(Failure::Interrupted("interrupted; nothing is written")),
+    }
+}
+
+fn appearance(arguments: &LookArguments) -> Appearance {
+    let field = Field::ALL
+        .into_iter()
+        .find(|field| field.name() == arguments.field);
+    Appearance {
+        field: field.unwrap_or_default(),
+        cutaway: arguments.cutaway,
+        toward: arguments.view,
+        range: arguments.range,
+        width: usize::from(arguments.width),
+    }
+}
+
+fn trouble(error: DrawError) -> Failure {
+    Failure::Usage(error.to_string())
+}
+
+/// Writes a picture where it was asked for, or else beside the run's own.
+fn write(run: &Finished, out: Option<&Path>, usual: &str, bytes: &[u8]) -> Result<(), Failure> {
+    let path: PathBuf = match out {
+        Some(path) => {
+            std::fs::write(path, bytes)
+                .map_err(|error| Failure::Files(format!("{}: {error}", path.display())))?;
+            path.to_owned()
+        }
+        None => {
+            let name = format!("pictures/{usual}");
+            run.directory.write(&name, bytes).map_err(Failure::Study)?;
+            run.directory.path().join(name)
+        }
+    };
+    console::say(&format!(
+        "written to {} ({:.1} MB)\n",
+        path.display(),
+        bytes.len() as f64 * 1e-6
+    ))
+}

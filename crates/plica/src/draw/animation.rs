@@ -1,0 +1,86 @@
+//! Pictures that follow each other, as an animated PNG: browsers and slides show it, and any other program its first picture.
+
+use super::{DrawError, Image};
+
+/// How much longer than the others the last picture stays.
+const REST: f64 = 8.0;
+
+/// The bytes of an animated PNG that begins anew again and again, each picture shown for so many seconds.
+///
+/// # Errors
+/// [`DrawError::Empty`] without pictures, [`DrawError::Backend`] if they differ in size or the encoder refuses.
+pub fn animation(frames: &[Image], seconds: f64) -> Result<Vec<u8>, DrawError> {
+    let Some(first) = frames.first() else {
+        return Err(DrawError::Empty { what: "animation" });
+    };
+    let backend = |e: png::EncodingError| DrawError::Backend(e.to_string());
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, first.width as u32, first.height as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Balanced);
+    encoder
+        .set_animated(frames.len() as u32, 0)
+        .map_err(backend)?;
+    let mut writer = encoder.write_header().map_err(backend)?;
+    for (i, frame) in frames.iter().enumerate() {
+        if (frame.width, frame.height) != (first.width, first.height) {
+            return Err(DrawError::Backend(format!(
+                "picture {i} is of {} x {} pixels, the first of {} x {}",
+                frame.width, frame.height, first.width, first.height
+            )));
+        }
+        let last = i + 1 == frames.len();
+        let milliseconds = 1e3 * seconds * if last { REST } else { 1.0 };
+        let milliseconds = milliseconds.round().clamp(1.0, 65_535.0) as u16;
+        writer
+            .set_frame_delay(milliseconds, 1000)
+            .map_err(backend)?;
+        writer
+            .write_image_data(frame.pixels.as_flattened())
+            .map_err(backend)?;
+    }
+    writer.finish().map_err(backend)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_picture_comes_back() {
+        let picture = |shade: u8| {
+            let mut image = Image::white(20.0, 16.0).unwrap();
+            image.pixels[5] = [shade, 1, 2];
+            image
+        };
+        let frames = [picture(10), picture(20), picture(30)];
+        let bytes = animation(&frames, 0.1).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
+            .read_info()
+            .unwrap();
+        let control = reader.info().animation_control.unwrap();
+        assert_eq!((control.num_frames, control.num_plays), (3, 0));
+        for frame in &frames {
+            let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut pixels).unwrap();
+            assert_eq!(pixels, frame.pixels.as_flattened());
+        }
+        let delay = reader.info().frame_control.unwrap();
+        assert_eq!((delay.delay_num, delay.delay_den), (800, 1000));
+    }
+
+    #[test]
+    fn pictures_of_two_sizes_are_an_error() {
+        let frames = [
+            Image::white(20.0, 16.0).unwrap(),
+            Image::white(21.0, 16.0).unwrap(),
+        ];
+        assert!(matches!(
+            animation(&frames, 0.1),
+            Err(DrawError::Backend(_))
+        ));
+        assert!(matches!(animation(&[], 0.1), Err(DrawError::Empty { .. })));
+    }
+}

@@ -1,0 +1,122 @@
+//! Fields that a picture may be coloured by.
+
+use crate::assembly::Sample;
+use crate::study::{Plan, Scale};
+
+/// A number at every point of the wall.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Field {
+    /// Strain energy density w, per grown volume.
+    #[default]
+    EnergyDensity,
+    /// Von Mises stress.
+    VonMises,
+    /// Mean pressure −tr σ/3.
+    Pressure,
+    /// Elastic change of volume, det Fe.
+    VolumeChange,
+    /// Largest principal stretch of Fe.
+    LargestStretch,
+    /// Smallest principal stretch of Fe.
+    SmallestStretch,
+    /// Grown over ungrown length along, θζ.
+    GrownAlong,
+    /// Grown over ungrown length around, θη.
+    GrownAround,
+    /// How far a point has moved from where it was at rest.
+    Displacement,
+}
+
+/// Energy densities below this, in E, are what rounding leaves of a wall without stress.
+const NOTHING: f64 = 1e-12;
+
+impl Field {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::EnergyDensity,
+        Self::VonMises,
+        Self::Pressure,
+        Self::VolumeChange,
+        Self::LargestStretch,
+        Self::SmallestStretch,
+        Self::GrownAlong,
+        Self::GrownAround,
+        Self::Displacement,
+    ];
+
+    /// What it is asked for by.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::EnergyDensity => "energy",
+            Self::VonMises => "von-mises",
+            Self::Pressure => "pressure",
+            Self::VolumeChange => "det-fe",
+            Self::LargestStretch => "largest-stretch",
+            Self::SmallestStretch => "smallest-stretch",
+            Self::GrownAlong => "theta-zeta",
+            Self::GrownAround => "theta-eta",
+            Self::Displacement => "displacement",
+        }
+    }
+
+    /// Its value at a point, dimensionless.
+    pub fn of(self, sample: &Sample) -> f64 {
+        let s = sample.stress.0;
+        let stretch = |i: usize| {
+            let left = sample.elastic.times(sample.elastic.transpose());
+            left.eigenpairs()[i].0.max(0.0).sqrt()
+        };
+        match self {
+            Self::EnergyDensity if sample.energy_density < NOTHING => 0.0,
+            Self::EnergyDensity => sample.energy_density,
+            Self::VonMises => {
+                let pairs = [(0, 1), (1, 2), (2, 0)];
+                let apart = pairs.map(|(i, j)| (s[i][i] - s[j][j]).powi(2));
+                let shear = pairs.map(|(i, j)| s[i][j].powi(2));
+                (0.5 * apart.iter().sum::<f64>() + 3.0 * shear.iter().sum::<f64>()).sqrt()
+            }
+            Self::Pressure => -(s[0][0] + s[1][1] + s[2][2]) / 3.0,
+            Self::VolumeChange => sample.jacobian,
+            Self::LargestStretch => stretch(0),
+            Self::SmallestStretch => stretch(2),
+            Self::GrownAlong => sample.grown[0],
+            Self::GrownAround => sample.grown[1],
+            Self::Displacement => {
+                let moved = [0, 1, 2].map(|i| sample.position[i] - sample.reference[i]);
+                moved.iter().map(|x| x * x).sum::<f64>().sqrt()
+            }
+        }
+    }
+
+    /// What it is called beside a colour bar, with its unit, and by how much its values are to be multiplied.
+    pub fn label(self, plan: &Plan) -> (String, f64) {
+        let scale = Scale::of(plan.units.as_ref());
+        let bare = plan.units.is_none();
+        let stress = |name: &str, letter: &str| {
+            if bare {
+                (format!("{name} {letter}/*E*"), 1.0)
+            } else {
+                (
+                    format!("{name} {letter} ({})", scale.stress_name),
+                    scale.stress,
+                )
+            }
+        };
+        let plain = |name: &str| (name.to_owned(), 1.0);
+        match self {
+            Self::EnergyDensity => stress("strain energy density", "*w*"),
+            Self::VonMises => stress("von Mises stress", "*σ*_{v}"),
+            Self::Pressure => stress("pressure in the wall", "*p*"),
+            Self::VolumeChange => plain("elastic change of volume det *F*_{e}"),
+            Self::LargestStretch => plain("largest elastic stretch *λ*_{1}"),
+            Self::SmallestStretch => plain("smallest elastic stretch *λ*_{3}"),
+            Self::GrownAlong => plain("grown length along *θ*_{ζ}"),
+            Self::GrownAround => plain("grown length around *θ*_{η}"),
+            Self::Displacement if bare => plain("displacement/*D*"),
+            Self::Displacement => {
+                let unit = scale.length_name.replace("um", "µm");
+                (format!("displacement ({unit})"), scale.length)
+            }
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Pictures of single states, and the whole path as one that moves.
+
+use super::Field;
+use super::opened::{Look, looked_at};
+use crate::assembly::SplineTube;
+use crate::draw::{Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, animation};
+use crate::study::{Plan, Row, SavedState, Scale};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// How states are shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Appearance {
+    /// What they are coloured by.
+    pub field: Field,
+    /// Degrees of the wall that are taken away, 0 to 350.
+    pub cutaway: f64,
+    /// Direction of the viewer: (up, towards the viewer, along the tube).
+    pub toward: [f64; 3],
+    /// Ends of the colour bar, if not chosen from what is there.
+    pub range: Option<[f64; 2]>,
+    /// Width in pixels.
+    pub width: usize,
+}
+
+impl Default for Appearance {
+    fn default() -> Self {
+        Self {
+            field: Field::default(),
+            cutaway: 180.0,
+            toward: Cutaway::default().toward,
+            range: None,
+            width: 1800,
+        }
+    }
+}
+
+/// A state with its row of the history.
+pub type Shown = (SavedState, Row);
+
+/// States, one below the other, under one colour bar.
+///
+/// # Errors
+/// [`DrawError`] for sizes and ranges that are none.
+pub fn render(plan: &Plan, states: &[Shown], look: &Appearance) -> Result<Vec<u8>, DrawError> {
+    let tube = spline_tube(plan);
+    let finest = look_of(&tube, plan, look);
+    let panels = states.par_iter().map(|(state, row)| Panel {
+        label: label(row),
+        surfaces: surfaces(&tube, state, row, &finest),
+    });
+    picture(plan, panels.collect(), look).png(look.width)
+}
+
+/// The tube above its energy, state after state, as an animated PNG; `told` hears how many frames are done, and says
+/// whether to go on.
+///
+/// # Errors
+/// [`DrawError`] for sizes and ranges that are none; none and no bytes if it was not to go on.
+pub fn animate(
+    plan: &Plan,
+    states: &[Shown],
+    rows: &[Row],
+    look: &Appearance,
+    seconds: f64,
+    told: &(dyn Fn(usize) -> bool + Sync),
+) -> Result<Option<Vec<u8>>, DrawError> {
+    let tube = spline_tube(plan);
+    let finest = look_of(&tube, plan, look);
+    // A coarse look at all states for the frame and the colours that they share.
+    let mut coarse = finest;
+    coarse.opening.points = [tube.axial.elements() + 1, 33, 5];
+    let all: Vec<Panel> = states
+        .par_iter()
+        .map(|(state, row)| Panel {
+            label: String::new(),
+            surfaces: surfaces(&tube, state, row, &coarse),
+        })
+        .collect();
+    let points = || {
+        all.iter()
+            .flat_map(|panel| &panel.surfaces)
+            .flat_map(|s| &s.points)
+    };
+    let whole = picture(plan, all.clone(), look);
+    let (low, high) = whole.ends()?;
+    let room: Vec<[f64; 3]> = points().copied().collect();
+    let frame_look = Appearance {
+        range: Some([low, high]),
+        ..*look
+    };
+    let done = AtomicUsize::new(0);
+    let frames: Result<Vec<Option<Image>>, DrawError> = states
+        .par_iter()
+        .map(|(state, row)| {
+            if !told(done.load(Ordering::Relaxed)) {
+                return Ok(None);
+            }
+            let panel = Panel {
+                label: label(row),
+                surfaces: surfaces(&tube, state, row, &finest),
+            };
+            let tube = Cutaway {
+                room: room.clone(),
+                ..picture(plan, vec![panel], &frame_look)
+            };
+            let tube = Image::from_png(&tube.png(look.width)?)?;
+            let energy = Image::from_png(&energy(plan, rows, row).png(look.width)?)?;
+            done.fetch_add(1, Ordering::Relaxed);
+            Image::stacked(&[tube, energy]).map(Some)
+        })
+        .collect();
+    let frames: Option<Vec<Image>> = frames?.into_iter().collect();
+    frames.map(|frames| animation(&frames, seconds)).transpose()
+}
+
+fn spline_tube(plan: &Plan) -> SplineTube {
+    SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry))
+}
+
+fn look_of(tube: &SplineTube, plan: &Plan, look: &Appearance) -> Look {
+    Look {
+        field: look.field,
+        factor: look.field.label(plan).1,
+        ..Look::half(tube).cut(look.cutaway)
+    }
+}
+
+fn surfaces(
+    tube: &SplineTube,
+    state: &SavedState,
+    row: &Row,
+    look: &Look,
+) -> Vec<crate::draw::Surface> {
+    let upwards = row.departure_angle_deg.to_radians();
+    looked_at(tube, &state.load, &state.u, upwards, look)
+}
+
+fn picture(plan: &Plan, panels: Vec<Panel>, look: &Appearance) -> Cutaway {
+    Cutaway {
+        title: plan.title.clone(),
+        panels,
+        value_label: look.field.label(plan).0,
+        toward: look.toward,
+        range: match look.range {
+            Some([low, high]) => Range::Given(low, high),
+            None => Range::Automatic,
+        },
+        ..Cutaway::default()
+    }
+}
+
+/// What a state is called.
+fn label(row: &Row) -> String {
+    format!(
+        "state {}: *D*_{{min}}/*D* = {:.2}, *L*_{{max}}/*L* = {:.2} ({})",
+        row.step, row.diameter_ratio, row.length_ratio, row.shape
+    )
+}
+
+/// The energy of all states, one of them marked.
+fn energy(plan: &Plan, rows: &[Row], at: &Row) -> Chart {
+    let scale = Scale::of(plan.units.as_ref());
+    let y_label = match &plan.units {
+        None => "strain energy *W*/(*E* *D*^{3})".to_owned(),
+        Some(_) => format!(
+            "strain energy *W* ({})",
+            scale.energy_name.replace('u', "µ")
+        ),
+    };
+    let place = |row: &Row| (row.step as f64, row.energy);
+    let begin = rows
+        .windows(2)
+        .filter(|pair| pair[0].stage != pair[1].stage);
+    let rules = begin.map(|pair| Rule {
+        at: pair[0].step as f64,
+        label: pair[1].stage.clone(),
+    });
+    let highest = rows.iter().map(|row| row.energy).fold(0.0, f64::max);
+    Chart {
+        x_label: "state".into(),
+        y_label,
+        curves: vec![Curve {
+            points: rows.iter().map(place).collect(),
+            colour: 1,
+            ..Curve::default()
+        }],
+        markers: vec![Marker {
+            at: place(at),
+            label: String::new(),
+            colour: 2,
+        }],
+        rules: rules.collect(),
+        y_range: (highest > 0.0).then_some((0.0, 1.1 * highest)),
+        proportion: 0.3,
+        width_pt: Cutaway::default().width_pt,
+        ..Chart::default()
+    }
+}
