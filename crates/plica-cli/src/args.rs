@@ -203,7 +203,7 @@ pub struct LookArguments {
     #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<Ends>,
     /// Width of the picture in pixels
-    #[arg(long, value_name = "PX", default_value = "1800", value_parser = clap::value_parser!(u16).range(200..=8000))]
+    #[arg(long, value_name = "PX", default_value = "1800", value_parser = clap::value_parser!(u16).range(600..=8000))]
     pub width: u16,
     /// File to write to [default: in pictures/ of the run]
     #[arg(short, long, value_name = "FILE")]

@@ -42,10 +42,10 @@ fn states_and_the_whole_path_are_drawn() {
     let directory = scratch("render");
     let run = run(&directory);
     let history = fs::read(run.join("history.csv")).unwrap();
-    let said = plica(&directory, &["render", "run", "--width", "400"]);
+    let said = plica(&directory, &["render", "run", "--width", "600"]);
     assert!(said.status.success(), "{}", text(&said.stderr));
     let one = looked_at(&run.join("pictures/energy-state-0003.png"));
-    assert_eq!((one.0, one.2), (400, 1));
+    assert_eq!((one.0, one.2), (600, 1));
     let look = [
         "--field",
         "von-mises",
@@ -54,17 +54,17 @@ fn states_and_the_whole_path_are_drawn() {
         "--view",
         "colon",
     ];
-    let states = ["--state", "1", "--state", "2", "--width", "400"];
+    let states = ["--state", "1", "--state", "2", "--width", "600"];
     let arguments = [&["render", "run"], &look[..], &states[..]].concat();
     let said = plica(&directory, &arguments);
     assert!(said.status.success(), "{}", text(&said.stderr));
     let two = looked_at(&run.join("pictures/von-mises-state-0001-0002.png"));
     assert!(two.1 > one.1, "{two:?}");
-    let arguments = ["animate", "run", "--width", "300", "--out", "path.apng"];
+    let arguments = ["animate", "run", "--width", "700", "--out", "path.apng"];
     let said = plica(&directory, &arguments);
     assert!(said.status.success(), "{}", text(&said.stderr));
     let path = looked_at(&directory.join("path.apng"));
-    assert_eq!((path.0, path.2), (300, 4));
+    assert_eq!((path.0, path.2), (700, 4));
     // To look changes nothing.
     assert_eq!(fs::read(run.join("history.csv")).unwrap(), history);
 }
@@ -80,7 +80,7 @@ fn looks_that_are_none_are_refused() {
         (&["--cutaway", "400"], "0 to 350"),
         (&["--range", "1,0"], "the first below the second"),
         (&["--range", "nan,1"], "the first below the second"),
-        (&["--width", "9"], "200..=8000"),
+        (&["--width", "9"], "600..=8000"),
         (&["--state", "7"], "these are: 0, 1, 2, 3"),
     ] {
         let said = plica(&directory, &[&["render", "run"], arguments].concat());
