@@ -122,6 +122,32 @@ def meridian(grid, normal):
     return points
 
 
+def check_walls(rest, now, linear, profile):
+    """Of an axisymmetric state, whose meridians are all that of its profile."""
+    # The outer and the inner wall, where VTK's cells have them, are those of the profile.
+    z, r = now[:, 2], np.hypot(now[:, 0], now[:, 1])
+    outside, inside = rest[:, 0] ** 2 + rest[:, 1] ** 2 > 0.4999**2, rest[:, 0] ** 2 + rest[:, 1] ** 2 < 0.4401**2
+    for name, of in [("outer", outside), ("inner", inside)]:
+        at = {round(float(p["reference_z"]), 9): (float(p[f"{name}_z"]), float(p[f"{name}_r"])) for p in profile}
+        seen = 0
+        for point in np.flatnonzero(of):
+            known = at.get(round(float(rest[point, 2]), 9))
+            if known:
+                seen += 1
+                assert np.hypot(z[point] - known[0], r[point] - known[1]) < 1e-6, (name, point)
+        print(f"{name} wall: {seen} points are where the profile has them")
+        assert seen > 10
+
+    # A slice of the linear copy by VTK lies between the walls of the profile.
+    cut = meridian(linear, (0.3, 1.0, 0.0))
+    for points, name in [(cut, "slice of the straight cells")]:
+        radii = np.hypot(points[:, 0], points[:, 1])
+        lowest = min(float(p["inner_r"]) for p in profile)
+        highest = max(float(p["outer_r"]) for p in profile)
+        assert lowest - 2e-3 < radii.min() and radii.max() < highest + 2e-3, name
+    print(f"slice: {len(cut)} points, radii {radii.min():.4f} to {radii.max():.4f}")
+
+
 def check_state(run, number, row, profile):
     print(f"state {number}")
     grid = read(run / "vtk" / "volume" / f"state-{number:04}.vtu")
@@ -169,28 +195,8 @@ def check_state(run, number, row, profile):
     assert np.array_equal(vtk_to_numpy(linear.GetPoints().GetData()), now)
     close("volume of straight cells", volume_of(linear, now), volume, 1e-2)
 
-    # The outer and the inner wall, where VTK's cells have them, are those of the profile.
-    z, r = now[:, 2], np.hypot(now[:, 0], now[:, 1])
-    outside, inside = rest[:, 0] ** 2 + rest[:, 1] ** 2 > 0.4999**2, rest[:, 0] ** 2 + rest[:, 1] ** 2 < 0.4401**2
-    for name, of in [("outer", outside), ("inner", inside)]:
-        at = {round(float(p["reference_z"]), 9): (float(p[f"{name}_z"]), float(p[f"{name}_r"])) for p in profile}
-        seen = 0
-        for point in np.flatnonzero(of):
-            known = at.get(round(float(rest[point, 2]), 9))
-            if known:
-                seen += 1
-                assert np.hypot(z[point] - known[0], r[point] - known[1]) < 1e-6, (name, point)
-        print(f"{name} wall: {seen} points are where the profile has them")
-        assert seen > 10
-
-    # A slice of the linear copy by VTK lies between the walls of the profile.
-    cut = meridian(linear, (0.3, 1.0, 0.0))
-    for points, name in [(cut, "slice of the straight cells")]:
-        radii = np.hypot(points[:, 0], points[:, 1])
-        lowest = min(float(p["inner_r"]) for p in profile)
-        highest = max(float(p["outer_r"]) for p in profile)
-        assert lowest - 2e-3 < radii.min() and radii.max() < highest + 2e-3, name
-    print(f"slice: {len(cut)} points, radii {radii.min():.4f} to {radii.max():.4f}")
+    if int(row["departure_harmonic"]) == 0:
+        check_walls(rest, now, linear, profile)
 
     # Fields among themselves: stress symmetric by construction; stretches and directions.
     stretch, j = field(grid, "elastic_stretch"), field(grid, "det_Fe")

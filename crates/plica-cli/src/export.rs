@@ -47,13 +47,17 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         run: &run,
         written: BTreeMap::new(),
     };
+    let mut bad = vec![];
     for (done, &(what, state)) in files.iter().enumerate() {
         if ticker.stop() {
             break;
         }
         let name = format!("state {state}, {}", what.name());
         ticker.working(&name, done as f64 / files.len() as f64);
-        work.write(what, state)?;
+        // One bad file is no reason to keep back the others.
+        if let Err(failure) = work.write(what, state) {
+            bad.push(failure);
+        }
     }
     let stopped = ticker.stop();
     ticker.finish();
@@ -70,6 +74,15 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         );
     }
     console::say(&text)?;
+    let others = bad.len().saturating_sub(1);
+    if let Some(first) = bad.into_iter().next() {
+        if others > 0 {
+            console::tell(&format!(
+                "{others} more file(s) could not be written; the first of them:"
+            ));
+        }
+        return Err(first);
+    }
     if stopped {
         return Err(Failure::Interrupted(
             "interrupted; what is written is whole, and the collections name it",

@@ -3,12 +3,12 @@
 use crate::args::ReproduceArguments;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+use crate::pages::First;
 use crate::ticker::Ticker;
 use crate::{console, pages, threads};
 use plica::reproduction::{
     FIGURES, Figure, Fineness, Observer, Ran, SUMMARY, TITLE, Trouble, reproduce as tell,
 };
-use std::fs;
 use std::path::PathBuf;
 
 /// The folder of the runs, in that of the pages.
@@ -44,7 +44,13 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from(usual));
-    pages::prepare(&out, SUMMARY, TITLE, "plica reproduce")?;
+    let first = First {
+        name: SUMMARY,
+        title: TITLE,
+        manner: fineness.sentence(),
+        command: "plica reproduce",
+    };
+    pages::prepare(&out, &first)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     let mut watcher = Watcher(Ticker::new(interrupt));
@@ -61,13 +67,14 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
     console::say(&told.text())?;
     let files = told.files();
     for (name, bytes) in &files {
-        fs::write(out.join(name), bytes)
-            .map_err(|error| Failure::Files(format!("{}: {error}", out.join(name).display())))?;
+        pages::write(&out, name, bytes)?;
     }
+    let pictures = files.iter().filter(|(name, _)| name.ends_with(".png"));
     console::say(&format!(
-        "written to {}: {SUMMARY}, {} pages and pictures, {RUNS}/\n",
+        "written to {}: {SUMMARY}, pages of figures ({}), pictures ({}), {RUNS}/\n",
         out.display(),
-        files.len() - 1
+        told.pages.len(),
+        pictures.count()
     ))?;
     if told.failed() > 0 {
         Err(Failure::Unfinished)

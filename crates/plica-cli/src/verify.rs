@@ -3,6 +3,7 @@
 use crate::args::VerifyArguments;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+use crate::pages::First;
 use crate::ticker::Ticker;
 use crate::{console, pages, threads};
 use plica::verification::{CHECKS, Check, Observer, Row, TITLE, Trouble, verify as hold};
@@ -36,7 +37,13 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
         )));
     }
     threads::limit(arguments.threads)?;
-    pages::prepare(&arguments.out, PAGE, TITLE, "plica verify")?;
+    let first = First {
+        name: PAGE,
+        title: TITLE,
+        manner: "",
+        command: "plica verify",
+    };
+    pages::prepare(&arguments.out, &first)?;
     let file_trouble = |error| Failure::Files(format!("{}: {error}", arguments.out.display()));
     let page = arguments.out.join(PAGE);
     let interrupt = Interrupt::listen()

@@ -101,7 +101,7 @@ impl SplineTube {
         };
 
         let (value, gradients) = displaced(u);
-        let (theta_z, theta_t) = self.tube.stretches(at.z, load);
+        let (theta_z, theta_t) = self.tube.stretches_at(at.z, at.angle, load);
         let (inverse_along, inverse_around) = (1.0 / theta_z, 1.0 / theta_t);
         let departure = self.imperfect.as_ref().map(|imperfect| {
             let columns = Columns::new(&point, at.radius, 1.0, 1.0);

@@ -6,7 +6,7 @@
 //!
 //! | field | meaning |
 //! |---|---|
-//! | `displacement` | from where the point was at rest |
+//! | `displacement` | from where the point of the perfect tube was at rest |
 //! | `det_Fe` | elastic change of volume |
 //! | `theta_zeta`, `theta_eta` | grown over ungrown length, along and around |
 //! | `strain_energy_density` | w, per grown volume |
@@ -65,8 +65,8 @@ impl What {
     }
 }
 
-/// Pieces that a span is cut into on a surface: a cubic looks smooth.
-const PIECES: usize = 3;
+/// Facets of a surface, around and along, from which on elements are not cut into more than one each.
+const FACETS: [usize; 2] = [96, 240];
 
 impl Exporter {
     /// Of a run.
@@ -78,20 +78,11 @@ impl Exporter {
         }
     }
 
-    /// Points that a file has.
-    pub fn points(&self, what: What) -> usize {
-        let lattice = match what {
-            What::Walls => Nodes::lattice_of_walls(&self.tube, PIECES),
-            What::Volume | What::Linear => Nodes::lattice(&self.tube),
-        };
-        lattice.points().iter().product()
-    }
-
     /// The bytes of a file.
     pub fn bytes(&self, what: What, state: &SavedState, row: &Row) -> Vec<u8> {
         let (tube, length) = (&self.tube, self.scale.length);
         let lattice = match what {
-            What::Walls => Nodes::lattice_of_walls(tube, PIECES),
+            What::Walls => Nodes::lattice_of_walls(tube, FACETS),
             What::Volume | What::Linear => Nodes::lattice(tube),
         };
         let nodes = Nodes::of(tube, &state.load, &state.u, lattice);

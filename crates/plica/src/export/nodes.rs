@@ -31,11 +31,13 @@ impl Nodes {
         }
     }
 
-    /// Every element cut into pieces along and around; through the wall from face to face.
-    pub fn lattice_of_walls(tube: &SplineTube, pieces: usize) -> Lattice {
-        let [_, around, along] = Self::lattice(tube).spans.map(|spans| spans / tube.degree());
+    /// Through the wall from face to face; around and along every element cut into as many pieces as it takes to so many
+    /// facets, three at most.
+    pub fn lattice_of_walls(tube: &SplineTube, facets: [usize; 2]) -> Lattice {
+        let elements = [tube.sector.around, tube.axial.elements()];
+        let pieces = |i: usize| facets[i].div_ceil(elements[i]).clamp(1, 3);
         Lattice {
-            spans: [1, pieces * around, pieces * along],
+            spans: [1, pieces(0) * elements[0], pieces(1) * elements[1]],
             degree: 1,
         }
     }
@@ -146,7 +148,7 @@ mod tests {
     #[test]
     fn a_ring_that_is_turned_is_the_whole_tube() {
         let (one, whole) = (tube(1), tube(12));
-        for lattice in [Nodes::lattice(&one), Nodes::lattice_of_walls(&one, 3)] {
+        for lattice in [Nodes::lattice(&one), Nodes::lattice_of_walls(&one, [36, 9])] {
             let (a, b) = (nodes(&one, lattice), nodes(&whole, lattice));
             assert_eq!(a.len(), lattice.points().iter().product::<usize>());
             assert_eq!(a.len(), b.len());

@@ -46,7 +46,8 @@ impl Fineness {
         }
     }
 
-    fn sentence(self) -> &'static str {
+    /// What pages say of it.
+    pub fn sentence(self) -> &'static str {
         self.choose(
             "Written by `plica reproduce --quick`: coarser meshes than the paper's.",
             "Written by `plica reproduce --full`: figures on the paper's mesh, maps of many runs on coarser ones (each page says which, under *What was run*).",
@@ -245,7 +246,7 @@ impl Reproduction {
         match torn.count() {
             0 => {}
             torn => {
-                let _ = write!(text, "; {torn} figures could not be told to the end");
+                let _ = write!(text, "; figures that could not be told to the end: {torn}");
             }
         }
         text

@@ -132,6 +132,13 @@ fn opened(job: &Job, folder: &Path) -> Option<Ran> {
     }
     let plan = plan(job, &text, folder).ok()?;
     let rows = directory.history().ok()?;
+    // Nor one of which something is gone.
+    let saved = directory.numbered("states", "safetensors").ok()?;
+    let every = plan.output.states_every;
+    let is_saved = |row: &Row| every == 0 || row.step % every > 0 || saved.contains_key(&row.step);
+    if directory.states_told() != Some(rows.len()) || !rows.iter().all(is_saved) {
+        return None;
+    }
     Some(Ran::new(job, plan, rows, verdict, directory.path()))
 }
 
@@ -317,8 +324,13 @@ impl Ran {
     /// [`Trouble::State`] if it was not saved, or cannot be read.
     pub fn state(&self, row: &Row) -> Result<SavedState, Trouble> {
         let file = self.directory.join(RunDirectory::name_of_state(row.step));
-        SavedState::read(&file)
-            .map_err(|error| Trouble::State(format!("{}: {error}", file.display())))
+        SavedState::read(&file).map_err(|error| {
+            let run = self.directory.display();
+            Trouble::State(format!(
+                "{}: {error}; remove {run}, and it is done again",
+                file.display()
+            ))
+        })
     }
 
     /// The meridian of a state's face at an angle.

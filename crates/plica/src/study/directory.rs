@@ -49,8 +49,8 @@ impl RunDirectory {
             source,
         };
         match fs::read_dir(path) {
-            Ok(mut entries) => {
-                if entries.next().is_some() {
+            Ok(_) => {
+                if files(path).any(|file| !is_left_over(&file)) {
                     if !is_a_run(path) {
                         return Err(StudyError::NotARun(path.to_owned()));
                     }
@@ -70,9 +70,10 @@ impl RunDirectory {
             case_hash: blake3::hash(case_text.as_bytes()).to_string(),
             history: None,
         };
-        directory.write(CASE, case_text.as_bytes())?;
+        // First of all, so that whatever becomes of the rest it is known as a run.
         let begun = format!("{{ \"program\": \"{PROGRAM}\" }}\n");
         directory.write(MANIFEST, begun.as_bytes())?;
+        directory.write(CASE, case_text.as_bytes())?;
         Ok(directory)
     }
 
@@ -122,6 +123,11 @@ impl RunDirectory {
     pub fn written_by(&self) -> String {
         let version = manifest(&self.path)["version"].as_str().map(String::from);
         version.unwrap_or_default()
+    }
+
+    /// How many accepted states its manifest tells of; none if it does not say.
+    pub fn states_told(&self) -> Option<usize> {
+        manifest(&self.path)["states"].as_u64().map(|n| n as usize)
     }
 
     /// The rows of `history.csv`.
@@ -325,6 +331,12 @@ fn is_a_run(path: &Path) -> bool {
     manifest(path)["program"] == PROGRAM
 }
 
+/// Whether a file is what is left of a run that could not even begin.
+fn is_left_over(file: &Path) -> bool {
+    let name = file.file_name().and_then(|name| name.to_str());
+    ["manifest.part", "case.part"].map(Some).contains(&name)
+}
+
 /// Takes what a former run wrote out of its directory, known by name; every other file stays. The
 /// manifest goes last, so that what is left of a broken attempt is still known as a run.
 fn clear(path: &Path) -> Result<(), StudyError> {
@@ -443,6 +455,18 @@ mod tests {
         let refused = RunDirectory::create(&path, "case", true);
         assert!(matches!(refused, Err(StudyError::NotARun(_))));
         assert_eq!(fs::read(path.join("logo.png")).unwrap(), b"logo");
+        fs::remove_dir_all(path).unwrap();
+    }
+
+    #[test]
+    fn what_is_left_of_a_run_that_could_not_begin_is_no_hindrance() {
+        let path = scratch("left-over");
+        fs::write(path.join("manifest.part"), "{").unwrap();
+        RunDirectory::create(&path, "case", false).unwrap();
+        assert_eq!(fs::read(path.join("case.toml")).unwrap(), b"case");
+        // Without a case it is a run still.
+        fs::remove_file(path.join("case.toml")).unwrap();
+        RunDirectory::create(&path, "again", true).unwrap();
         fs::remove_dir_all(path).unwrap();
     }
 

@@ -2,6 +2,7 @@
 
 use super::{TubeAndLoad, tube_and_load};
 use crate::assembly::{Point, SplineTube};
+use crate::spline::{Basis, gauss_legendre};
 use crate::tube::{
     Axial, End, EndMotion, Imperfection, Mesh, Part, Push, Shape, Support, Tube, Wave,
 };
@@ -187,4 +188,50 @@ fn a_start_is_smooth_and_holds_the_ends() {
     tube.impose(&tube.tube.rest(), &mut imposed);
     assert_eq!(u, imposed);
     assert!(tube.forces(&tube.tube.rest(), &u).is_ok());
+}
+
+#[test]
+fn fields_at_points_add_up_to_the_energy_of_an_imperfect_muscle() {
+    let wave = Wave::new(2, 0.4, Axial::Uniform);
+    for (of, amplitude) in [
+        (Part::Muscle(0), 0.4),
+        (Part::Geometry, 0.02),
+        (COLON, 0.02),
+    ] {
+        let tube = imperfect([Support::Fixed; 2], of, amplitude, wave);
+        let mut load = tube_and_load(3, [9, 2, 12], 1).load;
+        load.ends = tube.tube.rest().ends;
+        let mut u = tube.start();
+        tube.impose(&load, &mut u);
+        let rule = gauss_legendre(4);
+        let spans = |basis: &Basis| -> Vec<(f64, f64)> {
+            let spans = (0..basis.elements()).map(|e| basis.element(e));
+            let points = |(from, to): (f64, f64)| {
+                let size = to - from;
+                rule.iter().map(move |(x, w)| (from + size * x, size * w))
+            };
+            spans.flat_map(points).collect()
+        };
+        let size = tube.sector.angle();
+        let angles: Vec<(f64, f64)> = (0..12)
+            .flat_map(|e| {
+                rule.iter()
+                    .map(move |(x, w)| (size * (f64::from(e) - 0.5 + x), size * w))
+            })
+            .collect();
+        let mut energy = 0.0;
+        for &(z, wz) in &spans(&tube.axial) {
+            for &(angle, wa) in &angles {
+                for &(radius, wr) in &spans(&tube.wall) {
+                    let at = tube.sample(&load, &u, Point { z, radius, angle });
+                    // The circle that splines draw is drawn nearly at the pace of the angle.
+                    let volume = wz * wa * wr * radius;
+                    energy += at.energy_density * at.grown[0] * at.grown[1] * volume;
+                }
+            }
+        }
+        let expected = tube.forces(&load, &u).unwrap().energy;
+        let off = energy / expected - 1.0;
+        assert!(off.abs() < 2e-3, "{of:?}: {energy} {expected}");
+    }
 }

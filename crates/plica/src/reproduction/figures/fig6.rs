@@ -53,7 +53,7 @@ fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
             panel,
             &format!("nearly the same walls at Lmax/L = {at}"),
             format!(
-                "{:.0e} D apart at most, {:.0e} D if one is mirrored",
+                "{:.1e} D apart at most, {:.1e} D if one is mirrored",
                 straight.apart, mirrored.apart
             ),
             straight.apart < NEARLY,
@@ -61,7 +61,7 @@ fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
         rows.push(vec![
             format!("{at:.2}"),
             format!("{:.4}", straight.shift),
-            format!("{:.0e}", straight.apart),
+            format!("{:.1e}", straight.apart),
             format!("{:.1e}", mirrored.apart),
         ]);
         let [full, mut dashed] = [walls[0].clone(), walls[1].clone()];
