@@ -8,7 +8,7 @@ use crate::report::opened;
 use crate::study::Row;
 
 /// Width of pictures, in pixels.
-const WIDTH: usize = 1400;
+const WIDTH: usize = 1000;
 
 /// A tube cut open at a state, for a [`tubes`] picture.
 pub fn panel(ran: &Ran, row: &Row, label: impl Into<String>) -> Result<Panel, Trouble> {

@@ -135,7 +135,8 @@ fn opened(job: &Job, folder: &Path) -> Option<Ran> {
     // Nor one of which something is gone.
     let saved = directory.numbered("states", "safetensors").ok()?;
     let every = plan.output.states_every;
-    let is_saved = |row: &Row| every == 0 || row.step % every > 0 || saved.contains_key(&row.step);
+    let is_saved =
+        |row: &Row| every == 0 || !row.step.is_multiple_of(every) || saved.contains_key(&row.step);
     if directory.states_told() != Some(rows.len()) || !rows.iter().all(is_saved) {
         return None;
     }

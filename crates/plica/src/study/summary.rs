@@ -246,12 +246,16 @@ impl fmt::Display for Summary {
         };
         line(f, "invaginates", side)?;
         let physical = "nothing holds it apart, and what it does there is not physical";
-        let meets: [(&str, fn(&Row) -> bool); 2] = [
-            ("wall crosses itself", Row::crosses_itself),
-            ("lumen is closed", Row::has_closed),
-        ];
-        for (name, meets) in meets {
-            let states: Vec<&Row> = self.rows.iter().filter(|row| meets(row)).collect();
+        let crosses: Vec<&Row> = self
+            .rows
+            .iter()
+            .filter(|row| row.crosses_itself())
+            .collect();
+        let closed: Vec<&Row> = self.rows.iter().filter(|row| row.has_closed()).collect();
+        for (name, states) in [
+            ("wall crosses itself", crosses),
+            ("lumen is closed", closed),
+        ] {
             if let [first, .., last] | [first @ last] = states.as_slice() {
                 let (count, span) = (states.len(), span(first, last));
                 line(f, name, format!("at {count} state(s), {span}: {physical}"))?;
