@@ -2,7 +2,6 @@
 
 use super::node::{Node, Turn};
 use crate::assembly::{Point, SplineTube};
-use crate::spline::Basis;
 use crate::tube::Load;
 use crate::vtk::Lattice;
 use rayon::prelude::*;
@@ -48,8 +47,8 @@ impl Nodes {
         let sectors = tube.sector.around / tube.sector.rings;
         let around = all_around / sectors;
         let per_element = all_around / tube.sector.around;
-        let radii = places(&tube.wall, outwards);
-        let zs = places(&tube.axial, along);
+        let radii = tube.wall.spread(outwards);
+        let zs = tube.axial.spread(along);
         let rows = zs.par_iter().flat_map_iter(|&z| {
             let radii = &radii;
             (0..around).flat_map(move |j| {
@@ -83,25 +82,6 @@ impl Nodes {
             of(&self.nodes[i + outwards * (own + self.around * k)], turn)
         })
     }
-}
-
-/// `count` positions over a basis: its elements cut into equal pieces.
-fn places(basis: &Basis, count: usize) -> Vec<f64> {
-    let elements = basis.elements();
-    let pieces = (count - 1) / elements.min(count - 1);
-    let place = |i: usize| {
-        if count == 2 {
-            return if i == 0 {
-                basis.element(0).0
-            } else {
-                basis.element(elements - 1).1
-            };
-        }
-        let e = (i / pieces).min(elements - 1);
-        let (from, to) = basis.element(e);
-        from + (to - from) * (i - e * pieces) as f64 / pieces as f64
-    };
-    (0..count).map(place).collect()
 }
 
 #[cfg(test)]
@@ -166,13 +146,13 @@ mod tests {
     }
 
     #[test]
-    fn places_are_those_of_elements_and_pieces() {
+    fn points_lie_at_the_ends_of_elements_and_evenly_between() {
         let tube = tube(1);
         let lattice = Nodes::lattice(&tube);
         let [outwards, around, along] = lattice.points();
         assert_eq!([outwards, around, along], [4, 36, 10]);
-        let z = places(&tube.axial, along);
+        let z = tube.axial.spread(along);
         assert!((z[0], z[9]) == (0.0, 1.0) && (z[3] - 1.0 / 3.0).abs() < 1e-15);
-        assert_eq!(places(&tube.wall, 2), [0.4, 0.5]);
+        assert_eq!(tube.wall.spread(2), [0.4, 0.5]);
     }
 }

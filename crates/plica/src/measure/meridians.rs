@@ -1,6 +1,6 @@
 //! Meridians of a state, in planes that turn with the tube; and how far it is from axisymmetric.
 
-use super::{Face, Wall, even};
+use super::{Face, Wall};
 use crate::assembly::{Point, SplineTube};
 use crate::tube::{Load, Tube};
 use std::f64::consts::{PI, TAU};
@@ -192,7 +192,7 @@ impl<'a> Meridians<'a> {
 
     /// A point per element along the tube.
     fn every_element(&self) -> Vec<f64> {
-        even(self.tube, self.tube.axial.elements() + 1)
+        self.tube.axial.spread(self.tube.axial.elements() + 1)
     }
 }
 

@@ -36,7 +36,7 @@ pub use meridians::{Departure, Meridians};
 pub use overlay::Overlay;
 pub use rotation::{Flank, Rotation};
 pub use shape::{Shape, Side};
-pub use wall::{Face, Wall, even};
+pub use wall::{Face, Wall};
 
 use crate::assembly::SplineTube;
 use crate::tube::{Load, Tube};
@@ -76,7 +76,9 @@ impl Measures {
         let meridians = Meridians::of(tube, load, u);
         let departure = meridians.departure();
         let angles = meridians.around(departure.crest);
-        let z = even(tube, tube.axial.elements() * POINTS_PER_ELEMENT + 1);
+        let z = tube
+            .axial
+            .spread(tube.axial.elements() * POINTS_PER_ELEMENT + 1);
         let [outer, inner] =
             [Face::Outer, Face::Inner].map(|face| meridians.walls(face, &angles, &z));
         let overhangs = outer.iter().map(Wall::overhang);

@@ -1,7 +1,6 @@
 //! One meridian of the wall, as a curve in (z, ρ).
 
 use super::Side;
-use crate::assembly::SplineTube;
 use crate::tube::Tube;
 
 /// A face of the wall.
@@ -79,19 +78,6 @@ impl Wall {
         });
         (high - low).max(0.0)
     }
-}
-
-/// `count` reference positions, as dense along the tube as its elements.
-pub fn even(tube: &SplineTube, count: usize) -> Vec<f64> {
-    let elements = tube.axial.elements();
-    (0..count)
-        .map(|i| {
-            let at = elements as f64 * i as f64 / (count - 1) as f64;
-            let e = (at as usize).min(elements - 1);
-            let (from, to) = tube.axial.element(e);
-            from + (to - from) * (at - e as f64)
-        })
-        .collect()
 }
 
 fn runs_back(points: &[(f64, f64)]) -> f64 {

@@ -119,11 +119,8 @@ fn surfaces(tube: &SplineTube, shown: &Shown, shape: Option<&Vec<f64>>) -> Vec<S
         }
     }
     opening.surfaces(|zeta, angle, xi| {
-        let at = zeta * along as f64;
-        let element = (at as usize).min(along - 1);
-        let (from, to) = tube.axial.element(element);
         let at = Point {
-            z: from + (to - from) * (at - element as f64),
+            z: tube.axial.elements_on(zeta * along as f64),
             radius: tube.tube.inner_radius() + xi * tube.tube.thickness,
             angle,
         };

@@ -61,10 +61,7 @@ pub fn looked_at(
 ) -> Vec<Surface> {
     let along = tube.axial.elements();
     let sample = |zeta: f64, angle: f64, xi: f64| {
-        let at = zeta * along as f64;
-        let element = (at as usize).min(along - 1);
-        let (from, to) = tube.axial.element(element);
-        let z = from + (to - from) * (at - element as f64);
+        let z = tube.axial.elements_on(zeta * along as f64);
         let radius = tube.tube.inner_radius() + xi * tube.tube.thickness;
         let sample = tube.sample(load, u, Point { z, radius, angle });
         (sample.position, look.factor * look.field.of(&sample))

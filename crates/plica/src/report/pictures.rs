@@ -4,7 +4,7 @@ use super::opened::opened;
 use super::{Abscissa, Story};
 use crate::assembly::SplineTube;
 use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Panel, Rule, Stroke};
-use crate::measure::{Departure, Face, Meridians, even};
+use crate::measure::{Departure, Face, Meridians};
 use crate::study::{Plan, Row, Scale, Snapshot, Summary};
 use rayon::prelude::*;
 
@@ -114,7 +114,9 @@ fn walls(
     let both = departure.crest_and_trough();
     let one_line = departure.amplitude < VISIBLE;
     let angles = if one_line { &both[..1] } else { &both };
-    let z = even(tube, tube.axial.elements() * POINTS_PER_ELEMENT + 1);
+    let z = tube
+        .axial
+        .spread(tube.axial.elements() * POINTS_PER_ELEMENT + 1);
     let mut curves = vec![];
     for (colour, row) in story.chosen.iter().enumerate() {
         let Snapshot { load, u } = &summary.snapshots()[row.step];

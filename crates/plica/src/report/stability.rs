@@ -5,7 +5,6 @@ use crate::draw::{
     Chart, Curve, Cutaway, DrawError, Image, Map, Marker, Opening, Panel, Range, Rule, Stroke,
     Surface,
 };
-use crate::measure::even;
 use crate::stability::{Change, How, Mode, Quantity, Stability, Station, effect};
 use crate::study::Plan;
 use crate::tube::Tube;
@@ -239,7 +238,7 @@ impl<'a> Meridian<'a> {
             largest: 0.0,
             known: RefCell::default(),
         };
-        for z in even(tube, 4 * tube.axial.elements() + 1) {
+        for z in tube.axial.spread(4 * tube.axial.elements() + 1) {
             let (_, amplitude) = meridian.place(z, Tube::OUTER_RADIUS);
             meridian.radial = meridian.radial.max(amplitude[1].abs());
             let size = amplitude.iter().fold(0.0, |size: f64, a| size.hypot(*a));
@@ -268,12 +267,9 @@ impl<'a> Meridian<'a> {
         opening.surfaces(|zeta, angle, xi| {
             let key = [zeta.to_bits(), xi.to_bits()];
             let ([z, r], mode) = *self.known.borrow_mut().entry(key).or_insert_with(|| {
-                let at = zeta * along as f64;
-                let element = (at as usize).min(along - 1);
-                let (from, to) = self.tube.axial.element(element);
                 let inner = self.tube.tube.inner_radius();
                 self.place(
-                    from + (to - from) * (at - element as f64),
+                    self.tube.axial.elements_on(zeta * along as f64),
                     inner + xi * self.tube.tube.thickness,
                 )
             });
@@ -296,7 +292,7 @@ impl<'a> Meridian<'a> {
 
     /// The amplitudes of the mode along the outer wall.
     fn amplitudes(&self) -> Chart {
-        let z = even(self.tube, 4 * self.tube.axial.elements() + 1);
+        let z = self.tube.axial.spread(4 * self.tube.axial.elements() + 1);
         let places: Vec<Place> = z
             .iter()
             .map(|&z| self.place(z, Tube::OUTER_RADIUS))

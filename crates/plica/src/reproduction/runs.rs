@@ -4,7 +4,7 @@ use super::job::Job;
 use super::{Observer, Trouble};
 use crate::assembly::SplineTube;
 use crate::case::{self, Wanted};
-use crate::measure::{Face, Meridians, Wall, even};
+use crate::measure::{Face, Meridians, Wall};
 use crate::study::{self, Ending, Plan, Row, RunDirectory, SavedState, StudyError};
 use rayon::ThreadPoolBuilder;
 use std::collections::BTreeMap;
@@ -340,10 +340,10 @@ impl Ran {
     /// As [`Ran::state`].
     pub fn wall(&self, row: &Row, face: Face, angle: f64) -> Result<Wall, Trouble> {
         let state = self.state(row)?;
-        let z = even(
-            &self.tube,
-            self.tube.axial.elements() * POINTS_PER_ELEMENT + 1,
-        );
+        let z = self
+            .tube
+            .axial
+            .spread(self.tube.axial.elements() * POINTS_PER_ELEMENT + 1);
         let meridians = Meridians::of(&self.tube, &state.load, &state.u);
         Ok(meridians.walls(face, &[angle], &z).remove(0))
     }

@@ -72,6 +72,20 @@ impl Basis {
         (self.knots[self.degree + e], self.knots[self.degree + e + 1])
     }
 
+    /// The position so many elements on from the first one's begin: 2.5 is the middle of the third.
+    pub fn elements_on(&self, at: f64) -> f64 {
+        let e = (at as usize).min(self.elements() - 1);
+        let (from, to) = self.element(e);
+        from + (to - from) * (at - e as f64)
+    }
+
+    /// `count` positions from end to end, as dense as the elements; at least two.
+    pub fn spread(&self, count: usize) -> Vec<f64> {
+        let elements = self.elements() as f64;
+        let at = |i: usize| elements * i as f64 / (count - 1) as f64;
+        (0..count).map(|i| self.elements_on(at(i))).collect()
+    }
+
     /// The element that holds `x`; points outside belong to the nearest.
     pub fn find(&self, x: f64) -> usize {
         let inner = &self.knots[self.degree + 1..self.knots.len() - self.degree - 1];

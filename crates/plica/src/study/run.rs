@@ -9,7 +9,7 @@ use super::{
     TubeProblem, forecast, prolong,
 };
 use crate::assembly::{Inverted, SplineTube};
-use crate::measure::{Departure, Face, Measures, Meridians, even};
+use crate::measure::{Departure, Face, Measures, Meridians};
 use crate::solve::{
     Equilibrium, Failure, Found, Method, Path, PathError, Step, Watch, newton, relaxation,
 };
@@ -390,7 +390,7 @@ impl<'a> Record<'a> {
         departure: Departure,
     ) -> Result<(), StudyError> {
         let (tube, state) = (&self.problem.tube, path.state());
-        let z = even(tube, self.plan.output.wall_points);
+        let z = tube.axial.spread(self.plan.output.wall_points);
         let meridians = Meridians::of(tube, &state.load, &state.u);
         let both = departure.crest_and_trough();
         let angles = if tube.sector.rings == 1 {
