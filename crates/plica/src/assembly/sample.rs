@@ -41,6 +41,24 @@ pub struct Sample {
     pub element_angle: f64,
 }
 
+impl Sample {
+    /// Principal stretches of Fe, largest first, and their directions in the deformed wall, (z, outwards, around) at the
+    /// middle of the point's element.
+    pub fn stretches(&self) -> [(f64, [f64; 3]); 3] {
+        let left = self.elastic.times(self.elastic.transpose()); // b = Fe Feᵀ
+        left.eigenpairs()
+            .map(|(square, direction)| (square.max(0.0).sqrt(), direction))
+    }
+
+    /// Von Mises stress √(3/2 s : s), s the deviator of σ, in E.
+    pub fn von_mises(&self) -> f64 {
+        let mut s = self.stress;
+        let mean = (s.0[0][0] + s.0[1][1] + s.0[2][2]) / 3.0;
+        (0..3).for_each(|i| s.0[i][i] -= mean);
+        (1.5 * s.dot(s)).sqrt()
+    }
+}
+
 impl SplineTube {
     /// The fields at a point under a load. Points outside the wall are read from the splines of
     /// the nearest element. Where the resistance to a change of volume is integrated apart, its energy is that

@@ -67,7 +67,7 @@ pub const FIELDS: &[Field] = &[
         components: &[],
         column: |nodes, scale| {
             let stress = scale.stress as f32;
-            single(nodes, |node| stress * von_mises(node.stress))
+            single(nodes, |node| stress * node.von_mises)
         },
     },
     Field {
@@ -110,11 +110,4 @@ fn single(nodes: &Nodes, of: impl Fn(&Node) -> f32) -> Column {
 
 fn several<const N: usize>(nodes: &Nodes, of: impl Fn(&Node, &Turn) -> [f32; N]) -> Column {
     Column::of(nodes.all(of).flatten())
-}
-
-/// √(3/2 s : s), s the deviator of σ.
-fn von_mises([xx, yy, zz, xy, yz, xz]: [f32; 6]) -> f32 {
-    let apart = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
-    let shear = xy * xy + yz * yz + xz * xz;
-    (0.5 * apart + 3.0 * shear).sqrt()
 }

@@ -19,6 +19,8 @@ pub struct Node {
     pub energy_density: f32,
     /// σ in E: xx, yy, zz, xy, yz, xz.
     pub stress: [f32; 6],
+    /// Von Mises stress, in E.
+    pub von_mises: f32,
     /// Principal stretches of Fe, largest first.
     pub stretches: [f32; 3],
     /// Their directions.
@@ -81,7 +83,7 @@ impl Node {
             turn.of_tensor([xx, yy, zz, t[1][2], t[2][0], t[1][0]].map(|x| x as f32))
         };
         let Fe = sample.elastic;
-        let pairs = Fe.times(Fe.transpose()).eigenpairs(); // b = Fe Feᵀ
+        let stretches = sample.stretches();
         let [theta_z, theta_t] = sample.grown;
         let mut F = Fe;
         for row in &mut F.0 {
@@ -97,8 +99,9 @@ impl Node {
             grown: sample.grown.map(|x| x as f32),
             energy_density: sample.energy_density as f32,
             stress: tensor(&sample.stress),
-            stretches: pairs.map(|(square, _)| square.max(0.0).sqrt() as f32),
-            directions: pairs.map(|(_, v)| vector(pointed(v)).map(|x| x as f32)),
+            von_mises: sample.von_mises() as f32,
+            stretches: stretches.map(|(stretch, _)| stretch as f32),
+            directions: stretches.map(|(_, v)| vector(pointed(v)).map(|x| x as f32)),
             strain: [(0, 0), (2, 2), (1, 1), (0, 2), (2, 1), (0, 1)].map(|(i, j)| E(i, j) as f32),
         }
     }

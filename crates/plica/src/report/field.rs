@@ -62,23 +62,14 @@ impl Field {
     /// Its value at a point, dimensionless.
     pub fn of(self, sample: &Sample) -> f64 {
         let s = sample.stress.0;
-        let stretch = |i: usize| {
-            let left = sample.elastic.times(sample.elastic.transpose());
-            left.eigenpairs()[i].0.max(0.0).sqrt()
-        };
         match self {
             Self::EnergyDensity if sample.energy_density < NOTHING => 0.0,
             Self::EnergyDensity => sample.energy_density,
-            Self::VonMises => {
-                let pairs = [(0, 1), (1, 2), (2, 0)];
-                let apart = pairs.map(|(i, j)| (s[i][i] - s[j][j]).powi(2));
-                let shear = pairs.map(|(i, j)| s[i][j].powi(2));
-                (0.5 * apart.iter().sum::<f64>() + 3.0 * shear.iter().sum::<f64>()).sqrt()
-            }
+            Self::VonMises => sample.von_mises(),
             Self::Pressure => -(s[0][0] + s[1][1] + s[2][2]) / 3.0,
             Self::VolumeChange => sample.jacobian,
-            Self::LargestStretch => stretch(0),
-            Self::SmallestStretch => stretch(2),
+            Self::LargestStretch => sample.stretches()[0].0,
+            Self::SmallestStretch => sample.stretches()[2].0,
             Self::GrownAlong => sample.grown[0],
             Self::GrownAround => sample.grown[1],
             Self::Displacement => {
