@@ -89,6 +89,13 @@ pub struct Row {
 }
 
 impl Row {
+    /// The harmonics it is unstable to, as the column names them: numbers, `any`, or `unknown`; none if it is stable.
+    pub fn lost_harmonics(&self) -> impl Iterator<Item = &str> {
+        let all = self.unstable_harmonics.split(' ');
+        let lost = all.filter(|harmonic| *harmonic != "none");
+        lost.map(|harmonic| harmonic.split(':').next().unwrap_or(harmonic))
+    }
+
     /// Whether the wall crosses itself somewhere, which nothing prevents.
     pub fn crosses_itself(&self) -> bool {
         self.gap == 0.0

@@ -137,13 +137,8 @@ impl Summary {
     /// not known.
     pub fn lost_harmonics(&self) -> BTreeMap<&str, Vec<&Row>> {
         let mut lost: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
-        for row in self
-            .rows
-            .iter()
-            .filter(|row| row.unstable_harmonics != "none")
-        {
-            for harmonic in row.unstable_harmonics.split(' ') {
-                let (harmonic, _count) = harmonic.split_once(':').unwrap_or((harmonic, ""));
+        for row in &self.rows {
+            for harmonic in row.lost_harmonics() {
                 lost.entry(harmonic).or_default().push(row);
             }
         }

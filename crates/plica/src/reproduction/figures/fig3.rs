@@ -6,7 +6,6 @@ use super::super::pictures::{panel, tubes};
 use super::super::runs::{Ran, Runs};
 use super::super::{Figure, Fineness, Trouble};
 use super::{FOLD, axisymmetric, is_folded, side, unstable};
-use crate::study::Row;
 
 pub(super) const FIGURE: Figure = Figure {
     name: "fig3",
@@ -62,10 +61,6 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
     let (a, b, c) = (contraction.last()?, collapse.last()?, both.at(1.25)?);
     let rings = ring_buckled.at(1.2)?;
 
-    let largest_overhang = |ran: &Ran| {
-        let overhangs = ran.rows.iter().map(|row| row.overhang);
-        overhangs.fold(0.0, f64::max)
-    };
     let overhang = largest_overhang(contraction);
     page.claim(
         "3A",
@@ -89,7 +84,8 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
             b.lumen
         ),
         b.departure > 0.05
-            && b.lumen < 0.5 * 2.0 * collapse.plan.tube.inner_radius()
+            // Less than half of what it is at rest.
+            && b.lumen < collapse.plan.tube.inner_radius()
             && b.equilibrium == "yes"
             && overhang < FOLD,
     );
@@ -146,20 +142,33 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
     Ok(())
 }
 
+fn largest_overhang(ran: &Ran) -> f64 {
+    let overhangs = ran.rows.iter().map(|row| row.overhang);
+    overhangs.fold(0.0, f64::max)
+}
+
 /// What the tube of 3B does in rings, and why it does not.
 fn instead(page: &mut Page, runs: &Runs, rings: &Ran) -> Result<(), Trouble> {
-    let lost = |row: &&Row| row.unstable_harmonics.starts_with("2:");
-    let first = rings.rows.iter().find(lost);
-    let oval_first = match first {
-        Some(row) => format!(
+    let lost = rings
+        .rows
+        .iter()
+        .find(|row| row.lost_harmonics().next().is_some());
+    let oval_first = match lost {
+        Some(row) if row.lost_harmonics().eq(["2"]) => format!(
             "the first harmonic that its path loses is 2, an oval, by Lmax/L = {:.2}: this is what the run of B is started on, by an end \
              that is held on an oval of 1e-4 D, and it is run as two halves that are alike",
             row.length_ratio
         ),
-        None => "its path does not lose harmonic 2".into(),
+        Some(row) => format!(
+            "its path first loses harmonics {} by Lmax/L = {:.2}; the run of B is started on an oval all the same",
+            row.lost_harmonics().collect::<Vec<_>>().join(", "),
+            row.length_ratio
+        ),
+        None => {
+            "its path loses no harmonic; the run of B is started on an oval all the same".into()
+        }
     };
-    let folded = rings.rows.iter().find(|row| row.overhang > FOLD);
-    let folds = match folded {
+    let folds = match rings.rows.iter().find(|row| row.overhang > FOLD) {
         Some(row) => format!(
             "at Lmax/L = {:.2} a ring has folded over itself outwards, {:.2} D deep{}",
             row.length_ratio,
@@ -195,7 +204,7 @@ fn collapse_at_the_papers_length(page: &mut Page, on: &Ran) -> Result<(), Troubl
         "dragged on from 1.08, out of equilibrium by up to {off:.0e} of the forces in play, to {:.2}: {:.3} D from round, lumen {:.3} D",
         last.length_ratio, last.departure, last.lumen
     );
-    let overhang = on.rows.iter().map(|row| row.overhang).fold(0.0, f64::max);
+    let overhang = largest_overhang(on);
     let holds = on.verdict == "complete" && last.shape == "collapsed" && overhang < FOLD;
     let (found, verdict) = match closed {
         Some(row) => (

@@ -268,8 +268,8 @@ fn compression(page: &mut Page, main: &Ran, row: &Row) -> Result<(), Trouble> {
     page.text(
         "**Which side is more compressed?** One axial force goes through the whole tube, so that neither side bears more of it. On average the \
          colon side is the more compressed one, since the ileum side is longer and most of it is far from the zone, where the wall does not bend; \
-         over equal lengths beside the zone both are alike. So a greater compression does not explain the side; the two folds are mirror branches \
-         of nearly the same energy (Fig. 5).",
+         over equal lengths beside the zone both are alike. So a greater compression does not explain the side. (The tubes of Fig. 5 have folds to both ends, of nearly \
+         the same energy.)",
     );
     Ok(())
 }

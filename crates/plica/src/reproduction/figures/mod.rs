@@ -67,18 +67,17 @@ fn is_folded(row: &Row, side: &str) -> bool {
 
 /// In words, where an axisymmetric path is unstable, and to which harmonics: the whole tube would leave it there.
 fn unstable(rows: &[Row]) -> String {
-    let known = |row: &&Row| !["none", "unknown"].contains(&row.unstable_harmonics.as_str());
-    let places: Vec<String> = rows
-        .iter()
-        .filter(known)
-        .map(|row| {
-            let pairs = row.unstable_harmonics.split(' ');
-            let harmonics: Vec<&str> = pairs
-                .map(|pair| pair.split(':').next().unwrap_or(pair))
-                .collect();
-            format!("{:.2} (n = {})", row.length_ratio, harmonics.join(", "))
-        })
-        .collect();
+    let mut places = vec![];
+    for row in rows {
+        let harmonics: Vec<&str> = row.lost_harmonics().filter(|n| *n != "unknown").collect();
+        if !harmonics.is_empty() {
+            places.push(format!(
+                "{:.2} (n = {})",
+                row.length_ratio,
+                harmonics.join(", ")
+            ));
+        }
+    }
     if places.is_empty() {
         "nowhere".into()
     } else {
