@@ -158,6 +158,16 @@ impl Page {
         self.judge(panel, paper, found, Verdict::of(holds));
     }
 
+    /// Something that the paper does not say; it differs if it does not hold.
+    pub(super) fn add(&mut self, panel: &'static str, what: &str, found: String, holds: bool) {
+        let verdict = if holds {
+            Verdict::Added
+        } else {
+            Verdict::Differs
+        };
+        self.judge(panel, what, found, verdict);
+    }
+
     pub(super) fn judge(
         &mut self,
         panel: &'static str,

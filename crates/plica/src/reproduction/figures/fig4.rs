@@ -303,7 +303,7 @@ fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
         && settled < 1e-5
         && as_accepted < 1e-2
         && [papers, raw].iter().all(|ran| ran.verdict == "complete");
-    page.judge(
+    page.add(
         "Fig. 2",
         "the paper's scheme (Newmark, ηD/(EΔτ) = 100) against Plica's",
         format!(
@@ -311,7 +311,7 @@ fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
              settled without drag, by {as_accepted:.0e} as the paper accepts them",
             papers.solves(), papers.seconds(), ours.solves(), ours.seconds()
         ),
-        if good { Verdict::Added } else { Verdict::Differs },
+        good,
     );
     page.text(
         "**The two schemes**, on one mesh. A state of the pseudo-time is accepted when no control point moves 1e-5 D in a step, and then settled \

@@ -1,7 +1,7 @@
 //! Relaxation on one side of the contraction: which way does it fold, and what decides?
 
 use super::super::job::Job;
-use super::super::page::{Page, Verdict, energy};
+use super::super::page::{Page, energy};
 use super::super::pictures::{panel, tubes};
 use super::super::runs::Runs;
 use super::super::{Figure, Fineness, Trouble};
@@ -129,14 +129,8 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
         outcome(runs.get(&coarse(CASES[0].1))?)?,
         outcome(runs.get(&coarse(CASES[1].1))?)?,
     ];
-    let mut papers = vec![];
-    for (panel, case, towards) in CASES {
-        let ran = runs.get(&newmark(case, fineness).name)?;
-        papers.push((
-            format!("{panel}: {}", outcome(ran)?),
-            is_folded(ran.at(1.25)?, towards),
-        ));
-    }
+    let (papers, as_printed_by_it) =
+        ramps::as_the_paper(CASES, runs, |case| newmark(case, fineness))?;
     let [mut as_printed, mut otherwise, mut held, mut lost] = [0; 4];
     ramps(fineness).table(page, runs, &without, |(_, case, towards), ran| {
         let last = ran.last()?;
@@ -167,11 +161,11 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
         "A folds to the colon, B to the ileum, with the paper's scheme (Newmark, ηD/(EΔτ) = 100; its rate is not given)",
         format!(
             "from the square on with 0.001 of Lmax/L per pseudo-time step {}; static {}, {}",
-            papers.iter().map(|(told, _)| told.as_str()).collect::<Vec<_>>().join(", "),
+            papers,
             without[0],
             without[1]
         ),
-        papers.iter().all(|(_, as_printed)| *as_printed)
+        as_printed_by_it
             && without.iter().zip(CASES).all(|(found, (_, _, towards))| found == towards),
     );
     Ok(())
@@ -216,15 +210,11 @@ fn branches(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
         &["", "by itself", "W", "pushed and let go", "W", "differ by"],
         rows,
     );
-    page.judge(
+    page.add(
         "5",
         "the two sides are mirror branches of nearly the same energy",
         found.join("; "),
-        if good {
-            Verdict::Added
-        } else {
-            Verdict::Differs
-        },
+        good,
     );
     Ok(())
 }

@@ -113,22 +113,16 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
          to the {}.",
         without[0], without[1]
     ));
-    let mut papers = vec![];
-    for (panel, case, towards) in CASES {
-        let ran = runs.get(&newmark(case, fineness).name)?;
-        papers.push((
-            format!("{panel}: {}", outcome(ran)?),
-            is_folded(ran.last()?, towards),
-        ));
-    }
+    let (papers, as_printed_by_it) =
+        ramps::as_the_paper(CASES, runs, |case| newmark(case, fineness))?;
     page.claim(
         "7",
         "the pushed side invaginates, with the paper's scheme (Newmark, ηD/(EΔτ) = 100; its rate is not given)",
         format!(
             "with 0.001 D per pseudo-time step {}",
-            papers.iter().map(|(told, _)| told.as_str()).collect::<Vec<_>>().join(", ")
+            papers
         ),
-        papers.iter().all(|(_, as_printed)| *as_printed),
+        as_printed_by_it,
     );
     Ok(())
 }

@@ -4,6 +4,7 @@ use super::super::Trouble;
 use super::super::job::Job;
 use super::super::page::Page;
 use super::super::runs::{Ran, Runs};
+use super::is_folded;
 
 /// A panel of a figure, its case, and the side that the paper has it fold to.
 pub type Panel = (&'static str, &'static str, &'static str);
@@ -93,4 +94,19 @@ pub fn outcome(ran: &Ran) -> Result<String, Trouble> {
         "complete" => row.shape.clone(),
         _ => "lost".into(),
     })
+}
+
+/// What becomes of each panel in a run of its own, in words; and whether all end as the paper has it.
+pub fn as_the_paper(
+    panels: [Panel; 2],
+    runs: &Runs,
+    run: impl Fn(&'static str) -> Job,
+) -> Result<(String, bool), Trouble> {
+    let (mut told, mut all) = (vec![], true);
+    for (panel, case, towards) in panels {
+        let ran = runs.get(&run(case).name)?;
+        told.push(format!("{panel}: {}", outcome(ran)?));
+        all &= ran.verdict == "complete" && is_folded(ran.last()?, towards);
+    }
+    Ok((told.join(", "), all))
 }
