@@ -2,31 +2,9 @@
 
 mod common;
 
-use common::{plica, scratch, text};
+use common::{plica, scratch, short_run, text};
 use std::fs;
-use std::path::{Path, PathBuf};
-
-const CASE: &str = r#"
-title = "a short run"
-[tube]
-length = 2.0
-thickness = 0.1
-[muscles.circular]
-direction = "circular"
-zone = [0.5, 1.5]
-[mesh]
-control_points = { axial = 12, around = 8, thickness = 4 }
-[[stages]]
-steps = 3
-drive.circular.diameter_ratio = 0.9
-"#;
-
-fn run(directory: &Path) -> PathBuf {
-    fs::write(directory.join("case.toml"), CASE).unwrap();
-    let said = plica(directory, &["run", "case.toml", "--out", "run"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
-    directory.join("run")
-}
+use std::path::Path;
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
@@ -40,7 +18,7 @@ fn names(folder: &Path) -> Vec<String> {
 #[test]
 fn walls_of_every_state_and_volumes_of_those_asked_for() {
     let directory = scratch("export");
-    let run = run(&directory);
+    let run = short_run(&directory);
     let said = plica(&directory, &["export", "run", "--state", "1", "--linear"]);
     assert!(said.status.success(), "{}", text(&said.stderr));
     assert!(text(&said.stdout).contains("walls: 4 files"));
@@ -72,7 +50,7 @@ fn walls_of_every_state_and_volumes_of_those_asked_for() {
 #[test]
 fn what_is_not_there_is_refused() {
     let directory = scratch("export-refused");
-    let run = run(&directory);
+    let run = short_run(&directory);
     let refused = |arguments: &[&str], code: i32, what: &str| {
         let said = plica(&directory, arguments);
         assert_eq!(said.status.code(), Some(code), "{arguments:?}");

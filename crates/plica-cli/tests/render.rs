@@ -2,31 +2,9 @@
 
 mod common;
 
-use common::{plica, scratch, text};
+use common::{plica, scratch, short_run, text};
 use std::fs;
-use std::path::{Path, PathBuf};
-
-const CASE: &str = r#"
-title = "a short run"
-[tube]
-length = 2.0
-thickness = 0.1
-[muscles.circular]
-direction = "circular"
-zone = [0.5, 1.5]
-[mesh]
-control_points = { axial = 12, around = 8, thickness = 4 }
-[[stages]]
-steps = 3
-drive.circular.diameter_ratio = 0.9
-"#;
-
-fn run(directory: &Path) -> PathBuf {
-    fs::write(directory.join("case.toml"), CASE).unwrap();
-    let said = plica(directory, &["run", "case.toml", "--out", "run"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
-    directory.join("run")
-}
+use std::path::Path;
 
 /// Width and height of a PNG file, and how many pictures follow each other in it.
 fn looked_at(path: &Path) -> (u32, u32, u32) {
@@ -40,7 +18,7 @@ fn looked_at(path: &Path) -> (u32, u32, u32) {
 #[test]
 fn states_and_the_whole_path_are_drawn() {
     let directory = scratch("render");
-    let run = run(&directory);
+    let run = short_run(&directory);
     let history = fs::read(run.join("history.csv")).unwrap();
     let said = plica(&directory, &["render", "run", "--width", "600"]);
     assert!(said.status.success(), "{}", text(&said.stderr));
@@ -72,7 +50,7 @@ fn states_and_the_whole_path_are_drawn() {
 #[test]
 fn looks_that_are_none_are_refused() {
     let directory = scratch("render-refused");
-    let run = run(&directory);
+    let run = short_run(&directory);
     for (arguments, what) in [
         (&["--field", "beauty"][..], "von-mises"),
         (&["--view", "0,0,1"], "not along the tube"),

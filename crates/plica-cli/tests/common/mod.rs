@@ -55,3 +55,27 @@ pub fn compare(file: &str, text: &str) {
     }
     assert_eq!(written.len(), text.len(), "{file} ends elsewhere");
 }
+
+/// A tube that contracts a little, in three steps.
+const SHORT: &str = r#"
+title = "a short run"
+[tube]
+length = 2.0
+thickness = 0.1
+[muscles.circular]
+direction = "circular"
+zone = [0.5, 1.5]
+[mesh]
+control_points = { axial = 12, around = 8, thickness = 4 }
+[[stages]]
+steps = 3
+drive.circular.diameter_ratio = 0.9
+"#;
+
+/// Runs it in a directory, and gives that of the run.
+pub fn short_run(directory: &Path) -> PathBuf {
+    std::fs::write(directory.join("case.toml"), SHORT).unwrap();
+    let said = plica(directory, &["run", "case.toml", "--out", "run"]);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    directory.join("run")
+}

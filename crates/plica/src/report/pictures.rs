@@ -46,17 +46,21 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
         .collect()
 }
 
-/// Strain energy against what changes along the path.
-fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
-    let x = |row: &Row| story.abscissa.of(row);
+/// What the axis of energies is called.
+pub(super) fn energy_label(plan: &Plan) -> String {
     let scale = Scale::of(plan.units.as_ref());
-    let y_label = match &plan.units {
-        None => "strain energy *W*/(*E* *D*^{3})".to_owned(),
+    match &plan.units {
+        None => "strain energy *W*/(*E* *D*^{3})".into(),
         Some(_) => format!(
             "strain energy *W* ({})",
             scale.energy_name.replace('u', "µ")
         ),
-    };
+    }
+}
+
+/// Strain energy against what changes along the path.
+fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
+    let x = |row: &Row| story.abscissa.of(row);
     let within = |row: &&Row| story.rows.iter().any(|r| r.step == row.step);
     let minimum = summary.energy_minimum().filter(within);
     let rule = |shape: &str, label: &str| {
@@ -68,7 +72,7 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
     };
     Chart {
         x_label: story.abscissa.label().to_owned(),
-        y_label,
+        y_label: energy_label(plan),
         curves: vec![Curve {
             points: story.rows.iter().map(|row| (x(row), row.energy)).collect(),
             dots: true,

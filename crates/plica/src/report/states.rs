@@ -2,9 +2,10 @@
 
 use super::Field;
 use super::opened::{Look, looked_at};
+use super::pictures::energy_label;
 use crate::assembly::SplineTube;
 use crate::draw::{Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, animation};
-use crate::study::{Plan, Row, SavedState, Scale};
+use crate::study::{Plan, Row, SavedState};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -160,14 +161,6 @@ fn label(row: &Row) -> String {
 
 /// The energy of all states, one of them marked.
 fn energy(plan: &Plan, rows: &[Row], at: &Row) -> Chart {
-    let scale = Scale::of(plan.units.as_ref());
-    let y_label = match &plan.units {
-        None => "strain energy *W*/(*E* *D*^{3})".to_owned(),
-        Some(_) => format!(
-            "strain energy *W* ({})",
-            scale.energy_name.replace('u', "µ")
-        ),
-    };
     let place = |row: &Row| (row.step as f64, row.energy);
     let begin = rows
         .windows(2)
@@ -179,7 +172,7 @@ fn energy(plan: &Plan, rows: &[Row], at: &Row) -> Chart {
     let highest = rows.iter().map(|row| row.energy).fold(0.0, f64::max);
     Chart {
         x_label: "state".into(),
-        y_label,
+        y_label: energy_label(plan),
         curves: vec![Curve {
             points: rows.iter().map(place).collect(),
             colour: 1,
