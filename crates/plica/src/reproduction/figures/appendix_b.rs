@@ -5,7 +5,7 @@ use super::super::page::{Page, Verdict, energy};
 use super::super::pictures::{panel, tubes};
 use super::super::runs::{Ran, Runs};
 use super::super::{Figure, Fineness, Trouble};
-use super::{FOLD, side};
+use super::{FOLD, axisymmetric, side};
 use crate::measure::{Face, Side};
 use crate::study::Row;
 
@@ -110,6 +110,7 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
     }
     if fineness == Fineness::Full {
         jobs.push(on_paper_mesh());
+        jobs.push(axisymmetric("invagination", fineness));
     }
     jobs
 }
@@ -233,6 +234,19 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
             ),
             verdict(ran, last, &sides),
         );
+        let perfect = runs.get("invagination")?;
+        let mut energies = vec![];
+        for at in [1.2, 1.25] {
+            energies.push(format!(
+                "at Lmax/L = {at:.2} {} against {}",
+                energy(ran.at(at)?),
+                energy(perfect.at(at)?)
+            ));
+        }
+        page.text(format!(
+            "**Does the tilted tube store less?** On the paper's mesh, W of the tilted tube against that of the axisymmetric one: {}.",
+            energies.join(", ")
+        ));
         panels.push(panel(ran, last, "on the paper's mesh, shifted by 1e-4 D")?);
     }
     page.table(
@@ -253,8 +267,8 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
     );
     page.text(
         "**Why it tilts.** The axisymmetric path of the main case is unstable to harmonic 1 between Lmax/L = 1.179 and 1.198 (`plica stability` of it on the paper's mesh; \
-         docs/stability.md), before its wall overhangs. A perturbation that has a part in harmonic 1 lets the tube tilt there, to less \
-         energy, and it then folds to both ends at once: to one on the side that leans in, to the other across. The paper's symmetric fold is what is left where nothing leads the tube \
+         docs/stability.md), before its wall overhangs. A perturbation that has a part in harmonic 1 lets the tube tilt there, and it \
+         then folds to both ends at once: to one on the side that leans in, to the other across. The paper's symmetric fold is what is left where nothing leads the tube \
          aside. Its own perturbation is told in an appendix that is not at hand.",
     );
     Ok(())
