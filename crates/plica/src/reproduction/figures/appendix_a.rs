@@ -241,16 +241,24 @@ fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troub
             ]);
         }
     }
-    page.claim(
+    // What the rule accepts is the further from equilibrium the more drag there is; equilibrium is the same.
+    let verdict = match (settled < 1e-6, raw < 1e-2) {
+        (true, true) => Verdict::Agrees,
+        (true, false) => Verdict::Explained,
+        _ => Verdict::Differs,
+    };
+    page.judge(
         "A",
         "the result does not depend on the damping coefficient",
         format!(
             "W(1.13) differs by {raw:.0e} at most as the paper accepts states (no control point moves 1e-5 D in a step); by {settled:.0e} if they are then settled without drag, as there is but one branch there"
         ),
-        settled < 1e-6 && raw < 1e-2,
+        verdict,
     );
     page.text(format!(
-        "**Drag.** The paper's scheme on {} × {} × {} control points to Lmax/L = 1.13. The residual is that without drag, over the forces in play.",
+        "**Drag.** The paper's scheme on {} × {} × {} control points to Lmax/L = 1.13. The residual is that without drag, over the forces in play. \
+         The drag decides how many steps it takes, not where they end; but a state counts as final once no control point moves 1e-5 D in a step, \
+         and the more drag there is the further from equilibrium that is. The paper takes 100.",
         COARSE[0], COARSE[1], COARSE[2]
     ));
     page.table(
