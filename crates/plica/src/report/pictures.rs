@@ -62,7 +62,7 @@ pub(super) fn energy_label(plan: &Plan) -> String {
 fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
     let x = |row: &Row| story.abscissa.of(row);
     let within = |row: &&Row| story.rows.iter().any(|r| r.step == row.step);
-    let minimum = summary.energy_minimum().filter(within);
+    let minimum = summary.findings().energy_minimum().filter(within);
     let rule = |shape: &str, label: &str| {
         let row = story.rows.iter().find(|row| row.shape == shape)?;
         Some(Rule {

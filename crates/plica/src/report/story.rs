@@ -95,7 +95,7 @@ impl<'a> Story<'a> {
         let first = rows.first().copied();
         let mut chosen: Vec<&Row> = first.into_iter().collect();
         let inside = |row: &&Row| rows.iter().any(|r| r.step == row.step);
-        chosen.extend(summary.energy_minimum().filter(inside));
+        chosen.extend(summary.findings().energy_minimum().filter(inside));
         chosen.extend(rows.iter().rev().find(|row| row.shape == "square").copied());
         chosen.extend(rows.last().copied());
         chosen.sort_by_key(|row| row.step);

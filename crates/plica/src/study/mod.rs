@@ -2,6 +2,7 @@
 
 mod directory;
 mod error;
+mod findings;
 mod forecast;
 mod harmonic_tangent;
 mod history;
@@ -22,6 +23,7 @@ mod units;
 
 pub use directory::RunDirectory;
 pub use error::StudyError;
+pub use findings::Findings;
 pub use forecast::{Forecast, forecast};
 pub use history::Row;
 pub use layout::Layout;
