@@ -38,6 +38,9 @@ pub enum Command {
     /// Draw the whole path of a run as an animation, the tube above its energy
     #[command(after_long_help = ANIMATE_EPILOGUE)]
     Animate(AnimateArguments),
+    /// Write a run as one HTML page: the tube to turn and follow, plots, findings; or several, to compare
+    #[command(after_long_help = REPORT_EPILOGUE)]
+    Report(ReportArguments),
     /// Say whether a case is sound, and what running it would take
     Check {
         /// The case file
@@ -111,6 +114,20 @@ pub struct VerifyArguments {
     /// Directory to write the table and the pictures to
     #[arg(short, long, value_name = "DIR", default_value = "runs/verification")]
     pub out: PathBuf,
+    /// Threads to use [default: all cores]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// What `plica report` takes.
+#[derive(Args, Debug)]
+pub struct ReportArguments {
+    /// The directory of a run; of several, to compare them
+    #[arg(value_name = "RUN_DIR", required = true, num_args = 1..=4)]
+    pub runs: Vec<PathBuf>,
+    /// File to write to [default: report.html of the run; of several, comparison.html here]
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
     /// Threads to use [default: all cores]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -295,6 +312,7 @@ Examples:
   plica verify                   is this program right?
   plica render runs/tube         its last state as a picture
   plica animate runs/tube        its whole path as an animation
+  plica report runs/tube         all of it as one page for a browser
   plica export runs/tube         its states for ParaView
   plica reproduce fig4           a figure of the paper, beside what the paper reports
 
@@ -384,6 +402,19 @@ stretches with their directions, and Green-Lagrange strain; docs/run-directory.m
 written before stay in the collections.
 
 Ctrl-C or SIGTERM ends it after the file at hand.";
+
+const REPORT_EPILOGUE: &str = "\
+The page needs nothing else: it opens from disk, goes by mail, and keeps beside a paper. It holds the tube in three
+dimensions to turn and to follow along its path, plots that move with it, what was found in words, what to beware of,
+stability, pictures, the states as a table, the case, and how to compute it again. Run plica stability first to have the
+critical values in it.
+
+Examples:
+  plica report runs/tube                     to runs/tube/report.html
+  plica report runs/one runs/other -o p.html
+                                             two paths beside each other, with one slider
+
+Two runs are shown at the nearest loads. Without --out, theirs goes to comparison.html where you are.";
 
 const RENDER_EPILOGUE: &str = "\
 Examples:

@@ -14,6 +14,7 @@ mod new;
 mod pages;
 mod progress;
 mod render;
+mod report;
 mod reproduce;
 mod run;
 mod stability;
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         Command::Export(arguments) => export::export(&arguments),
         Command::Render(arguments) => render::render(&arguments),
         Command::Animate(arguments) => render::animate(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
         Command::Check { case } => check::check(&case),
         Command::New { file } => new::new(&file),
         Command::Completions { shell } => new::completions(shell),

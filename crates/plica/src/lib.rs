@@ -18,6 +18,7 @@
 //! - [`case`]: the case file as written, and what it means.
 //! - [`draw`]: charts and shaded cut-aways from plain data.
 //! - [`report`]: the pictures of a run.
+//! - [`page`]: a run, or two, as one HTML page.
 //! - [`vtk`]: files of VTK from plain data.
 //! - [`export`]: states as files of VTK.
 //! - [`verification`]: problems whose answer is known otherwise.
@@ -31,6 +32,7 @@ pub mod export;
 pub mod material;
 pub mod matrix;
 pub mod measure;
+pub mod page;
 pub mod report;
 pub mod reproduction;
 pub mod rings;

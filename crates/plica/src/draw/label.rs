@@ -66,6 +66,42 @@ pub(super) fn pieces(text: &str) -> Vec<Piece> {
     pieces
 }
 
+/// A label as HTML.
+pub fn html(label: &str) -> String {
+    let piece = |piece: Piece| {
+        let escaped = piece.text.replace('&', "&amp;").replace('<', "&lt;");
+        let text = if piece.italic {
+            format!("<i>{escaped}</i>")
+        } else {
+            escaped
+        };
+        match piece.level {
+            Level::Line => text,
+            Level::Lower => format!("<sub>{text}</sub>"),
+            Level::Upper => format!("<sup>{text}</sup>"),
+        }
+    };
+    pieces(label).into_iter().map(piece).collect()
+}
+
+/// A label in letters alone: *L*_{max} is Lmax, *D*^{3} is D³.
+pub fn plain(label: &str) -> String {
+    let raised = |letter: char| match letter {
+        '0' => '⁰',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '4'..='9' => char::from_u32(letter as u32 - '4' as u32 + '⁴' as u32).unwrap_or(letter),
+        '-' | '−' => '⁻',
+        other => other,
+    };
+    let piece = |piece: Piece| match piece.level {
+        Level::Upper => piece.text.chars().map(raised).collect(),
+        _ => piece.text,
+    };
+    pieces(label).into_iter().map(piece).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -89,5 +125,15 @@ mod tests {
             ]
         );
         assert_eq!(pieces("plain_text }")[0].text, "plain_text }");
+    }
+
+    #[test]
+    fn a_label_elsewhere_than_in_a_picture() {
+        let label = "*L*_{max}/*L* < 10^{−34}";
+        assert_eq!(
+            html(label),
+            "<i>L</i><sub>max</sub>/<i>L</i> &lt; 10<sup>−34</sup>"
+        );
+        assert_eq!(plain(label), "Lmax/L < 10⁻³⁴");
     }
 }

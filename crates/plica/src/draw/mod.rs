@@ -12,7 +12,7 @@
 //! | `light` | how bright a point of a surface is |
 //! | [`colour`] | two even maps for fields, Okabe and Ito's palette for lines |
 //! | `ticks` | round numbers for axes |
-//! | `label` | `*z*/*D*`, `*L*_{max}`, `10^{−3}` |
+//! | [`label`] | `*z*/*D*`, `*L*_{max}`, `10^{−3}`; the same as HTML and as plain text |
 //! | `canvas` | lines and texts on a page measured in points; the one file that names kuva |
 //! | [`image`] | pixels, and PNG in and out |
 //! | `animation` | pictures that follow each other |
@@ -40,7 +40,7 @@ pub mod cutaway;
 mod frame;
 pub mod image;
 pub mod inset;
-mod label;
+pub mod label;
 mod light;
 mod notes;
 pub mod raster;

@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 /// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
 /// | `*.png` | pictures |
 /// | `pictures/` | states and paths drawn on request |
+/// | `report.html` | the run as a page, on request |
 /// | `vtk/` | states as files of VTK, in a folder and a collection for each kind |
 /// | `imperfections/mode-NN.safetensors` | a mode that imperfection NN has the shape of |
 /// | `stability.csv`, `eigenvalues.csv`, `eigenpairs.csv`, `modes/` | what a test of stability found |
@@ -117,6 +118,29 @@ impl RunDirectory {
     pub fn verdict(&self) -> String {
         let verdict = manifest(&self.path)["verdict"].as_str().map(String::from);
         verdict.unwrap_or_else(|| "running".into())
+    }
+
+    /// What `manifest.json` says; null where there is none.
+    pub fn manifest(&self) -> serde_json::Value {
+        manifest(&self.path)
+    }
+
+    /// The bytes of one of its files; none if it is not there.
+    pub fn read(&self, name: &str) -> Option<Vec<u8>> {
+        fs::read(self.path.join(name)).ok()
+    }
+
+    /// The rows of one of its tables as texts, the names of the columns first; none if it is not there, or broken.
+    pub fn records(&self, name: &str) -> Option<Vec<Vec<String>>> {
+        let mut table = csv::ReaderBuilder::new();
+        let mut table = table
+            .has_headers(false)
+            .from_path(self.path.join(name))
+            .ok()?;
+        let rows = table
+            .records()
+            .map(|row| Some(row.ok()?.iter().map(String::from).collect()));
+        rows.collect()
     }
 
     /// The version of the program that wrote it; empty if its manifest does not say.
@@ -341,7 +365,7 @@ fn is_left_over(file: &Path) -> bool {
 /// manifest goes last, so that what is left of a broken attempt is still known as a run.
 fn clear(path: &Path) -> Result<(), StudyError> {
     let mut old = stability_files(path);
-    let pictures = ["energy.png", "walls.png", "tube.png"];
+    let pictures = ["energy.png", "walls.png", "tube.png", "report.html"];
     old.extend(
         [CASE, "history.csv"]
             .iter()

@@ -1,0 +1,200 @@
+"use strict";
+// The walls of a path: unpacked, and made into triangles. How they are packed is told in page/scene.rs.
+
+/** The bytes of zlib in base64. */
+async function unpacked(base64) {
+  const packed = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** The walls of all drawn states of a run. */
+class Walls {
+  constructor(scene, bytes) {
+    [this.along, this.through, this.around] = scene.points;
+    this.scene = scene;
+    this.bytes = bytes;
+    this.count = this.along * this.through * this.around;
+    this.meridians = this.around * scene.turns;
+    this.stride = this.count * (6 + scene.fields.length);
+  }
+
+  /** Coordinates of the stored points of a state, one array each. */
+  coordinates(state) {
+    const { low, high } = this.scene;
+    return [0, 1, 2].map((i) => {
+      const start = state * this.stride + 2 * i * this.count;
+      const scale = (high[i] - low[i]) / 65535;
+      const out = new Float32Array(this.count);
+      for (let p = 0, step = 0; p < this.count; p++) {
+        step = (step + this.bytes[start + p] + 256 * this.bytes[start + this.count + p]) & 0xffff;
+        out[p] = low[i] + scale * step;
+      }
+      return out;
+    });
+  }
+
+  /** A field at the stored points of a state. */
+  values(state, field) {
+    const [low, high] = this.scene.fields[field].ends[state];
+    const start = state * this.stride + (6 + field) * this.count;
+    const out = new Float32Array(this.count);
+    for (let p = 0, step = 0; p < this.count; p++) {
+      step = (step + this.bytes[start + p]) & 0xff;
+      out[p] = low + ((high - low) * step) / 255;
+    }
+    return out;
+  }
+}
+
+/** A rectangle of vertices: rows across columns, at an offset in the arrays of a geometry. */
+class Grid {
+  constructor(offset, columns, rows, closed) {
+    Object.assign(this, { offset, columns, rows, closed });
+  }
+  get vertices() {
+    return this.columns * this.rows;
+  }
+  at(column, row) {
+    return this.offset + row * this.columns + column;
+  }
+  /** The triangles between a row and the next. */
+  strip(row, out) {
+    for (let c = 0; c + 1 < this.columns; c++) {
+      const [a, b, d, e] = [this.at(c, row), this.at(c + 1, row), this.at(c, row + 1), this.at(c + 1, row + 1)];
+      out.push(a, b, d, b, e, d);
+    }
+  }
+  /** Normals from the differences between neighbours: along a row, times along a column. */
+  normals(position, normal) {
+    const last = this.rows - 1;
+    for (let r = 0; r < this.rows; r++) {
+      const above = r === 0 ? (this.closed ? last - 1 : 0) : r - 1;
+      const below = r === last ? (this.closed ? 1 : last) : r + 1;
+      for (let c = 0; c < this.columns; c++) {
+        const [a, b] = [3 * this.at(Math.max(c - 1, 0), r), 3 * this.at(Math.min(c + 1, this.columns - 1), r)];
+        const [d, e] = [3 * this.at(c, above), 3 * this.at(c, below)];
+        const [ux, uy, uz] = [0, 1, 2].map((i) => position[b + i] - position[a + i]);
+        const [vx, vy, vz] = [0, 1, 2].map((i) => position[e + i] - position[d + i]);
+        const [x, y, z] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+        const n = 3 * this.at(c, r);
+        const length = Math.hypot(x, y, z) || 1;
+        [normal[n], normal[n + 1], normal[n + 2]] = [x / length, y / length, z / length];
+      }
+    }
+  }
+}
+
+/** Levels of a drawn section through the wall. */
+const SECTION_LEVELS = 7;
+
+/** A tube as two meshes: its faces and ends, and the two sections where it is cut open. */
+class Tube {
+  constructor(walls, colours) {
+    this.walls = walls;
+    const { along, through, meridians } = walls;
+    this.outer = new Grid(0, along, meridians + 1, true);
+    this.inner = new Grid(this.outer.vertices, along, meridians + 1, true);
+    const ends = 2 * this.outer.vertices;
+    this.ends = [0, 1].map((k) => new Grid(ends + k * through * (meridians + 1), through, meridians + 1, true));
+    const shell = [this.outer, this.inner, ...this.ends];
+    this.shell = geometry(ends + 2 * this.ends[0].vertices);
+    const triangles = [];
+    for (let j = 0; j < meridians; j++) {
+      shell.forEach((grid) => grid.strip(j, triangles));
+    }
+    this.perMeridian = triangles.length / meridians;
+    this.shell.setIndex(triangles);
+    this.grids = shell;
+
+    this.sides = [0, 1].map((k) => new Grid(k * along * SECTION_LEVELS, along, SECTION_LEVELS, false));
+    this.section = geometry(2 * along * SECTION_LEVELS);
+    const across = [];
+    this.sides.forEach((grid) => {
+      for (let r = 0; r + 1 < SECTION_LEVELS; r++) grid.strip(r, across);
+    });
+    this.section.setIndex(across);
+
+    const look = { map: colours, side: THREE.DoubleSide };
+    this.solid = new THREE.MeshLambertMaterial(look);
+    this.ghost = new THREE.MeshLambertMaterial({ ...look, transparent: true, opacity: 0.16, depthWrite: false });
+    this.group = new THREE.Group();
+    this.sectionMesh = new THREE.Mesh(this.section, this.solid);
+    this.group.add(new THREE.Mesh(this.shell, [this.solid, this.ghost]), this.sectionMesh);
+    this.group.children.forEach((mesh) => (mesh.frustumCulled = false));
+  }
+
+  /** Shows a state, coloured by a field between two values, with degrees of the wall taken away. */
+  show(state, field, [low, high], degrees, ghost) {
+    const { walls } = this;
+    const { along, through, around, meridians } = walls;
+    const [z, x, y] = walls.coordinates(state);
+    const values = walls.values(state, field);
+    const middle = 0.5 * (walls.scene.low[0] + walls.scene.high[0]);
+    const colour = (value) => (0.5 + 255 * Math.min(Math.max((value - low) / (high - low), 0), 1)) / 256;
+    const turns = Array.from({ length: walls.scene.turns }, (_, t) => {
+      const angle = (2 * Math.PI * t) / walls.scene.turns;
+      return [Math.cos(angle), Math.sin(angle)];
+    });
+    // A vertex from stored points with weights.
+    const put = (geometry, vertex, meridian, points) => {
+      const [cos, sin] = turns[Math.floor(meridian / around) % turns.length];
+      let [a, b, c, v] = [-middle, 0, 0, 0];
+      for (const [p, weight] of points) {
+        a += weight * z[p];
+        b += weight * x[p];
+        c += weight * y[p];
+        v += weight * values[p];
+      }
+      const position = geometry.attributes.position.array;
+      [position[3 * vertex], position[3 * vertex + 1], position[3 * vertex + 2]] = [a, b * cos - c * sin, b * sin + c * cos];
+      const uv = geometry.attributes.uv.array;
+      [uv[2 * vertex], uv[2 * vertex + 1]] = [colour(v), 0.5];
+    };
+    const point = (meridian, level, i) => ((meridian % around) * through + level) * along + i;
+    for (let j = 0; j <= meridians; j++) {
+      for (let i = 0; i < along; i++) {
+        put(this.shell, this.outer.at(i, j), j, [[point(j, through - 1, i), 1]]);
+        put(this.shell, this.inner.at(i, j), j, [[point(j, 0, i), 1]]);
+      }
+      for (let k = 0; k < through; k++) {
+        put(this.shell, this.ends[0].at(k, j), j, [[point(j, k, 0), 1]]);
+        put(this.shell, this.ends[1].at(k, j), j, [[point(j, k, along - 1), 1]]);
+      }
+    }
+    refresh(this.shell, this.grids);
+
+    const first = Math.round((degrees / 360) * meridians);
+    this.shell.clearGroups();
+    this.shell.addGroup(first * this.perMeridian, (meridians - first) * this.perMeridian, 0);
+    this.shell.addGroup(0, first * this.perMeridian, 1);
+    this.ghost.visible = ghost;
+    this.sectionMesh.visible = first > 0;
+    [first, meridians].forEach((meridian, side) => {
+      for (let r = 0; r < SECTION_LEVELS; r++) {
+        const xi = r / (SECTION_LEVELS - 1);
+        // The parabola through the three stored levels.
+        const weights = [(1 - xi) * (1 - 2 * xi), 4 * xi * (1 - xi), xi * (2 * xi - 1)];
+        for (let i = 0; i < along; i++) {
+          const points = weights.map((weight, k) => [point(meridian, k, i), weight]);
+          put(this.section, this.sides[side].at(i, r), meridian, points);
+        }
+      }
+    });
+    refresh(this.section, this.sides);
+  }
+}
+
+function geometry(vertices) {
+  const made = new THREE.BufferGeometry();
+  for (const [name, size] of [["position", 3], ["normal", 3], ["uv", 2]]) {
+    made.setAttribute(name, new THREE.BufferAttribute(new Float32Array(size * vertices), size));
+  }
+  return made;
+}
+
+function refresh(geometry, grids) {
+  const { position, normal, uv } = geometry.attributes;
+  grids.forEach((grid) => grid.normals(position.array, normal.array));
+  [position, normal, uv].forEach((attribute) => (attribute.needsUpdate = true));
+}
