@@ -192,7 +192,7 @@ fn told(told: &Told<'_>) -> (Known, Shelf) {
         title: told.plan.title.clone(),
         headline: words::headline(told, &findings),
         complete: told.directory.verdict() == "complete",
-        findings: findings.lines(),
+        findings: findings.lines().into_iter().map(raised).collect(),
         warnings: words::warnings(told, scene.left_out),
         case: String::from_utf8_lossy(&told.directory.read("case.toml").unwrap_or_default())
             .into_owned(),
@@ -241,6 +241,11 @@ fn told(told: &Told<'_>) -> (Known, Shelf) {
         loads: told.rows.iter().map(loads).collect(),
     };
     (known, shelf)
+}
+
+/// A finding with its power raised.
+fn raised((name, words): (&'static str, String)) -> (&'static str, String) {
+    (name, words.replace("D^3", "D³"))
 }
 
 fn loads(row: &Row) -> [f64; 8] {

@@ -12,25 +12,27 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use std::io::Write;
 
-/// Levels through the wall: across so thin a wall fields are parabolas, nearly, and the page draws them as such.
-const LEVELS: usize = 3;
+/// Levels through the wall: of a tube whose meridians are all the same, and of any other.
+const LEVELS: [usize; 2] = [9, 5];
 /// Meridians that are drawn of a tube whose meridians are all the same.
 const TURNS: usize = 96;
 /// Points along and around, at most and at least: the finest that leaves the page small enough is taken.
 const FINENESS: [[usize; 2]; 4] = [[401, 60], [241, 48], [161, 40], [121, 32]];
 /// Bytes of all states before they are packed, at most.
-const LARGEST: usize = 16_000_000;
-/// Steps of a coordinate, and of a value.
-const STEPS: (f64, f64) = (65535.0, 255.0);
+const LARGEST: usize = 60_000_000;
+/// Steps of a coordinate, and of a value: 255 of the latter would show as bands.
+const STEPS: (f64, f64) = (65535.0, 4095.0);
+/// Numbers of a point, two bytes each.
+const NUMBERS: usize = 3 + Field::ALL.len();
 /// The part of all values that the colours span.
 const SHOWN: f64 = 0.995;
 
 /// A path of walls.
 ///
-/// A state is a list of bytes. First its coordinates: for each of (along, up, towards the viewer) the low bytes of all
-/// points and then the high bytes, of the difference to the point before in steps between `low` and `high`. Then its fields:
-/// for each the bytes of all points, of the difference to the point before in steps between that state's own ends. Points run
-/// along the tube, then through the wall, then around.
+/// A state is a list of bytes: for each of its coordinates (along, up, towards the viewer) and then each of its fields the
+/// low bytes of all points and then the high bytes, of the difference to the point before, modulo 2¹⁶; of a coordinate in
+/// 65535 steps between `low` and `high`, of a field in 4095 steps between that state's own ends. Points run along the tube,
+/// then through the wall, then around.
 #[derive(Clone, Debug, Serialize)]
 pub struct Scene {
     /// Points along the tube, through the wall and around one sector.
@@ -77,7 +79,7 @@ impl Scene {
     pub fn of(plan: &Plan, states: &[Shown], upwards: f64) -> Self {
         let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
         let (points, turns) = fineness(&tube, states.len());
-        let bytes = points.iter().product::<usize>() * (6 + Field::ALL.len());
+        let bytes = points.iter().product::<usize>() * 2 * NUMBERS;
         let every = (bytes * states.len()).div_ceil(LARGEST).max(1);
         // The last one always.
         let kept = |i: &usize| (states.len() - 1 - i).is_multiple_of(every);
@@ -96,15 +98,17 @@ impl Scene {
         let bounds = |i: usize| ends(walls.iter().flat_map(|wall| &wall.position[i]));
         let bounds = [0, 1, 2].map(bounds);
         let mut data = vec![];
+        let mut add = |values: &[f64], ends, steps| {
+            let differences = differences(values, ends, steps);
+            data.extend(differences.iter().map(|step| *step as u8));
+            data.extend(differences.iter().map(|step| (step >> 8) as u8));
+        };
         for wall in &walls {
             for (values, ends) in wall.position.iter().zip(bounds) {
-                let steps = differences(values, ends, STEPS.0);
-                data.extend(steps.iter().map(|step| *step as u8));
-                data.extend(steps.iter().map(|step| (step >> 8) as u8));
+                add(values, ends, STEPS.0);
             }
             for values in &wall.values {
-                let steps = differences(values, ends(values.iter()), STEPS.1);
-                data.extend(steps.iter().map(|step| *step as u8));
+                add(values, ends(values.iter()), STEPS.1);
             }
         }
         let fields = Field::ALL.iter().zip(labels).enumerate();
@@ -136,16 +140,15 @@ fn fineness(tube: &SplineTube, states: usize) -> ([usize; 3], usize) {
     let along = 2 * tube.axial.elements() + 1;
     let sector = &tube.sector;
     if sector.rings == 1 {
-        return ([along.min(FINENESS[0][0]), LEVELS, 1], TURNS);
+        return ([along.min(FINENESS[0][0]), LEVELS[0], 1], TURNS);
     }
     let turns = sector.around / sector.rings;
     let of = |[most_along, most_around]: [usize; 2]| {
         let around = (3 * sector.around).min(most_around).div_ceil(turns).max(2);
-        [along.min(most_along), LEVELS, around]
+        [along.min(most_along), LEVELS[1], around]
     };
-    let small = |points: &[usize; 3]| {
-        points.iter().product::<usize>() * (6 + Field::ALL.len()) * states <= LARGEST
-    };
+    let small =
+        |points: &[usize; 3]| points.iter().product::<usize>() * 2 * NUMBERS * states <= LARGEST;
     let points = FINENESS.map(of).into_iter().find(small);
     (points.unwrap_or(of(FINENESS[3])), turns)
 }

@@ -22,7 +22,21 @@ pub fn headline(told: &Told<'_>, findings: &Findings<'_>) -> String {
             last.overhang
         ),
     });
-    format!("{ended} {}", did.unwrap_or_default())
+    let leans = last.filter(|last| last.departure > super::VISIBLE * findings.scale.length);
+    let leans = leans.map(|last| {
+        let waves = last.departure_harmonic;
+        let far = format!("{:.3} {unit}", last.departure);
+        format!(
+            "It is not axisymmetric: its wall {} by {far}.",
+            match waves {
+                1 => "has moved sideways".to_owned(),
+                2 => "is oval".to_owned(),
+                n => format!("has {n} waves around"),
+            }
+        )
+    });
+    let words = [Some(ended.to_owned()), did, leans];
+    words.into_iter().flatten().collect::<Vec<_>>().join(" ")
 }
 
 fn shaped(shape: &str) -> String {
@@ -55,34 +69,34 @@ pub fn warnings(told: &Told<'_>, left_out: usize) -> Vec<String> {
             let states = match steps.len() {
                 1 => format!("State {first}"),
                 n if last - first + 1 == n => format!("States {first} to {last}"),
-                n => format!("{n} states, {first} to {last},"),
+                n => format!("{n} states from {first} to {last}"),
             };
-            warnings.push(format!("{states} {what}"));
+            warnings.push(format!("{states}: {what}"));
         }
     };
     count(
         |row| row.equilibrium == "no",
-        "were accepted out of equilibrium, as the case's scheme allows.",
+        "accepted out of equilibrium, as the case's scheme allows.",
     );
     count(
         |row| row.crosses_itself(),
-        "have a wall that crosses itself: nothing holds it apart, and what it does there is not physical.",
+        "the wall crosses itself; nothing holds it apart, and what it does there is not physical.",
     );
     count(
         |row| row.has_closed(),
-        "have a closed lumen: nothing holds opposite walls apart, and what they do there is not physical.",
+        "the lumen is closed; nothing holds opposite walls apart, and what they do there is not physical.",
     );
     count(
         |row| row.method == "relaxation",
-        "were found by relaxation: the path before ended there, or was lost sight of, and the tube went down to another state.",
+        "found by relaxation; the path before ended there, or was lost sight of, and the tube went down in energy to another state.",
     );
     count(
         |row| row.lost_harmonics().any(|n| n != "unknown"),
-        "are unstable, if only to what their symmetry does not let happen here.",
+        "unstable, if only to what their symmetry does not let happen here.",
     );
     count(
         |row| row.lost_harmonics().any(|n| n == "unknown"),
-        "were not shown to be stable or unstable.",
+        "not shown to be stable or unstable.",
     );
     let version = told.directory.written_by();
     let own = env!("CARGO_PKG_VERSION");

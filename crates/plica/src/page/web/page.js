@@ -213,7 +213,7 @@ class Page {
     for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; n++) {
       const mark = document.createElement("span");
       mark.style.left = `${(100 * (n * step - low)) / (high - low)}%`;
-      mark.textContent = told(Number((n * step).toPrecision(10))).replace(/\.?0+e/, "e");
+      mark.textContent = told(Number((n * step).toPrecision(10)), 4, Math.max(Math.abs(low), Math.abs(high)));
       marks.push(mark);
     }
     $("bar-marks").replaceChildren(...marks);

@@ -4,24 +4,34 @@
 /** A colour of the page's style by its name. */
 const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/** A number as an axis or a label sets it. */
-function told(x) {
+const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+
+/** A number in so many digits; in a power of ten if it goes with some as large or small as `size`. */
+function told(x, digits = 5, size = Math.abs(x)) {
   if (x === null || x === undefined) return "–";
   if (x === 0) return "0";
-  const size = Math.abs(x);
-  const text = size >= 1e4 || size < 1e-2 ? x.toExponential(3) : String(Number(x.toPrecision(5)));
-  return text.replace("e-", "e−").replace(/^-/, "−");
+  if (size < 1e4 && size >= 1e-2) return String(Number(x.toPrecision(digits))).replace("-", "−");
+  const [mantissa, exponent] = x.toExponential(Math.min(digits, 4) - 1).split("e");
+  const power = [...exponent.replace("+", "")].map((letter) => RAISED[letter]).join("");
+  return `${String(Number(mantissa)).replace("-", "−")}×10${power}`;
 }
 
-/** Ticks of an axis: all in one power of ten if they are small or large. */
+/** Ticks of an axis. */
 function ticks(_, splits) {
   const largest = Math.max(...splits.map((x) => Math.abs(x ?? 0)));
-  return splits.map((x) => {
-    if (x === null) return "";
-    if (x === 0) return "0";
-    const text = largest >= 1e4 || largest < 1e-2 ? x.toExponential(1).replace(".0e", "e") : String(Number(x.toPrecision(6)));
-    return text.replace("e-", "e−").replace(/^-/, "−");
-  });
+  return splits.map((x) => (x === null ? "" : told(x, 4, largest)));
+}
+
+/** A little room at both ends. */
+function roomy(_, low, high) {
+  const room = 0.03 * (high - low) || 0.5;
+  return [low - room, high + room];
+}
+
+/** From zero where nothing is below. */
+function grounded(_, low, high) {
+  const room = 0.08 * (high - Math.min(low, 0)) || 1;
+  return [low >= 0 ? 0 : low - room, high + room];
 }
 
 class Plot {
@@ -58,16 +68,18 @@ class Plot {
       height: this.height(),
       legend: { show: series.length > 1, live: false, markers: { width: 3 } },
       cursor: { drag: { x: false, y: false }, y: false, points: { size: 9 } },
-      scales: { x: { time: false } },
-      axes: [axis(xLabel, { size: 40, labelSize: 20 }), axis(yLabel, { size: 62, labelSize: 20 })],
+      scales: { x: { time: false, range: roomy }, y: { range: grounded } },
+      axes: [axis(xLabel, { size: 40, labelSize: 20 }), axis(yLabel, { size: 66, labelSize: 20 })],
       series: [
         {},
-        ...series.map(({ label, colour }) => ({
+        ...series.map(({ label, colour }, i) => ({
           label,
           stroke: colour,
           width: 1.8,
+          // One beneath another is seen between the dashes.
+          dash: i === 0 ? undefined : [7, 5],
           spanGaps: true,
-          points: { show: true, size: 4.5, fill: colour, stroke: colour },
+          points: { show: true, size: i === 0 ? 5 : 3.5, fill: colour, stroke: colour },
         })),
       ],
       hooks: {

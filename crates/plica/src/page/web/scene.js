@@ -16,34 +16,30 @@ class Walls {
     this.bytes = bytes;
     this.count = this.along * this.through * this.around;
     this.meridians = this.around * scene.turns;
-    this.stride = this.count * (6 + scene.fields.length);
+    this.stride = 2 * this.count * (3 + scene.fields.length);
+  }
+
+  /** The numbers of the stored points that come so many-th in a state, between two ends. */
+  numbers(state, which, low, high, steps) {
+    const start = state * this.stride + 2 * which * this.count;
+    const out = new Float32Array(this.count);
+    for (let p = 0, step = 0; p < this.count; p++) {
+      step = (step + this.bytes[start + p] + 256 * this.bytes[start + this.count + p]) & 0xffff;
+      out[p] = low + ((high - low) * step) / steps;
+    }
+    return out;
   }
 
   /** Coordinates of the stored points of a state, one array each. */
   coordinates(state) {
     const { low, high } = this.scene;
-    return [0, 1, 2].map((i) => {
-      const start = state * this.stride + 2 * i * this.count;
-      const scale = (high[i] - low[i]) / 65535;
-      const out = new Float32Array(this.count);
-      for (let p = 0, step = 0; p < this.count; p++) {
-        step = (step + this.bytes[start + p] + 256 * this.bytes[start + this.count + p]) & 0xffff;
-        out[p] = low[i] + scale * step;
-      }
-      return out;
-    });
+    return [0, 1, 2].map((i) => this.numbers(state, i, low[i], high[i], 65535));
   }
 
   /** A field at the stored points of a state. */
   values(state, field) {
     const [low, high] = this.scene.fields[field].ends[state];
-    const start = state * this.stride + (6 + field) * this.count;
-    const out = new Float32Array(this.count);
-    for (let p = 0, step = 0; p < this.count; p++) {
-      step = (step + this.bytes[start + p]) & 0xff;
-      out[p] = low + ((high - low) * step) / 255;
-    }
-    return out;
+    return this.numbers(state, 3 + field, low, high, 4095);
   }
 }
 
@@ -85,9 +81,6 @@ class Grid {
   }
 }
 
-/** Levels of a drawn section through the wall. */
-const SECTION_LEVELS = 7;
-
 /** A tube as two meshes: its faces and ends, and the two sections where it is cut open. */
 class Tube {
   constructor(walls, colours) {
@@ -107,11 +100,11 @@ class Tube {
     this.shell.setIndex(triangles);
     this.grids = shell;
 
-    this.sides = [0, 1].map((k) => new Grid(k * along * SECTION_LEVELS, along, SECTION_LEVELS, false));
-    this.section = geometry(2 * along * SECTION_LEVELS);
+    this.sides = [0, 1].map((k) => new Grid(k * along * through, along, through, false));
+    this.section = geometry(2 * along * through);
     const across = [];
     this.sides.forEach((grid) => {
-      for (let r = 0; r + 1 < SECTION_LEVELS; r++) grid.strip(r, across);
+      for (let k = 0; k + 1 < through; k++) grid.strip(k, across);
     });
     this.section.setIndex(across);
 
@@ -136,30 +129,25 @@ class Tube {
       const angle = (2 * Math.PI * t) / walls.scene.turns;
       return [Math.cos(angle), Math.sin(angle)];
     });
-    // A vertex from stored points with weights.
-    const put = (geometry, vertex, meridian, points) => {
+    // A vertex from a stored point, turned.
+    const put = (geometry, vertex, meridian, point) => {
       const [cos, sin] = turns[Math.floor(meridian / around) % turns.length];
-      let [a, b, c, v] = [-middle, 0, 0, 0];
-      for (const [p, weight] of points) {
-        a += weight * z[p];
-        b += weight * x[p];
-        c += weight * y[p];
-        v += weight * values[p];
-      }
       const position = geometry.attributes.position.array;
-      [position[3 * vertex], position[3 * vertex + 1], position[3 * vertex + 2]] = [a, b * cos - c * sin, b * sin + c * cos];
+      position[3 * vertex] = z[point] - middle;
+      position[3 * vertex + 1] = x[point] * cos - y[point] * sin;
+      position[3 * vertex + 2] = x[point] * sin + y[point] * cos;
       const uv = geometry.attributes.uv.array;
-      [uv[2 * vertex], uv[2 * vertex + 1]] = [colour(v), 0.5];
+      [uv[2 * vertex], uv[2 * vertex + 1]] = [colour(values[point]), 0.5];
     };
     const point = (meridian, level, i) => ((meridian % around) * through + level) * along + i;
     for (let j = 0; j <= meridians; j++) {
       for (let i = 0; i < along; i++) {
-        put(this.shell, this.outer.at(i, j), j, [[point(j, through - 1, i), 1]]);
-        put(this.shell, this.inner.at(i, j), j, [[point(j, 0, i), 1]]);
+        put(this.shell, this.outer.at(i, j), j, point(j, through - 1, i));
+        put(this.shell, this.inner.at(i, j), j, point(j, 0, i));
       }
       for (let k = 0; k < through; k++) {
-        put(this.shell, this.ends[0].at(k, j), j, [[point(j, k, 0), 1]]);
-        put(this.shell, this.ends[1].at(k, j), j, [[point(j, k, along - 1), 1]]);
+        put(this.shell, this.ends[0].at(k, j), j, point(j, k, 0));
+        put(this.shell, this.ends[1].at(k, j), j, point(j, k, along - 1));
       }
     }
     refresh(this.shell, this.grids);
@@ -171,13 +159,9 @@ class Tube {
     this.ghost.visible = ghost;
     this.sectionMesh.visible = first > 0;
     [first, meridians].forEach((meridian, side) => {
-      for (let r = 0; r < SECTION_LEVELS; r++) {
-        const xi = r / (SECTION_LEVELS - 1);
-        // The parabola through the three stored levels.
-        const weights = [(1 - xi) * (1 - 2 * xi), 4 * xi * (1 - xi), xi * (2 * xi - 1)];
+      for (let k = 0; k < through; k++) {
         for (let i = 0; i < along; i++) {
-          const points = weights.map((weight, k) => [point(meridian, k, i), weight]);
-          put(this.section, this.sides[side].at(i, r), meridian, points);
+          put(this.section, this.sides[side].at(i, k), meridian, point(meridian, k, i));
         }
       }
     });

@@ -9,7 +9,7 @@ const DIRECTIONS = {
   ileum: [1, 0.3, 0.5],
 };
 /** Height that a tube is given, in D. */
-const LANE = 1.35;
+const LANE = 1.45;
 
 class View {
   constructor(stage, canvas, runs, colours) {
@@ -19,12 +19,12 @@ class View {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(24, 1, 0.05, 500);
-    const sun = new THREE.DirectionalLight(0xffffff, 2.1);
+    const sun = new THREE.DirectionalLight(0xffffff, 1.7);
     sun.position.set(-0.4, 0.9, 1);
     // The light comes from over the viewer's shoulder, wherever the viewer is.
     this.camera.add(sun, sun.target);
     sun.target.position.set(0, 0, -1);
-    this.scene.add(new THREE.AmbientLight(0xffffff, 1.55), this.camera);
+    this.scene.add(new THREE.AmbientLight(0xffffff, 1.45), this.camera);
 
     const flat = new Uint8Array(colours.flatMap(([r, g, b]) => [r, g, b, 255]));
     const map = new THREE.DataTexture(flat, colours.length, 1, THREE.RGBAFormat);
@@ -39,16 +39,12 @@ class View {
       return tube;
     });
     this.length = Math.max(...runs.map(({ scene }) => scene.high[0] - scene.low[0]));
-    this.labels = runs.flatMap(({ scene }, i) =>
-      [["colon", -1], ["ileum", 1]].map(([name, sign]) => {
-        const label = document.createElement("span");
-        label.className = "end";
-        label.textContent = name;
-        stage.append(label);
-        const half = 0.5 * (scene.high[0] - scene.low[0]) + 0.16 * scene.diameter;
-        return { label, place: new THREE.Vector3(sign * half, this.tubes[i].group.position.y, 0) };
-      }),
-    );
+    this.labels = runs.flatMap(({ name, scene }, i) => {
+      const half = 0.5 * (scene.high[0] - scene.low[0]) + 0.16 * scene.diameter;
+      const y = this.tubes[i].group.position.y;
+      const labels = [this.label("colon", "end", -half, y), this.label("ileum", "end", half, y)];
+      return runs.length > 1 ? [...labels, this.label(name, "end name", -0.5 * (scene.high[0] - scene.low[0]), y + 0.72 * scene.diameter)] : labels;
+    });
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enablePan = true;
     this.controls.addEventListener("change", () => this.draw());
@@ -57,6 +53,15 @@ class View {
     this.direction = "oblique";
     this.resize();
     this.look("oblique");
+  }
+
+  /** A text that stays at a place of the scene. */
+  label(text, style, x, y) {
+    const label = document.createElement("span");
+    label.className = style;
+    label.textContent = text;
+    this.stage.append(label);
+    return { label, place: new THREE.Vector3(x, y, 0) };
   }
 
   /** Looks at all tubes from a direction that has a name. */
