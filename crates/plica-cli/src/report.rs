@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::finished::Finished;
 use crate::{console, threads};
 use plica::page::{PageError, Told, page};
-use plica::report::Shown;
+use plica::study::SavedState;
 use std::path::{Path, PathBuf};
 
 /// Writes runs as a page.
@@ -13,10 +13,11 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     threads::limit(arguments.threads)?;
     let open = |path: &PathBuf| {
         let run = Finished::open(path)?;
-        let states: Result<Vec<Shown>, Failure> = run.saved.keys().map(|&n| run.state(n)).collect();
+        let state = |&number: &usize| Ok(run.state(number)?.0);
+        let states: Result<Vec<SavedState>, Failure> = run.saved.keys().map(state).collect();
         Ok((run, states?))
     };
-    let runs: Result<Vec<(Finished, Vec<Shown>)>, Failure> =
+    let runs: Result<Vec<(Finished, Vec<SavedState>)>, Failure> =
         arguments.runs.iter().map(open).collect();
     let runs = runs?;
     let names = names(&arguments.runs);

@@ -18,8 +18,7 @@ mod scene;
 mod words;
 
 use crate::draw::{self, Map};
-use crate::report::Shown;
-use crate::study::{Findings, Plan, Row, RunDirectory, Scale};
+use crate::study::{Findings, Plan, Row, RunDirectory, SavedState, Scale};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use measures::Measure;
@@ -42,7 +41,7 @@ pub struct Told<'a> {
     /// Its history.
     pub rows: &'a [Row],
     /// Its saved states; at least one.
-    pub states: &'a [Shown],
+    pub states: &'a [SavedState],
     /// Where its case, its tables and its pictures are.
     pub directory: &'a RunDirectory,
 }
@@ -286,7 +285,7 @@ fn eigenvalues(told: &Told<'_>) -> Vec<Measure> {
                 .map(|row| of(column, row.step).unwrap_or(f64::NAN));
             Measure::new(
                 &format!("lowest_{n}"),
-                &format!("lowest eigenvalue of harmonic {n} (*E*/*D*^{{2}})"),
+                &format!("lowest eigenvalue, *n* = {n} (*E*/*D*^{{2}})"),
                 false,
                 values,
             )

@@ -1,8 +1,8 @@
 //! The walls of a path as numbers that a browser draws: sampled, quantised, packed.
 
 use crate::assembly::{Point, Sample, SplineTube};
-use crate::report::{Field, Shown};
-use crate::study::Plan;
+use crate::report::Field;
+use crate::study::{Plan, SavedState};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -76,20 +76,19 @@ struct Wall {
 
 impl Scene {
     /// The saved states of a path; the meridian at the angle `upwards` comes first.
-    pub fn of(plan: &Plan, states: &[Shown], upwards: f64) -> Self {
+    pub fn of(plan: &Plan, states: &[SavedState], upwards: f64) -> Self {
         let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
         let (points, turns) = fineness(&tube, states.len());
-        let bytes = points.iter().product::<usize>() * 2 * NUMBERS;
-        let every = (bytes * states.len()).div_ceil(LARGEST).max(1);
+        let every = (bytes(points) * states.len()).div_ceil(LARGEST).max(1);
         // The last one always.
         let kept = |i: &usize| (states.len() - 1 - i).is_multiple_of(every);
-        let kept: Vec<&Shown> = (0..states.len()).filter(kept).map(|i| &states[i]).collect();
+        let kept: Vec<&SavedState> = (0..states.len()).filter(kept).map(|i| &states[i]).collect();
 
         let labels: Vec<(String, f64)> = Field::ALL.iter().map(|f| f.label(plan)).collect();
         let length = Field::Displacement.label(plan).1;
         let walls: Vec<Wall> = kept
             .par_iter()
-            .map(|(state, _)| {
+            .map(|state| {
                 let at = |point| tube.sample(&state.load, &state.u, point);
                 Wall::of(&tube, points, turns, upwards, length, &labels, at)
             })
@@ -128,11 +127,16 @@ impl Scene {
             high: bounds.map(|[_, high]| high),
             diameter: length,
             fields: colouring.collect(),
-            rows: kept.iter().map(|(_, row)| row.step).collect(),
+            rows: kept.iter().map(|state| state.row).collect(),
             left_out: states.len() - kept.len(),
             data: packed(&data),
         }
     }
+}
+
+/// Bytes of a state.
+fn bytes(points: [usize; 3]) -> usize {
+    points.iter().product::<usize>() * 2 * NUMBERS
 }
 
 /// Points along, through and around a sector, and how many sectors there are.
@@ -240,4 +244,156 @@ fn packed(data: &[u8]) -> String {
     // Writing to memory does not fail.
     let bytes = encoder.write_all(data).and_then(|()| encoder.finish());
     STANDARD.encode(bytes.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{Material, NeoHookean};
+    use crate::study::{Layout, Output};
+    use crate::tube::{Mesh, Support, Symmetry, Tube};
+    use flate2::read::ZlibDecoder;
+    use std::io::Read;
+
+    /// A tube of `12` rings under a symmetry, its states to come.
+    fn plan(symmetry: Symmetry) -> Plan {
+        Plan {
+            title: String::new(),
+            tube: Tube {
+                length: 1.0,
+                thickness: 0.1,
+                material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+                muscles: vec![],
+                ends: [Support::Free; 2],
+                imperfections: vec![],
+            },
+            mesh: Mesh {
+                axial: 6,
+                around: 12,
+                thickness: 4,
+                degree: 3,
+                refinements: vec![],
+                volumetric: Default::default(),
+            },
+            symmetry,
+            start: None,
+            modes: vec![],
+            stages: vec![],
+            solver: Default::default(),
+            output: Output::default(),
+            units: None,
+        }
+    }
+
+    /// What the page's script does, in Rust.
+    fn unpacked(bytes: &[u8], [low, high]: [f64; 2], steps: f64) -> Vec<f64> {
+        let (lows, highs) = bytes.split_at(bytes.len() / 2);
+        let mut step = 0_u16;
+        let number = |(a, b): (&u8, &u8)| {
+            step = step.wrapping_add(u16::from_le_bytes([*a, *b]));
+            low + (high - low) * f64::from(step) / steps
+        };
+        lows.iter().zip(highs).map(number).collect()
+    }
+
+    fn is_where_the_tube_is(symmetry: Symmetry) {
+        let plan = plan(symmetry);
+        let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(symmetry));
+        let state = |row: usize| SavedState {
+            stage: String::new(),
+            row,
+            along: 0.0,
+            muscles: vec![],
+            load: plan.tube.rest(),
+            layout: Layout::of(&plan),
+            // Wider along the tube, and twisted.
+            u: tube.control_values(|z, r, _| {
+                [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * row as f64)
+            }),
+            arrays: Default::default(),
+        };
+        let (states, upwards) = ([state(1), state(2)], 0.4);
+        let scene = Scene::of(&plan, &states, upwards);
+        assert_eq!((scene.rows.as_slice(), scene.left_out), (&[1, 2][..], 0));
+        let [along, through, around] = scene.points;
+        let count = along * through * around;
+        let mut bytes = vec![];
+        let packed = STANDARD.decode(&scene.data).unwrap();
+        ZlibDecoder::new(&packed[..])
+            .read_to_end(&mut bytes)
+            .unwrap();
+        assert_eq!(bytes.len(), 2 * 2 * NUMBERS * count);
+        for (k, state) in states.iter().enumerate() {
+            let part = |which: usize| {
+                let start = 2 * count * (NUMBERS * k + which);
+                &bytes[start..start + 2 * count]
+            };
+            let position =
+                [0, 1, 2].map(|i| unpacked(part(i), [scene.low[i], scene.high[i]], STEPS.0));
+            let fields = scene.fields.iter().enumerate();
+            let values: Vec<Vec<f64>> = fields
+                .map(|(f, field)| unpacked(part(3 + f), field.ends[k], STEPS.1))
+                .collect();
+            for point in (0..count).step_by(7) {
+                let (i, level, j) = (
+                    point % along,
+                    point / along % through,
+                    point / along / through,
+                );
+                let angle = TAU * j as f64 / (around * scene.turns) as f64;
+                let sample = tube.sample(
+                    &state.load,
+                    &state.u,
+                    Point {
+                        z: tube.axial.spread(along)[i],
+                        radius: tube.wall.spread(through)[level],
+                        angle: angle + upwards,
+                    },
+                );
+                let [z, x, y] = sample.position;
+                let (sin, cos) = upwards.sin_cos();
+                // Turned back by where it is to point up from.
+                let place = [z, x * cos + y * sin, y * cos - x * sin];
+                for c in 0..3 {
+                    let off = (position[c][point] - place[c]).abs();
+                    assert!(off <= (scene.high[c] - scene.low[c]) / STEPS.0, "{off}");
+                }
+                for (f, field) in Field::ALL.iter().enumerate() {
+                    let [low, high] = scene.fields[f].ends[k];
+                    let off = (values[f][point] - field.of(&sample)).abs();
+                    assert!(off <= (high - low) / STEPS.1 + 1e-15, "{field:?} {off}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_unpacked_is_where_the_tube_is() {
+        for symmetry in [Symmetry::Axisymmetric, Symmetry::Fold(4), Symmetry::None] {
+            is_where_the_tube_is(symmetry);
+        }
+    }
+
+    #[test]
+    fn a_long_path_stays_small() {
+        let plan = plan(Symmetry::None);
+        let tube = SplineTube::new(&plan.tube, &plan.mesh, 12);
+        let whole = |states: usize| {
+            let (points, turns) = fineness(&tube, states);
+            assert_eq!(turns, 1);
+            bytes(points) * states
+        };
+        assert!(whole(60) <= LARGEST && whole(600) <= LARGEST);
+        // Beyond, states are left out.
+        assert!(whole(60_000) > LARGEST);
+    }
+
+    #[test]
+    fn colours_span_most_values() {
+        let mut values: Vec<f64> = (0..1000).map(|i| 1e-3 * f64::from(i)).collect();
+        values.push(50.0);
+        let [low, high] = shown(values.iter().copied());
+        assert!(low == 0.0 && (0.9..1.0).contains(&high), "{low} {high}");
+        assert_eq!(shown([3.0; 5].into_iter()), [2.5, 3.5]);
+    }
 }

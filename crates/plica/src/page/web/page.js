@@ -69,6 +69,8 @@ class Page {
     $("state").addEventListener("input", () => this.go(Number($("state").value)));
     ["measure", "along"].forEach((id) => $(id).addEventListener("change", () => this.replot()));
     $("view").addEventListener("change", () => this.view.look($("view").value));
+    // Then the same view can be chosen again.
+    this.view.onTurned = () => ($("view").selectedIndex = -1);
     $("play").addEventListener("click", () => this.play());
     $("keep").addEventListener("click", () => this.keep());
     addEventListener("resize", () => this.colourBar());

@@ -48,9 +48,9 @@ class View {
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enablePan = true;
     this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("start", () => this.onTurned?.());
     canvas.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.resize()).observe(stage);
-    this.direction = "oblique";
     this.resize();
     this.look("oblique");
   }
@@ -66,7 +66,6 @@ class View {
 
   /** Looks at all tubes from a direction that has a name. */
   look(name) {
-    this.direction = name;
     const height = this.lane * this.tubes.length;
     const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
     const wide = this.length * 1.16;
@@ -74,7 +73,6 @@ class View {
     const direction = new THREE.Vector3(...DIRECTIONS[name]).normalize();
     this.camera.position.copy(direction.multiplyScalar(distance));
     this.controls.target.set(0, 0, 0);
-    this.turned = false;
     this.controls.update();
     this.draw();
   }
@@ -102,6 +100,7 @@ class View {
       return;
     }
     event.preventDefault();
+    this.onTurned?.();
     camera.position.copy(place.add(this.controls.target));
     this.controls.update();
     this.draw();

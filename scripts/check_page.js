@@ -1,0 +1,147 @@
+// Uses a page that `plica report` wrote as a reader would: node check_page.js PAGE NAME_OF_SCREENSHOTS
+"use strict";
+const { chromium } = require("playwright-core");
+const fs = require("node:fs");
+const path = require("node:path");
+
+const [page, name] = process.argv.slice(2);
+const url = `file://${path.resolve(page)}`;
+/** Bytes and milliseconds that a page may take. */
+const LARGEST = 15e6;
+const SLOWEST = 3000;
+
+const failures = [];
+function hold(what, holds, found = "") {
+  console.log(`  ${holds ? "ok  " : "FAIL"} ${what}${found === "" ? "" : `: ${found}`}`);
+  if (!holds) failures.push(what);
+}
+
+/** Opens the page; what the browser complained of, and what it asked for, is kept. */
+async function open(browser, options) {
+  const context = await browser.newContext(options);
+  const tab = await context.newPage();
+  const complaints = [];
+  const asked = [];
+  tab.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
+  tab.on("pageerror", (error) => complaints.push(error.message));
+  tab.on("request", (request) => !/^(data|blob):/.test(request.url()) && asked.push(request.url()));
+  const begin = Date.now();
+  await tab.goto(url);
+  await tab.waitForSelector("body[data-ready]", { timeout: 60000 });
+  return { tab, complaints, asked, took: Date.now() - begin };
+}
+
+const settled = (tab) => tab.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+/** What the canvas shows: a picture, and how many different colours it has. */
+async function seen(tab) {
+  await settled(tab);
+  return tab.evaluate(() => {
+    const canvas = document.getElementById("canvas");
+    const copy = document.createElement("canvas");
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const context = copy.getContext("2d");
+    context.drawImage(canvas, 0, 0);
+    const { data } = context.getImageData(0, 0, copy.width, copy.height);
+    const colours = new Set();
+    let inked = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (data[i + 3] > 0) {
+        inked++;
+        colours.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
+      }
+    }
+    return { picture: copy.toDataURL(), colours: colours.size, inked: inked / (data.length / 4) };
+  });
+}
+
+async function main() {
+  const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args });
+  const bytes = fs.statSync(page).size;
+  console.log(path.basename(page));
+  hold("is small enough", bytes < LARGEST, `${(bytes * 1e-6).toFixed(1)} MB`);
+
+  const { tab, complaints, asked, took } = await open(browser, { viewport: { width: 1400, height: 900 } });
+  const ready = await tab.evaluate(() => document.body.dataset.ready);
+  hold("draws the tube", ready === "yes", ready);
+  hold("opens fast enough", took < SLOWEST, `${took} ms`);
+  const last = await seen(tab);
+  hold("the canvas is not blank", last.colours > 100 && last.inked > 0.05, `${last.colours} colours on ${(100 * last.inked).toFixed(0)} %`);
+  await tab.screenshot({ path: `${name}-light.png` });
+
+  const told = () => tab.textContent("#told");
+  const change = async (what, act) => {
+    const before = await seen(tab);
+    await act();
+    const after = await seen(tab);
+    hold(what, before.picture !== after.picture);
+  };
+  const at = await told();
+  await tab.focus("#state");
+  await change("the slider moves the tube, by keys", async () => {
+    for (let i = 0; i < 3; i++) await tab.keyboard.press("ArrowLeft");
+  });
+  hold("and the words", (await told()) !== at, (await told()).slice(0, 60));
+  await change("a field recolours it", () => tab.selectOption("#field", "von-mises"));
+  await change("a scale of its own recolours it", () => tab.selectOption("#range", "state"));
+  await change("cutting away changes it", () => tab.$eval("#cut", (cut) => ((cut.value = 90), cut.dispatchEvent(new Event("input")))));
+  await change("what is cut away can be seen through", () => tab.click("#ghost"));
+  await tab.focus("#canvas");
+  await change("an arrow turns it", () => tab.keyboard.press("ArrowLeft"));
+  await change("plus brings it nearer", () => tab.keyboard.press("+"));
+  await change("a view has a name", () => tab.selectOption("#view", "front"));
+  await change("dragging turns it", async () => {
+    const box = await tab.locator("#canvas").boundingBox();
+    await tab.mouse.move(box.x + 300, box.y + 150);
+    await tab.mouse.down();
+    await tab.mouse.move(box.x + 360, box.y + 190, { steps: 4 });
+    await tab.mouse.up();
+  });
+  for (const plot of ["#plot-energy", "#plot-measure"]) {
+    await tab.selectOption("#along", "step");
+    await change(`the pointer on ${plot} moves the tube`, async () => {
+      const box = await tab.locator(`${plot} .u-over`).boundingBox();
+      await tab.mouse.move(box.x + (plot === "#plot-energy" ? 0.3 : 0.6) * box.width, box.y + 0.5 * box.height);
+    });
+  }
+  const lines = tab.locator("tr[data-step]");
+  await change("a line of the table moves the tube", () => lines.nth(1).click());
+  hold("and is marked", await lines.nth(1).evaluate((line) => line.classList.contains("here")));
+  for (const name of await tab.$$eval("#measure option", (options) => options.map((option) => option.value))) {
+    await tab.selectOption("#measure", name);
+  }
+  await tab.click("#play");
+  await tab.waitForTimeout(700);
+  await tab.click("#play");
+  await tab.screenshot({ path: `${name}-whole.png`, fullPage: true });
+  const pdf = await tab.pdf({ format: "A4" });
+  fs.writeFileSync(`${name}.pdf`, pdf);
+  hold("prints", pdf.length > 50000, `${(pdf.length * 1e-3).toFixed(0)} kB`);
+  hold("asks nothing of the network", asked.every((address) => address === url), asked.filter((address) => address !== url).join(" "));
+  hold("no complaint in the console", complaints.length === 0, complaints.join(" | "));
+
+  const phone = await open(browser, { viewport: { width: 390, height: 844 }, colorScheme: "dark", hasTouch: true, isMobile: true, deviceScaleFactor: 2 });
+  const wide = await phone.tab.evaluate(() => document.scrollingElement.scrollWidth);
+  hold("fits a phone", wide <= 390, `${wide} px wide`);
+  const paper = await phone.tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  hold("is dark by night", paper === "rgb(22, 24, 27)", paper);
+  await phone.tab.screenshot({ path: `${name}-phone.png` });
+  hold("no complaint there either", phone.complaints.length === 0, phone.complaints.join(" | "));
+  await browser.close();
+
+  const still = await chromium.launch({ executablePath: process.env.CHROMIUM, args });
+  const plain = await still.newContext({ javaScriptEnabled: false });
+  const bare = await plain.newPage();
+  await bare.goto(url);
+  hold("says something without scripts", (await bare.textContent("#findings")).includes("Lmax/L"));
+  await still.close();
+  if (failures.length > 0) {
+    console.error(`${failures.length} of ${path.basename(page)} do not hold`);
+    process.exit(1);
+  }
+}
+
+main().catch((error) => {
+  console.error(error);
+  process.exit(1);
+});
