@@ -35,6 +35,9 @@ pub enum Command {
     /// Draw states of a run, cut open and coloured by a field
     #[command(after_long_help = RENDER_EPILOGUE)]
     Render(RenderArguments),
+    /// Plot numbers of a run's states against each other, or its walls, as SVG and PNG
+    #[command(after_long_help = PLOT_EPILOGUE)]
+    Plot(PlotArguments),
     /// Draw the whole path of a run as an animation, the tube above its energy
     #[command(after_long_help = ANIMATE_EPILOGUE)]
     Animate(AnimateArguments),
@@ -117,6 +120,29 @@ pub struct VerifyArguments {
     /// Threads to use [default: all cores]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+/// What `plica plot` takes.
+#[derive(Args, Debug)]
+pub struct PlotArguments {
+    /// The directory of a run
+    #[arg(value_name = "RUN_DIR")]
+    pub run: PathBuf,
+    /// What to plot: walls, or a column of history.csv; several give several plots
+    #[arg(value_name = "WHAT", default_value = "energy")]
+    pub what: Vec<String>,
+    /// Column to plot it against [default: the number of the state]
+    #[arg(long, value_name = "COLUMN")]
+    pub along: Option<String>,
+    /// For walls: number of a state; may be given again [default: the last]
+    #[arg(long, value_name = "N")]
+    pub state: Vec<usize>,
+    /// Width of the PNG in pixels
+    #[arg(long, value_name = "PX", default_value = "1800", value_parser = clap::value_parser!(u16).range(600..=8000))]
+    pub width: u16,
+    /// File to write to, of one plot: .svg or .png by its ending [default: both, in pictures/ of the run]
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 /// What `plica report` takes.
@@ -213,6 +239,9 @@ pub struct LookArguments {
     /// Angle of the wall that is taken away: 180 is the near half, 90 its upper quarter, 0 nothing
     #[arg(long, value_name = "DEG", default_value = "180", value_parser = cutaway)]
     pub cutaway: f64,
+    /// Show what is taken away as if of glass
+    #[arg(long)]
+    pub see_through: bool,
     /// From where: oblique, front, above, colon, ileum, or a direction UP,NEAR,ALONG
     #[arg(long, value_name = "VIEW", default_value = "oblique", value_parser = view, allow_hyphen_values = true)]
     pub view: Direction,
@@ -311,6 +340,7 @@ Examples:
   plica stability runs/tube      where does its path become unstable, and how?
   plica verify                   is this program right?
   plica render runs/tube         its last state as a picture
+  plica plot runs/tube energy    its energy along the path, as SVG and PNG
   plica animate runs/tube        its whole path as an animation
   plica report runs/tube         all of it as one page for a browser
   plica export runs/tube         its states for ParaView
@@ -403,6 +433,17 @@ written before stay in the collections.
 
 Ctrl-C or SIGTERM ends it after the file at hand.";
 
+const PLOT_EPILOGUE: &str = "\
+Examples:
+  plica plot runs/tube overhang --along length_ratio
+  plica plot runs/tube walls --state 15 --state 30 --out walls.svg
+
+Columns that can be plotted are those that the run has of: length_ratio, diameter_ratio, colon_displacement, ileum_displacement,
+inner_pressure, outer_pressure, energy, potential, max_wall_angle_deg, overhang, outer_radius_min, flatness, gap, lumen,
+departure, min_det_fe, drag_work, residual, iterations; docs/run-directory.md tells what they are.
+
+Texts of an SVG stay texts, to be edited and set in a journal's font.";
+
 const REPORT_EPILOGUE: &str = "\
 The page needs nothing else: it opens from disk, goes by mail, and keeps beside a paper. It holds the tube in three
 dimensions to turn and to follow along its path, plots that move with it, what was found in words, what to beware of,
@@ -426,8 +467,7 @@ Without --out the picture goes to pictures/ in the directory of the run, named b
 
 const ANIMATE_EPILOGUE: &str = "\
 One picture per saved state, all of one scale and one colour bar; the last stays longer. The file is an animated PNG: browsers
-play it, slides and web pages take it, and programs that know no animation show the first state. Where ffmpeg is at hand,
-  ffmpeg -i energy-path.apng -pix_fmt yuv420p energy.mp4
-makes a film of it.
+play it, slides and web pages take it, and programs that know no animation show the first state. With --out and a file that
+ends in .mp4 it is a film, if ffmpeg is there.
 
 Ctrl-C or SIGTERM ends it after the pictures at hand, with nothing written.";

@@ -1,6 +1,7 @@
 //! A run that is there: its plan, its history and its saved states.
 
 use crate::case_file;
+use crate::console;
 use crate::failure::Failure;
 use plica::study::{Plan, Row, RunDirectory, SavedState};
 use std::collections::BTreeMap;
@@ -70,6 +71,27 @@ impl Finished {
         let row = self.rows.iter().find(|row| row.step == number);
         let row = row.ok_or_else(|| trouble(&"history.csv has no such state"))?;
         Ok((state, row.clone()))
+    }
+
+    /// Writes a picture where it was asked for, or else beside the run's own.
+    pub fn leave(&self, out: Option<&Path>, usual: &str, bytes: &[u8]) -> Result<(), Failure> {
+        let path = match out {
+            Some(path) => {
+                std::fs::write(path, bytes)
+                    .map_err(|error| Failure::Files(format!("{}: {error}", path.display())))?;
+                path.to_owned()
+            }
+            None => {
+                let name = format!("pictures/{usual}");
+                self.directory.write(&name, bytes).map_err(Failure::Study)?;
+                self.directory.path().join(name)
+            }
+        };
+        console::say(&format!(
+            "written to {} ({:.1} MB)\n",
+            path.display(),
+            bytes.len() as f64 * 1e-6
+        ))
     }
 
     /// The numbers of saved states, in few words.

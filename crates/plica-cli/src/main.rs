@@ -7,11 +7,13 @@ mod check;
 mod console;
 mod export;
 mod failure;
+mod film;
 mod finished;
 mod interrupt;
 mod message;
 mod new;
 mod pages;
+mod plot;
 mod progress;
 mod render;
 mod report;
@@ -42,6 +44,7 @@ fn main() -> ExitCode {
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Command::Export(arguments) => export::export(&arguments),
         Command::Render(arguments) => render::render(&arguments),
+        Command::Plot(arguments) => plot::plot(&arguments),
         Command::Animate(arguments) => render::animate(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Check { case } => check::check(&case),

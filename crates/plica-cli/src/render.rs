@@ -2,13 +2,13 @@
 
 use crate::args::{AnimateArguments, LookArguments, RenderArguments};
 use crate::failure::Failure;
+use crate::film;
 use crate::finished::Finished;
 use crate::interrupt::Interrupt;
+use crate::threads;
 use crate::ticker::Ticker;
-use crate::{console, threads};
 use plica::draw::DrawError;
 use plica::report::{self, Appearance, Field, Shown};
-use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 /// Directions of the viewer that have a name: (up, towards the viewer, along the tube).
@@ -43,7 +43,7 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     let png = report::render(&run.plan, &states?, &look).map_err(trouble)?;
     let names: Vec<String> = numbers.iter().map(|n| format!("{n:04}")).collect();
     let usual = format!("{}-state-{}.png", look.field.name(), names.join("-"));
-    write(&run, arguments.look.out.as_deref(), &usual, &png)
+    run.leave(arguments.look.out.as_deref(), &usual, &png)
 }
 
 /// Draws the whole path of a run as a picture that moves.
@@ -51,6 +51,14 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
     let run = Finished::open(&arguments.run)?;
     threads::limit(arguments.look.threads)?;
     let look = appearance(&arguments.look);
+    let film = arguments
+        .look
+        .out
+        .as_deref()
+        .filter(|path| film::is_one(path));
+    if let Some(path) = film {
+        film::possible(path)?;
+    }
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     let numbers: Vec<usize> = run.saved.keys().copied().collect();
@@ -70,8 +78,12 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
         .finish();
     match drawn.map_err(trouble)? {
         Some(bytes) => {
+            let bytes = match film {
+                Some(path) => film::of(&bytes, path)?,
+                None => bytes,
+            };
             let usual = format!("{}-path.apng", look.field.name());
-            write(&run, arguments.look.out.as_deref(), &usual, &bytes)
+            run.leave(arguments.look.out.as_deref(), &usual, &bytes)
         }
         None => Err(Failure::Interrupted("interrupted; nothing is written")),
     }
@@ -84,6 +96,7 @@ fn appearance(arguments: &LookArguments) -> Appearance {
     Appearance {
         field: field.unwrap_or_default(),
         cutaway: arguments.cutaway,
+        see_through: arguments.see_through,
         toward: arguments.view,
         range: arguments.range,
         width: usize::from(arguments.width),
@@ -92,25 +105,4 @@ fn appearance(arguments: &LookArguments) -> Appearance {
 
 fn trouble(error: DrawError) -> Failure {
     Failure::Usage(error.to_string())
-}
-
-/// Writes a picture where it was asked for, or else beside the run's own.
-fn write(run: &Finished, out: Option<&Path>, usual: &str, bytes: &[u8]) -> Result<(), Failure> {
-    let path: PathBuf = match out {
-        Some(path) => {
-            std::fs::write(path, bytes)
-                .map_err(|error| Failure::Files(format!("{}: {error}", path.display())))?;
-            path.to_owned()
-        }
-        None => {
-            let name = format!("pictures/{usual}");
-            run.directory.write(&name, bytes).map_err(Failure::Study)?;
-            run.directory.path().join(name)
-        }
-    };
-    console::say(&format!(
-        "written to {} ({:.1} MB)\n",
-        path.display(),
-        bytes.len() as f64 * 1e-6
-    ))
 }

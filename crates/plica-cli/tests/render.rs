@@ -43,8 +43,61 @@ fn states_and_the_whole_path_are_drawn() {
     assert!(said.status.success(), "{}", text(&said.stderr));
     let path = looked_at(&directory.join("path.apng"));
     assert_eq!((path.0, path.2), (700, 4));
+    if std::process::Command::new("ffmpeg")
+        .arg("-version")
+        .output()
+        .is_ok()
+    {
+        let arguments = ["animate", "run", "--width", "700", "--out", "path.mp4"];
+        let said = plica(&directory, &arguments);
+        assert!(said.status.success(), "{}", text(&said.stderr));
+        let film = fs::read(directory.join("path.mp4")).unwrap();
+        assert_eq!(&film[4..8], b"ftyp");
+    }
+    let arguments = [&["render", "run", "--see-through"], &states[..]].concat();
+    let said = plica(&directory, &arguments);
+    assert!(said.status.success(), "{}", text(&said.stderr));
     // To look changes nothing.
     assert_eq!(fs::read(run.join("history.csv")).unwrap(), history);
+}
+
+#[test]
+fn numbers_and_walls_are_plotted_for_screen_and_print() {
+    let directory = scratch("plot");
+    let run = short_run(&directory);
+    let said = plica(&directory, &["plot", "run"]);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    assert_eq!(looked_at(&run.join("pictures/energy-path.png")).0, 1800);
+    let along = ["--along", "diameter_ratio"];
+    let arguments = [&["plot", "run", "outer_radius_min", "walls"], &along[..]].concat();
+    let said = plica(&directory, &arguments);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    let svg = |name: &str| fs::read_to_string(run.join("pictures").join(name)).unwrap();
+    let plot = svg("outer_radius_min-along-diameter_ratio-path.svg");
+    assert!(plot.contains("smallest radius of the outer wall (") && plot.contains("<path d="));
+    assert!(svg("walls-state-0003.svg").contains("inner wall"));
+    let arguments = [
+        "plot", "run", "walls", "--state", "0", "--state", "2", "--out", "two.svg",
+    ];
+    let said = plica(&directory, &arguments);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    assert!(directory.join("two.svg").exists() && !directory.join("two.png").exists());
+    for (arguments, what) in [
+        (&["beauty"][..], "these are: walls, length_ratio"),
+        (&["energy", "--along", "beauty"], "beauty: not a column"),
+        (
+            &["inner_pressure"],
+            "not a column that can be plotted of this run",
+        ),
+        (&["energy", "walls", "--out", "x.svg"], "plot one at a time"),
+        (&["energy", "--out", "x.pdf"], "must end in .svg or .png"),
+        (&["walls", "--state", "9"], "these are: 0, 1, 2, 3"),
+    ] {
+        let said = plica(&directory, &[&["plot", "run"], arguments].concat());
+        assert_eq!(said.status.code(), Some(2), "{arguments:?}");
+        let told = text(&said.stderr);
+        assert!(told.contains(what), "{arguments:?}: {told}");
+    }
 }
 
 #[test]

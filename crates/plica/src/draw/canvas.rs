@@ -3,7 +3,10 @@
 //! kuva draws at twice the size asked for and the mean of each square is kept, since its thick strokes are smoothed
 //! across but not down. Its own axes are not used: they know neither equal aspect nor slanted letters.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use kuva::RasterBackend;
+use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan};
 
@@ -14,6 +17,8 @@ use super::{DrawError, Image};
 const FINER: usize = 2;
 /// Farther from the corner, in points, nothing is drawn.
 const FAR: f64 = 1e5;
+/// Fonts of texts that stay texts; they are measured in the first.
+const FONTS: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
 /// Page height of a capital letter, in text sizes.
 pub(super) const CAPITAL: f64 = 0.73;
 /// Ink of axes and texts.
@@ -56,6 +61,9 @@ pub(super) struct Canvas {
     zoom: f64,
     scene: Scene,
     stamps: Vec<(Image, i64, i64)>,
+    /// Pages that lie on their left side, and the middle of each.
+    upward: Vec<(Canvas, Place)>,
+    clips: usize,
     paper: Image,
 }
 
@@ -70,6 +78,8 @@ impl Canvas {
             zoom,
             scene,
             stamps: Vec::new(),
+            upward: Vec::new(),
+            clips: 0,
             paper,
         })
     }
@@ -180,8 +190,9 @@ impl Canvas {
             y,
             width,
             height,
-            id: String::new(),
+            id: format!("clip-{}", self.clips),
         });
+        self.clips += 1;
     }
 
     pub fn unclip(&mut self) {
@@ -229,8 +240,7 @@ impl Canvas {
             Anchor::Middle,
             INK,
         );
-        let turned = slip.finish()?.turned_left();
-        self.stamp(turned, (x - height / 2.0, y - width / 2.0));
+        self.upward.push((slip, (x, y)));
         Ok(())
     }
 
@@ -250,7 +260,12 @@ impl Canvas {
     }
 
     /// The page as pixels.
-    pub fn finish(self) -> Result<Image, DrawError> {
+    pub fn finish(mut self) -> Result<Image, DrawError> {
+        for (slip, (x, y)) in std::mem::take(&mut self.upward) {
+            let (width, height) = slip.size();
+            let turned = slip.finish()?.turned_left();
+            self.stamp(turned, (x - height / 2.0, y - width / 2.0));
+        }
         let fine = rendered(&self.scene)?;
         let mut page = self.paper;
         page.stamp(&fine.reduced(FINER), 0, 0);
@@ -259,6 +274,54 @@ impl Canvas {
         }
         Ok(page)
     }
+
+    /// The page as lines and texts, in points; pictures laid over it multiply with what is beneath, so that their white is
+    /// transparent here too.
+    pub fn finish_svg(mut self) -> Result<String, DrawError> {
+        let (width, height) = self.size();
+        self.scene.font_family = Some(FONTS.into());
+        let mut page = format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width:.2}pt" height="{height:.2}pt" viewBox="0 0 {:.2} {:.2}" xml:space="preserve" style="white-space:pre">"#,
+            self.scene.width, self.scene.height
+        );
+        page += r##"<rect width="100%" height="100%" fill="#ffffff"/>"##;
+        page += &lines(&self.scene);
+        for (mut slip, (x, y)) in self.upward {
+            slip.scene.font_family = Some(FONTS.into());
+            slip.scene.background_color = None;
+            let (x, y) = (x * self.zoom, y * self.zoom);
+            let (w, h) = (slip.scene.width / 2.0, slip.scene.height / 2.0);
+            page += &format!(
+                r#"<g transform="translate({:.2},{:.2}) rotate(-90)">{}</g>"#,
+                x - h,
+                y + w,
+                lines(&slip.scene)
+            );
+        }
+        for (picture, x, y) in &self.stamps {
+            let finer = |n: i64| n * FINER as i64;
+            page += &format!(
+                r#"<image x="{}" y="{}" width="{}" height="{}" style="mix-blend-mode:multiply" href="data:image/png;base64,{}"/>"#,
+                finer(*x),
+                finer(*y),
+                FINER * picture.width,
+                FINER * picture.height,
+                STANDARD.encode(picture.to_png(1.0)?)
+            );
+        }
+        page += "</svg>\n";
+        Ok(page)
+    }
+
+    /// Width and height in points.
+    fn size(&self) -> (f64, f64) {
+        (self.scene.width / self.zoom, self.scene.height / self.zoom)
+    }
+}
+
+/// A scene as SVG.
+fn lines(scene: &Scene) -> String {
+    SvgBackend::new().render_scene(scene)
 }
 
 fn ink([r, g, b]: [u8; 3]) -> Color {

@@ -90,6 +90,9 @@ pub struct Chart {
     pub width_pt: f64,
 }
 
+/// Pixels per point of what is drawn as lines: sizes of letters are whole numbers of them.
+const SVG_PIXELS: f64 = 5.0;
+
 impl Default for Chart {
     fn default() -> Self {
         Self {
@@ -116,6 +119,20 @@ impl Chart {
     /// [`DrawError::Empty`] without a finite point, [`DrawError::Range`] for a given range that is none,
     /// [`DrawError::Size`] for an absurd size.
     pub fn png(&self, width_px: usize) -> Result<Vec<u8>, DrawError> {
+        let page = self.page(width_px)?;
+        page.finish()?.to_png(self.width_pt * 25.4 / 72.0)
+    }
+
+    /// The chart as an SVG file, its texts as texts.
+    ///
+    /// # Errors
+    /// As [`Chart::png`].
+    pub fn svg(&self) -> Result<String, DrawError> {
+        self.page((SVG_PIXELS * self.width_pt).ceil() as usize)?
+            .finish_svg()
+    }
+
+    fn page(&self, width_px: usize) -> Result<Canvas, DrawError> {
         // Any page measures a text; this one is thrown away.
         let ruler = Canvas::new(self.width_pt, self.width_pt, width_px)?;
         let legend = self.legend_rows(&ruler);
@@ -137,7 +154,7 @@ impl Chart {
         self.draw_curves(&mut canvas, &frame);
         self.draw_insets(&mut canvas, &frame)?;
         self.draw_markers(&mut canvas, &frame);
-        canvas.finish()?.to_png(self.width_pt * 25.4 / 72.0)
+        Ok(canvas)
     }
 
     fn draw_axes(
@@ -257,6 +274,25 @@ mod tests {
         assert_eq!(image.width, 600);
         let dark = image.pixels.iter().filter(|p| p[0] < 60).count();
         assert!(dark > 1500, "{dark} dark pixels");
+    }
+
+    #[test]
+    fn svg_has_lines_and_texts() {
+        let chart = Chart {
+            x_label: "*z*/*D*".into(),
+            y_label: "less < more".into(),
+            ..fold()
+        };
+        let svg = chart.svg().unwrap();
+        for part in [
+            "width=\"300.00pt\"",
+            "rotate(-90)",
+            "less &lt; more",
+            "clip-0",
+            "<path d=",
+        ] {
+            assert!(svg.contains(part), "{part}");
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@
 
 use super::DrawError;
 use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen};
-use super::colour::Map;
+use super::colour::{Map, mix};
 use super::light::dot;
 use super::raster::{Surface, View, render};
 
@@ -16,6 +16,8 @@ pub(super) const SIDE: f64 = 36.0;
 /// The height of a panel, at most, in points.
 const TALLEST: f64 = 190.0;
 const SAMPLES: usize = 3;
+/// How much of its colour glass has.
+const GLASS: f64 = 0.22;
 
 /// One tube of the picture.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +26,8 @@ pub struct Panel {
     pub label: String,
     /// The tube, in units of D; see [`super::Opening::surfaces`].
     pub surfaces: Vec<Surface>,
+    /// What of the tube is seen through, as if of glass.
+    pub glass: Vec<Surface>,
 }
 
 /// Values at the two ends of the colour bar.
@@ -127,13 +131,16 @@ impl Cutaway {
                     ((height + 2.0 * margin) * pixels).ceil() as usize,
                 ),
             };
-            let tube = render(
-                &panel.surfaces,
-                &view,
-                (scale.low, scale.high),
-                self.map,
-                SAMPLES,
-            )?;
+            let range = (scale.low, scale.high);
+            let mut tube = render(&panel.surfaces, &view, range, self.map, SAMPLES)?;
+            if !panel.glass.is_empty() {
+                // Where glass is behind the rest, both pictures are the same.
+                let all = [&panel.surfaces[..], &panel.glass].concat();
+                let all = render(&all, &view, range, self.map, SAMPLES)?;
+                for (pixel, glass) in tube.pixels.iter_mut().zip(all.pixels) {
+                    *pixel = mix(*pixel, glass, GLASS);
+                }
+            }
             canvas.stamp(tube, (inset - margin, top - margin));
             let middle = top + height / 2.0 + TEXT * CAPITAL / 2.0;
             canvas.text((inset - 7.0, middle), "colon", TEXT, Anchor::End, INK);
@@ -174,7 +181,8 @@ impl Cutaway {
         panels: impl Iterator<Item = &'a Panel>,
         direction: [f64; 3],
     ) -> Result<(f64, f64), DrawError> {
-        let points = panels.flat_map(|p| &p.surfaces).flat_map(|s| &s.points);
+        let surfaces = panels.flat_map(|p| p.surfaces.iter().chain(&p.glass));
+        let points = surfaces.flat_map(|s| &s.points);
         let points = points.chain(&self.room);
         let (low, high) = ends(points.map(|&p| dot(p, direction)));
         if high > low {
@@ -211,6 +219,7 @@ pub(super) mod tests {
             panels: vec![Panel {
                 label: "straight".into(),
                 surfaces,
+                ..Panel::default()
             }],
             ..Cutaway::default()
         }
@@ -226,6 +235,38 @@ pub(super) mod tests {
             "{inked} of {}",
             image.pixels.len()
         );
+    }
+
+    #[test]
+    fn glass_before_a_tube_tints_it_and_behind_it_is_not_seen() {
+        let pixels =
+            |picture: &Cutaway| Image::from_png(&picture.png(600).unwrap()).unwrap().pixels;
+        let mut picture = straight(|z| z);
+        picture.toward = [0.0, 1.0, 0.0];
+        let opening = |kept| Opening {
+            kept,
+            points: [60, 30, 3],
+        };
+        let wall = |zeta: f64, eta: f64, xi: f64| {
+            let r = 0.44 + 0.06 * xi;
+            ([r * eta.cos(), r * eta.sin(), 3.0 * zeta], zeta)
+        };
+        let plain = pixels(&picture);
+        picture.panels[0].glass = opening((0.0, std::f64::consts::PI)).surfaces(wall);
+        let before = pixels(&picture);
+        assert_eq!(before.len(), plain.len());
+        let changed = before.iter().zip(&plain).filter(|(a, b)| a != b).count();
+        assert!(changed * 4 > plain.len(), "{changed} of {}", plain.len());
+        // From behind the glass is hidden by the tube, but for its rim.
+        picture.toward = [0.0, -1.0, 0.0];
+        let behind = pixels(&picture);
+        picture.panels[0].glass.clear();
+        let changed = behind
+            .iter()
+            .zip(pixels(&picture))
+            .filter(|(a, b)| **a != *b)
+            .count();
+        assert!(changed * 50 < plain.len(), "{changed} of {}", plain.len());
     }
 
     #[test]

@@ -29,8 +29,8 @@ impl Chart {
             return Ok(());
         }
         let panel = |inset: &Inset| Panel {
-            label: String::new(),
             surfaces: inset.surfaces.clone(),
+            ..Panel::default()
         };
         let all = Cutaway {
             panels: self.insets.iter().map(panel).collect(),

@@ -4,7 +4,6 @@
 //! | file | holds |
 //! |---|---|
 //! | `scene` | the walls of all states, sampled, quantised and packed |
-//! | `measures` | the numbers of a state that are tabled and plotted |
 //! | `words` | what the run came to, and what to beware of |
 //! | `web/page.html` | the page's template |
 //! | `web/page.css` | how it looks: on a phone, in print, by day and by night |
@@ -13,15 +12,14 @@
 //!
 //! The numbers are in the page as JSON and, packed, as base64. Without scripts its words, tables and still pictures are there.
 
-mod measures;
 mod scene;
 mod words;
 
-use crate::draw::{self, Map};
+use crate::draw::{self, Map, label};
+use crate::report::Column;
 use crate::study::{Findings, Plan, Row, RunDirectory, SavedState, Scale};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use measures::Measure;
 use minijinja::{Environment, context};
 use scene::Scene;
 use serde::Serialize;
@@ -65,9 +63,17 @@ struct Known {
     /// Names of the states: stage, shape.
     stages: Vec<String>,
     shapes: Vec<String>,
-    measures: Vec<Measure>,
+    columns: Vec<Plotted>,
     /// The loads of every state, by which states of two runs are told to be alike.
     loads: Vec<[f64; 8]>,
+}
+
+/// A column that may be plotted, its label as plain text.
+#[derive(Serialize)]
+struct Plotted {
+    name: String,
+    label: String,
+    values: Vec<Option<f64>>,
 }
 
 /// What the template knows of a run.
@@ -168,8 +174,8 @@ fn told(told: &Told<'_>) -> (Known, Shelf) {
         .find(|row| row.departure > VISIBLE * scale.length);
     let upwards = leans.map_or(0.0, |row| row.departure_angle_deg.to_radians());
     let scene = Scene::of(told.plan, told.states, upwards);
-    let mut measures = Measure::of(told.rows, &scale);
-    let tabled: Vec<&Measure> = measures.iter().filter(|m| m.tabled).collect();
+    let mut columns = Column::of(told.rows, &scale);
+    let tabled: Vec<&Column> = columns.iter().filter(|m| m.tabled).collect();
     let line = |(i, row): (usize, &Row)| Line {
         step: row.step,
         stage: row.stage.clone(),
@@ -207,7 +213,7 @@ fn told(told: &Told<'_>) -> (Known, Shelf) {
         unknowns: 3 * axial * rings * thickness,
         seconds: format!("{seconds:.1}"),
         table: told.rows.iter().enumerate().map(line).collect(),
-        heads: tabled.iter().map(|m| m.html.clone()).collect(),
+        heads: tabled.iter().map(|m| label::html(&m.label)).collect(),
         critical: told.directory.records("stability.csv").unwrap_or_default(),
         pictures: pictures(
             told,
@@ -230,16 +236,24 @@ fn told(told: &Told<'_>) -> (Known, Shelf) {
             ],
         ),
     };
-    measures.extend(eigenvalues(told));
+    columns.extend(eigenvalues(told));
     let known = Known {
         name: told.name.clone(),
         scene,
         stages: told.rows.iter().map(|row| row.stage.clone()).collect(),
         shapes: told.rows.iter().map(|row| row.shape.clone()).collect(),
-        measures,
+        columns: columns.into_iter().map(plotted).collect(),
         loads: told.rows.iter().map(loads).collect(),
     };
     (known, shelf)
+}
+
+fn plotted(column: Column) -> Plotted {
+    Plotted {
+        name: column.name,
+        label: label::plain(&column.label),
+        values: column.values,
+    }
 }
 
 /// A finding with its power raised.
@@ -261,7 +275,7 @@ fn loads(row: &Row) -> [f64; 8] {
 }
 
 /// The lowest eigenvalue of every harmonic at every state, as `plica stability` has left it.
-fn eigenvalues(told: &Told<'_>) -> Vec<Measure> {
+fn eigenvalues(told: &Told<'_>) -> Vec<Column> {
     let Some(records) = told.directory.records("eigenvalues.csv") else {
         return vec![];
     };
@@ -283,7 +297,7 @@ fn eigenvalues(told: &Told<'_>) -> Vec<Measure> {
                 .rows
                 .iter()
                 .map(|row| of(column, row.step).unwrap_or(f64::NAN));
-            Measure::new(
+            Column::new(
                 &format!("lowest_{n}"),
                 &format!("lowest eigenvalue, *n* = {n} (*E*/*D*^{{2}})"),
                 false,

@@ -72,6 +72,7 @@ fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
             eigenvalue.content()
         ),
         surfaces: surfaces(&tube, shown, Some(shape)),
+        ..Panel::default()
     };
     let numbered = (1..).zip(shown.shapes.iter().zip(&spectrum.lowest));
     let state = Panel {
@@ -82,6 +83,7 @@ fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
             plan.tube.diameter_ratio(&spectrum.load)
         ),
         surfaces: surfaces(&tube, shown, None),
+        ..Panel::default()
     };
     Cutaway {
         title: plan.title.clone(),

@@ -43,6 +43,14 @@ impl Look {
         self.opening.points[1] = around as usize;
         self
     }
+
+    /// What [`Look::cut`] takes away; none if that is nothing.
+    pub fn taken_away(&self) -> Option<Self> {
+        let mut other = *self;
+        other.opening.kept = (0.0, self.opening.kept.0);
+        other.opening.points[1] = 194 - self.opening.points[1];
+        (self.opening.kept.0 > 0.0).then_some(other)
+    }
 }
 
 /// The surfaces of a tube with its near half taken away, coloured by strain energy density; the

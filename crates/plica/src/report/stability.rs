@@ -179,6 +179,7 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
     let panel = |label: String, opening: Opening, amplitude: f64| Panel {
         label,
         surfaces: meridian.surfaces(opening, amplitude),
+        ..Panel::default()
     };
     let (half, closed) = (
         Opening {

@@ -16,6 +16,8 @@ pub struct Appearance {
     pub field: Field,
     /// Degrees of the wall that are taken away, 0 to 350.
     pub cutaway: f64,
+    /// Whether those are shown as if of glass.
+    pub see_through: bool,
     /// Direction of the viewer: (up, towards the viewer, along the tube).
     pub toward: [f64; 3],
     /// Ends of the colour bar, if not chosen from what is there.
@@ -29,6 +31,7 @@ impl Default for Appearance {
         Self {
             field: Field::default(),
             cutaway: 180.0,
+            see_through: false,
             toward: Cutaway::default().toward,
             range: None,
             width: 1800,
@@ -46,10 +49,9 @@ pub type Shown = (SavedState, Row);
 pub fn render(plan: &Plan, states: &[Shown], look: &Appearance) -> Result<Vec<u8>, DrawError> {
     let tube = spline_tube(plan);
     let finest = look_of(&tube, plan, look);
-    let panels = states.par_iter().map(|(state, row)| Panel {
-        label: label(row),
-        surfaces: surfaces(&tube, state, row, &finest),
-    });
+    let panels = states
+        .par_iter()
+        .map(|shown| panel(&tube, shown, &finest, look));
     picture(plan, panels.collect(), look).png(look.width)
 }
 
@@ -73,10 +75,7 @@ pub fn animate(
     coarse.opening.points = [tube.axial.elements() + 1, 33, 5];
     let all: Vec<Panel> = states
         .par_iter()
-        .map(|(state, row)| Panel {
-            label: String::new(),
-            surfaces: surfaces(&tube, state, row, &coarse),
-        })
+        .map(|shown| panel(&tube, shown, &coarse, look))
         .collect();
     let points = || {
         all.iter()
@@ -93,20 +92,17 @@ pub fn animate(
     let done = AtomicUsize::new(0);
     let frames: Result<Vec<Option<Image>>, DrawError> = states
         .par_iter()
-        .map(|(state, row)| {
+        .map(|shown| {
             if !told(done.load(Ordering::Relaxed)) {
                 return Ok(None);
             }
-            let panel = Panel {
-                label: label(row),
-                surfaces: surfaces(&tube, state, row, &finest),
-            };
+            let panel = panel(&tube, shown, &finest, look);
             let tube = Cutaway {
                 room: room.clone(),
                 ..picture(plan, vec![panel], &frame_look)
             };
             let tube = Image::from_png(&tube.png(look.width)?)?;
-            let energy = Image::from_png(&energy(plan, rows, row).png(look.width)?)?;
+            let energy = Image::from_png(&energy(plan, rows, &shown.1).png(look.width)?)?;
             done.fetch_add(1, Ordering::Relaxed);
             Image::stacked(&[tube, energy]).map(Some)
         })
@@ -127,14 +123,15 @@ fn look_of(tube: &SplineTube, plan: &Plan, look: &Appearance) -> Look {
     }
 }
 
-fn surfaces(
-    tube: &SplineTube,
-    state: &SavedState,
-    row: &Row,
-    look: &Look,
-) -> Vec<crate::draw::Surface> {
+fn panel(tube: &SplineTube, (state, row): &Shown, look: &Look, shown: &Appearance) -> Panel {
     let upwards = row.departure_angle_deg.to_radians();
-    looked_at(tube, &state.load, &state.u, upwards, look)
+    let surfaces = |look: &Look| looked_at(tube, &state.load, &state.u, upwards, look);
+    let glass = look.taken_away().filter(|_| shown.see_through);
+    Panel {
+        label: label(row),
+        surfaces: surfaces(look),
+        glass: glass.map(|look| surfaces(&look)).unwrap_or_default(),
+    }
 }
 
 fn picture(plan: &Plan, panels: Vec<Panel>, look: &Appearance) -> Cutaway {

@@ -17,6 +17,7 @@ pub fn panel(ran: &Ran, row: &Row, label: impl Into<String>) -> Result<Panel, Tr
     Ok(Panel {
         label: label.into(),
         surfaces: opened(ran.tube(), &state.load, &state.u, upwards),
+        ..Panel::default()
     })
 }
 

@@ -388,7 +388,9 @@ fn clear(path: &Path) -> Result<(), StudyError> {
             .file_name()
             .and_then(|name| name.to_str())
             .unwrap_or_default();
-        name.contains("-state-") && name.ends_with(".png") || name.ends_with("-path.apng")
+        let (stem, ending) = name.rsplit_once('.').unwrap_or_default();
+        (stem.contains("-state-") || stem.ends_with("-path"))
+            && ["png", "svg", "apng", "mp4"].contains(&ending)
     }));
     old.extend(["walls", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))));
     old.push(path.join(MANIFEST));
@@ -514,6 +516,7 @@ mod tests {
             "vtk/mine.vtu",
             "pictures/energy-state-0003.png",
             "pictures/energy-path.apng",
+            "pictures/overhang-along-length_ratio-path.svg",
             "pictures/mine.png",
         ] {
             fs::write(path.join(name), name).unwrap();
@@ -529,6 +532,7 @@ mod tests {
         assert!(!stays("states/state-0003.safetensors"));
         assert!(stays("pictures/mine.png") && !stays("pictures/energy-path.apng"));
         assert!(!stays("pictures/energy-state-0003.png"));
+        assert!(!stays("pictures/overhang-along-length_ratio-path.svg"));
         assert!(stays("vtk/mine.vtu") && !stays("vtk/walls.pvd"));
         assert!(!stays("vtk/walls/state-0003.vtp"));
         fs::remove_dir_all(path).unwrap();

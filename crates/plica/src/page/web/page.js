@@ -53,12 +53,12 @@ class Page {
   choices() {
     const [run] = this.runs;
     for (const { name, label } of run.scene.fields) $("field").add(new Option(label, name));
-    const measures = run.measures.filter(({ name }) => !["length_ratio", "diameter_ratio", "energy"].includes(name));
+    const measures = run.columns.filter(({ name }) => !["length_ratio", "diameter_ratio", "energy"].includes(name));
     for (const { name, label } of measures) $("measure").add(new Option(label, name));
     $("measure").value = "overhang";
     $("along").add(new Option("number of the state", "step"));
     for (const name of ["length_ratio", "diameter_ratio", "inner_pressure", "outer_pressure", "colon_displacement", "ileum_displacement"]) {
-      const measure = run.measures.find((measure) => measure.name === name);
+      const measure = run.columns.find((measure) => measure.name === name);
       if (measure && this.rising(measure.values).length > 2) $("along").add(new Option(measure.label, name));
     }
     if ([...$("along").options].some(({ value }) => value === "length_ratio")) $("along").value = "length_ratio";
@@ -98,7 +98,7 @@ class Page {
   }
 
   measure(run, name) {
-    return run.measures.find((measure) => measure.name === name);
+    return run.columns.find((measure) => measure.name === name);
   }
 
   /** Rows of a run that the plots show, and their abscissae. */

@@ -1,32 +1,27 @@
-//! What of a state is tabled and plotted.
+//! Numbers of states that are tabled and plotted.
 
-use crate::draw::label;
-use crate::report::Abscissa;
+use super::Abscissa;
 use crate::study::{Row, Scale};
-use serde::Serialize;
 
 /// A number of every state.
-#[derive(Clone, Debug, Serialize)]
-pub struct Measure {
+#[derive(Clone, Debug)]
+pub struct Column {
     /// Its name in `history.csv`, or the like.
     pub name: String,
-    /// What it is called, as plain text, with its unit.
+    /// What it is called, with its unit, in the markup of [`crate::draw::label`].
     pub label: String,
-    /// The same as HTML.
-    pub html: String,
     /// Whether it belongs in the table of states.
     pub tabled: bool,
     /// Its values; none where there is none, or none finite.
     pub values: Vec<Option<f64>>,
 }
 
-impl Measure {
+impl Column {
     /// Under a label with markup.
     pub fn new(name: &str, label: &str, tabled: bool, values: impl Iterator<Item = f64>) -> Self {
         Self {
             name: name.into(),
-            label: label::plain(label),
-            html: label::html(label),
+            label: label.into(),
             tabled,
             values: values.map(|x| x.is_finite().then_some(x)).collect(),
         }
@@ -37,12 +32,12 @@ impl Measure {
         let length = |what: &str| format!("{what} ({})", unit(&scale.length_name));
         let energy = |what: &str| format!("{what} ({})", unit(&scale.energy_name));
         let stress = |what: &str| format!("{what} ({})", unit(&scale.stress_name));
-        let mut measures = vec![];
+        let mut columns = vec![];
         let mut add =
             |name: &str, label: String, tabled: bool, of: &dyn Fn(&Row) -> Option<f64>| {
                 if rows.iter().any(|row| of(row).is_some()) {
                     let values = rows.iter().map(|row| of(row).unwrap_or(f64::NAN));
-                    measures.push(Self::new(name, &label, tabled, values));
+                    columns.push(Self::new(name, &label, tabled, values));
                 }
             };
         let length_ratio = Abscissa::LengthRatio.label().into();
@@ -145,7 +140,7 @@ impl Measure {
         add("iterations", "linear solves".into(), false, &|row| {
             Some(row.iterations as f64)
         });
-        measures
+        columns
     }
 }
 

@@ -1,0 +1,89 @@
+//! `plica plot`.
+
+use crate::args::PlotArguments;
+use crate::failure::Failure;
+use crate::finished::Finished;
+use plica::draw::Chart;
+use plica::report::{self, Column, Shown};
+use plica::study::Scale;
+
+/// What is plotted of states themselves.
+const WALLS: &str = "walls";
+
+/// Plots numbers or walls of a run.
+pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
+    let ending = match &arguments.out {
+        None => None,
+        Some(_) if arguments.what.len() > 1 => {
+            return Err(Failure::Usage(
+                "--out names one file, and several plots are asked for; plot one at a time, or leave --out away".into(),
+            ));
+        }
+        Some(path) => match path.extension().and_then(|ending| ending.to_str()) {
+            Some(ending @ ("svg" | "png")) => Some(ending.to_owned()),
+            _ => {
+                return Err(Failure::Usage(format!(
+                    "--out {}: must end in .svg or .png",
+                    path.display()
+                )));
+            }
+        },
+    };
+    let run = Finished::open(&arguments.run)?;
+    run.has(&arguments.state)?;
+    let charts: Result<Vec<(String, Chart)>, Failure> = (arguments.what.iter())
+        .map(|what| chart(&run, arguments, what))
+        .collect();
+    let trouble = |error: plica::draw::DrawError| Failure::Usage(error.to_string());
+    for (name, chart) in charts? {
+        if ending.as_deref() != Some("png") {
+            let svg = chart.svg().map_err(trouble)?;
+            run.leave(
+                arguments.out.as_deref(),
+                &format!("{name}.svg"),
+                svg.as_bytes(),
+            )?;
+        }
+        if ending.as_deref() != Some("svg") {
+            let png = chart.png(usize::from(arguments.width)).map_err(trouble)?;
+            run.leave(arguments.out.as_deref(), &format!("{name}.png"), &png)?;
+        }
+    }
+    Ok(())
+}
+
+/// A plot, and what its file is called.
+fn chart(
+    run: &Finished,
+    arguments: &PlotArguments,
+    what: &str,
+) -> Result<(String, Chart), Failure> {
+    if what == WALLS {
+        let numbers = match arguments.state.as_slice() {
+            [] => vec![run.last()],
+            states => states.to_vec(),
+        };
+        let states: Result<Vec<Shown>, Failure> = numbers.iter().map(|&n| run.state(n)).collect();
+        let names: Vec<String> = numbers.iter().map(|n| format!("{n:04}")).collect();
+        let name = format!("walls-state-{}", names.join("-"));
+        return Ok((name, report::plot_walls(&run.plan, &states?)));
+    }
+    let along = arguments.along.as_deref();
+    let chart = report::plot(&run.plan, &run.rows, what, along);
+    let chart = chart.ok_or_else(|| {
+        let columns = Column::of(&run.rows, &Scale::of(run.plan.units.as_ref()));
+        let names: Vec<String> = columns.into_iter().map(|column| column.name).collect();
+        let asked = along
+            .filter(|along| names.iter().any(|n| n == what) && !names.iter().any(|n| n == along));
+        Failure::Usage(format!(
+            "{}: not a column that can be plotted of this run; these are: {WALLS}, {}",
+            asked.unwrap_or(what),
+            names.join(", ")
+        ))
+    })?;
+    let name = match along {
+        None => format!("{what}-path"),
+        Some(along) => format!("{what}-along-{along}-path"),
+    };
+    Ok((name, chart))
+}
