@@ -453,9 +453,9 @@ critical values in it.
 Examples:
   plica report runs/tube                     to runs/tube/report.html
   plica report runs/one runs/other -o p.html
-                                             two paths beside each other, with one slider
+                                             paths beside each other, with one slider
 
-Two runs are shown at the nearest loads. Without --out, theirs goes to comparison.html where you are.";
+Up to four runs are shown together, each at the state whose load is nearest. Without --out, their page is comparison.html where you are.";
 
 const RENDER_EPILOGUE: &str = "\
 Examples:

@@ -24,6 +24,8 @@ pub enum Failure {
     Usage(String),
     /// Files could not be read or written.
     Files(String),
+    /// Something that must not happen did.
+    Fault(String),
     /// The library could not go on.
     Study(StudyError),
     /// Someone pressed Ctrl-C; what is left of the work.
@@ -46,6 +48,10 @@ impl Failure {
             Self::Files(what) => {
                 console::tell(&format!("error: {what}"));
                 3
+            }
+            Self::Fault(what) => {
+                console::tell(&format!("error: {what}"));
+                1
             }
             Self::Study(error) => {
                 console::tell(&format!("error: {error}"));

@@ -4,7 +4,7 @@ use crate::args::ReportArguments;
 use crate::failure::Failure;
 use crate::finished::Finished;
 use crate::{console, threads};
-use plica::page::{PageError, Told, page};
+use plica::page::{PageError, Run, page};
 use plica::study::SavedState;
 use std::path::{Path, PathBuf};
 
@@ -21,8 +21,8 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
         arguments.runs.iter().map(open).collect();
     let runs = runs?;
     let names = names(&arguments.runs);
-    let told: Vec<Told<'_>> = (runs.iter().zip(names))
-        .map(|((run, states), name)| Told {
+    let told: Vec<Run<'_>> = (runs.iter().zip(names))
+        .map(|((run, states), name)| Run {
             name,
             plan: &run.plan,
             rows: &run.rows,
@@ -32,7 +32,7 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
         .collect();
     let html = page(&told).map_err(|error| match error {
         PageError::Units(_) => Failure::Usage(error.to_string()),
-        PageError::Template(_) => Failure::Files(error.to_string()),
+        PageError::Template(_) => Failure::Fault(error.to_string()),
     })?;
     let path = match (&arguments.out, runs.as_slice()) {
         (None, [(run, _)]) => {

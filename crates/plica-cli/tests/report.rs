@@ -48,7 +48,10 @@ fn a_run_is_told_on_one_page_that_needs_nothing_else() {
     let known = &data(&run.join("report.html"))["runs"][0];
     assert_eq!(known["scene"]["rows"], serde_json::json!([0, 1, 2, 3]));
     let rows = history.iter().filter(|byte| **byte == b'\n').count() - 1;
-    assert_eq!(known["loads"].as_array().unwrap().len(), rows);
+    assert_eq!(
+        known["columns"][0]["values"].as_array().unwrap().len(),
+        rows
+    );
     // To tell changes nothing, and the same page comes out again.
     assert_eq!(fs::read(run.join("history.csv")).unwrap(), history);
     plica(

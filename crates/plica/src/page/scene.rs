@@ -18,10 +18,10 @@ const LEVELS: [usize; 2] = [9, 5];
 const TURNS: usize = 96;
 /// Points along and around, at most and at least: the finest that leaves the page small enough is taken.
 const FINENESS: [[usize; 2]; 4] = [[401, 60], [241, 48], [161, 40], [121, 32]];
-/// Bytes of all states before they are packed, at most.
-const LARGEST: usize = 60_000_000;
 /// Steps of a coordinate, and of a value: 255 of the latter would show as bands.
-const STEPS: (f64, f64) = (65535.0, 4095.0);
+pub const STEPS: (f64, f64) = (65535.0, 4095.0);
+/// What stands for a value that is none.
+const MISSING: u16 = u16::MAX;
 /// Numbers of a point, two bytes each.
 const NUMBERS: usize = 3 + Field::ALL.len();
 /// The part of all values that the colours span.
@@ -31,7 +31,7 @@ const SHOWN: f64 = 0.995;
 ///
 /// A state is a list of bytes: for each of its coordinates (along, up, towards the viewer) and then each of its fields the
 /// low bytes of all points and then the high bytes, of the difference to the point before, modulo 2¹⁶; of a coordinate in
-/// 65535 steps between `low` and `high`, of a field in 4095 steps between that state's own ends. Points run along the tube,
+/// 65535 steps between `low` and `high`, of a field in 4095 steps between that state's own ends, or 65535 where it has no value. Points run along the tube,
 /// then through the wall, then around.
 #[derive(Clone, Debug, Serialize)]
 pub struct Scene {
@@ -45,12 +45,16 @@ pub struct Scene {
     pub high: [f64; 3],
     /// The outer diameter at rest in that unit.
     pub diameter: f64,
+    /// The farthest that any point of any state is from the axis.
+    pub radius: f64,
     /// The fields.
     pub fields: Vec<Colouring>,
     /// Which rows of the history the states are.
     pub rows: Vec<usize>,
     /// States that are saved and left out so that the page stays small.
     pub left_out: usize,
+    /// Drawn points at which a field has no value.
+    pub missing: usize,
     /// The states, packed with zlib, as base64.
     pub data: String,
 }
@@ -64,6 +68,8 @@ pub struct Colouring {
     pub label: String,
     /// Ends of its values over the whole path, outliers aside.
     pub range: [f64; 2],
+    /// Its largest value.
+    pub largest: f64,
     /// Its least and largest value in each state.
     pub ends: Vec<[f64; 2]>,
 }
@@ -75,11 +81,12 @@ struct Wall {
 }
 
 impl Scene {
-    /// The saved states of a path; the meridian at the angle `upwards` comes first.
-    pub fn of(plan: &Plan, states: &[SavedState], upwards: f64) -> Self {
+    /// The saved states of a path, in so many bytes at most before they are packed; the meridian at the angle `upwards` comes
+    /// first.
+    pub fn of(plan: &Plan, states: &[SavedState], upwards: f64, largest: usize) -> Self {
         let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
-        let (points, turns) = fineness(&tube, states.len());
-        let every = (bytes(points) * states.len()).div_ceil(LARGEST).max(1);
+        let (points, turns) = fineness(&tube, states.len(), largest);
+        let every = (bytes(points) * states.len()).div_ceil(largest).max(1);
         // The last one always.
         let kept = |i: &usize| (states.len() - 1 - i).is_multiple_of(every);
         let kept: Vec<&SavedState> = (0..states.len()).filter(kept).map(|i| &states[i]).collect();
@@ -115,6 +122,7 @@ impl Scene {
             name: field.name(),
             label: crate::draw::label::plain(&label),
             range: shown(walls.iter().flat_map(|wall| &wall.values[i]).copied()),
+            largest: ends(walls.iter().flat_map(|wall| &wall.values[i]))[1],
             ends: walls
                 .iter()
                 .map(|wall| ends(wall.values[i].iter()))
@@ -126,9 +134,11 @@ impl Scene {
             low: bounds.map(|[low, _]| low),
             high: bounds.map(|[_, high]| high),
             diameter: length,
+            radius: walls.iter().map(Wall::radius).fold(0.0, f64::max),
             fields: colouring.collect(),
             rows: kept.iter().map(|state| state.row).collect(),
             left_out: states.len() - kept.len(),
+            missing: walls.iter().map(Wall::missing).sum(),
             data: packed(&data),
         }
     }
@@ -140,7 +150,7 @@ fn bytes(points: [usize; 3]) -> usize {
 }
 
 /// Points along, through and around a sector, and how many sectors there are.
-fn fineness(tube: &SplineTube, states: usize) -> ([usize; 3], usize) {
+fn fineness(tube: &SplineTube, states: usize, largest: usize) -> ([usize; 3], usize) {
     let along = 2 * tube.axial.elements() + 1;
     let sector = &tube.sector;
     if sector.rings == 1 {
@@ -151,13 +161,28 @@ fn fineness(tube: &SplineTube, states: usize) -> ([usize; 3], usize) {
         let around = (3 * sector.around).min(most_around).div_ceil(turns).max(2);
         [along.min(most_along), LEVELS[1], around]
     };
-    let small =
-        |points: &[usize; 3]| points.iter().product::<usize>() * 2 * NUMBERS * states <= LARGEST;
+    let small = |points: &[usize; 3]| bytes(*points) * states <= largest;
     let points = FINENESS.map(of).into_iter().find(small);
     (points.unwrap_or(of(FINENESS[3])), turns)
 }
 
 impl Wall {
+    /// The farthest of its points from the axis.
+    fn radius(&self) -> f64 {
+        let [_, x, y] = &self.position;
+        x.iter()
+            .zip(y)
+            .map(|(x, y)| x.hypot(*y))
+            .fold(0.0, f64::max)
+    }
+
+    /// Points without a value.
+    fn missing(&self) -> usize {
+        let points = 0..self.position[0].len();
+        let none = |p: &usize| self.values.iter().any(|values| !values[*p].is_finite());
+        points.filter(none).count()
+    }
+
     fn of(
         tube: &SplineTube,
         [along, through, around]: [usize; 3],
@@ -194,16 +219,20 @@ impl Wall {
     }
 }
 
-/// Least and largest.
+/// Least and largest of what is finite; nothing and nothing if none is.
 fn ends<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
-    values.fold(none, |[low, high], &x| [low.min(x), high.max(x)])
+    let finite = values.filter(|x| x.is_finite());
+    let [low, high] = finite.fold(none, |[low, high], &x| [low.min(x), high.max(x)]);
+    if low <= high { [low, high] } else { [0.0, 0.0] }
 }
 
 /// The ends of most values; from zero where that is near.
 fn shown(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let mut values: Vec<f64> = values.collect();
-    let last = values.len() - 1;
+    let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
+    let Some(last) = values.len().checked_sub(1) else {
+        return [0.0, 1.0];
+    };
     let mut at = |part: f64| {
         let place = (last as f64 * part).round() as usize;
         *values.select_nth_unstable_by(place, f64::total_cmp).1
@@ -231,7 +260,11 @@ fn differences(values: &[f64], [low, high]: [f64; 2], steps: f64) -> Vec<u16> {
     };
     let mut before = 0_u16;
     let step = |&x: &f64| {
-        let now = ((x - low) * scale).round() as u16;
+        let now = if x.is_finite() {
+            ((x - low) * scale).round() as u16
+        } else {
+            MISSING
+        };
         let difference = now.wrapping_sub(before);
         before = now;
         difference
@@ -285,6 +318,22 @@ mod tests {
         }
     }
 
+    /// A tube that is wider along it, and twisted, the more so the later.
+    fn state(plan: &Plan, tube: &SplineTube, row: usize) -> SavedState {
+        SavedState {
+            stage: String::new(),
+            row,
+            along: 0.0,
+            muscles: vec![],
+            load: plan.tube.rest(),
+            layout: Layout::of(plan),
+            u: tube.control_values(|z, r, _| {
+                [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * row as f64)
+            }),
+            arrays: Default::default(),
+        }
+    }
+
     /// What the page's script does, in Rust.
     fn unpacked(bytes: &[u8], [low, high]: [f64; 2], steps: f64) -> Vec<f64> {
         let (lows, highs) = bytes.split_at(bytes.len() / 2);
@@ -299,21 +348,8 @@ mod tests {
     fn is_where_the_tube_is(symmetry: Symmetry) {
         let plan = plan(symmetry);
         let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(symmetry));
-        let state = |row: usize| SavedState {
-            stage: String::new(),
-            row,
-            along: 0.0,
-            muscles: vec![],
-            load: plan.tube.rest(),
-            layout: Layout::of(&plan),
-            // Wider along the tube, and twisted.
-            u: tube.control_values(|z, r, _| {
-                [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * row as f64)
-            }),
-            arrays: Default::default(),
-        };
-        let (states, upwards) = ([state(1), state(2)], 0.4);
-        let scene = Scene::of(&plan, &states, upwards);
+        let (states, upwards) = ([1, 2].map(|row| state(&plan, &tube, row)), 0.4);
+        let scene = Scene::of(&plan, &states, upwards, 1 << 30);
         assert_eq!((scene.rows.as_slice(), scene.left_out), (&[1, 2][..], 0));
         let [along, through, around] = scene.points;
         let count = along * through * around;
@@ -379,13 +415,33 @@ mod tests {
         let plan = plan(Symmetry::None);
         let tube = SplineTube::new(&plan.tube, &plan.mesh, 12);
         let whole = |states: usize| {
-            let (points, turns) = fineness(&tube, states);
+            let (points, turns) = fineness(&tube, states, 10_000_000);
             assert_eq!(turns, 1);
             bytes(points) * states
         };
-        assert!(whole(60) <= LARGEST && whole(600) <= LARGEST);
-        // Beyond, states are left out.
-        assert!(whole(60_000) > LARGEST);
+        assert!(whole(10) <= 10_000_000 && whole(100) <= 10_000_000);
+        let states: Vec<SavedState> = (0..7).map(|row| state(&plan, &tube, row)).collect();
+        let two = 2 * bytes(fineness(&tube, 7, 1).0);
+        let scene = Scene::of(&plan, &states, 0.0, two);
+        // Never the last.
+        assert_eq!((scene.rows.as_slice(), scene.left_out), (&[2, 6][..], 5));
+    }
+
+    #[test]
+    fn what_has_no_value_spoils_nothing() {
+        let values = [1.0, f64::NAN, 3.0, -f64::NAN, f64::INFINITY];
+        assert_eq!(ends(values.iter()), [1.0, 3.0]);
+        assert!(shown(values.into_iter()).iter().all(|x| x.is_finite()));
+        assert!(shown([f64::NAN].into_iter()).iter().all(|x| x.is_finite()));
+        let steps = differences(&values, [1.0, 3.0], STEPS.1);
+        let mut at = 0_u16;
+        let steps: Vec<u16> = (steps.iter())
+            .map(|step| {
+                at = at.wrapping_add(*step);
+                at
+            })
+            .collect();
+        assert_eq!(steps, [0, MISSING, 4095, MISSING, MISSING]);
     }
 
     #[test]

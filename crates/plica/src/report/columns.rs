@@ -3,6 +3,17 @@
 use super::Abscissa;
 use crate::study::{Row, Scale};
 
+/// What a column is good for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Part of the load.
+    Load,
+    /// Worth a place in a table of states.
+    Tabled,
+    /// Worth a plot.
+    Other,
+}
+
 /// A number of every state.
 #[derive(Clone, Debug)]
 pub struct Column {
@@ -10,19 +21,23 @@ pub struct Column {
     pub name: String,
     /// What it is called, with its unit, in the markup of [`crate::draw::label`].
     pub label: String,
-    /// Whether it belongs in the table of states.
-    pub tabled: bool,
+    /// What it is good for.
+    pub role: Role,
     /// Its values; none where there is none, or none finite.
     pub values: Vec<Option<f64>>,
 }
 
+/// What is read off a row of an end, and of a wall.
+type Held = fn(&Row) -> f64;
+type Pressed = fn(&Row) -> Option<f64>;
+
 impl Column {
     /// Under a label with markup.
-    pub fn new(name: &str, label: &str, tabled: bool, values: impl Iterator<Item = f64>) -> Self {
+    pub fn new(name: &str, label: &str, role: Role, values: impl Iterator<Item = f64>) -> Self {
         Self {
             name: name.into(),
             label: label.into(),
-            tabled,
+            role,
             values: values.map(|x| x.is_finite().then_some(x)).collect(),
         }
     }
@@ -33,111 +48,139 @@ impl Column {
         let energy = |what: &str| format!("{what} ({})", unit(&scale.energy_name));
         let stress = |what: &str| format!("{what} ({})", unit(&scale.stress_name));
         let mut columns = vec![];
-        let mut add =
-            |name: &str, label: String, tabled: bool, of: &dyn Fn(&Row) -> Option<f64>| {
-                if rows.iter().any(|row| of(row).is_some()) {
-                    let values = rows.iter().map(|row| of(row).unwrap_or(f64::NAN));
-                    columns.push(Self::new(name, &label, tabled, values));
-                }
-            };
+        let mut add = |name: &str, label: String, role: Role, of: &dyn Fn(&Row) -> Option<f64>| {
+            if rows.iter().any(|row| of(row).is_some()) {
+                let values = rows.iter().map(|row| of(row).unwrap_or(f64::NAN));
+                columns.push(Self::new(name, &label, role, values));
+            }
+        };
         let length_ratio = Abscissa::LengthRatio.label().into();
         let diameter_ratio = Abscissa::DiameterRatio.label().into();
-        add("length_ratio", length_ratio, true, &|row| {
+        add("length_ratio", length_ratio, Role::Load, &|row| {
             Some(row.length_ratio)
         });
-        add("diameter_ratio", diameter_ratio, true, &|row| {
+        add("diameter_ratio", diameter_ratio, Role::Load, &|row| {
             Some(row.diameter_ratio)
         });
-        let moved = |row: &Row| row.ileum_displacement != 0.0 || row.colon_displacement != 0.0;
-        if rows.iter().any(moved) {
-            let ends = [
-                (
-                    "colon_displacement",
-                    "displacement of the colon end",
-                    (|row| row.colon_displacement) as fn(&Row) -> f64,
-                ),
-                (
-                    "ileum_displacement",
-                    "displacement of the ileum end",
-                    |row| row.ileum_displacement,
-                ),
-            ];
-            for (name, words, of) in ends {
-                add(name, length(words), true, &|row| Some(of(row)));
+        let ends: [(&str, String, Held); 4] = [
+            (
+                "colon_displacement",
+                length("displacement of the colon end"),
+                |row| row.colon_displacement,
+            ),
+            (
+                "ileum_displacement",
+                length("displacement of the ileum end"),
+                |row| row.ileum_displacement,
+            ),
+            (
+                "colon_twist_deg",
+                "twist of the colon end (°)".into(),
+                |row| row.colon_twist_deg,
+            ),
+            (
+                "ileum_twist_deg",
+                "twist of the ileum end (°)".into(),
+                |row| row.ileum_twist_deg,
+            ),
+        ];
+        for (name, label, of) in ends {
+            if rows.iter().any(|row| of(row) != 0.0) {
+                add(name, label, Role::Load, &|row| Some(of(row)));
+            }
+        }
+        let pressures: [(&str, &str, Pressed); 4] = [
+            ("inner_pressure", "pressure on the inner wall", |row| {
+                row.inner_pressure
+            }),
+            ("outer_pressure", "pressure on the outer wall", |row| {
+                row.outer_pressure
+            }),
+            (
+                "inner_dead_pressure",
+                "dead pressure on the inner wall",
+                |row| row.inner_dead_pressure,
+            ),
+            (
+                "outer_dead_pressure",
+                "dead pressure on the outer wall",
+                |row| row.outer_dead_pressure,
+            ),
+        ];
+        for (name, words, of) in pressures {
+            if rows.iter().any(|row| of(row).is_some_and(|p| p != 0.0)) {
+                add(name, stress(words), Role::Load, &of);
             }
         }
         add(
-            "inner_pressure",
-            stress("pressure on the inner wall"),
-            true,
-            &|row| row.inner_pressure,
+            "energy",
+            energy("strain energy *W*"),
+            Role::Tabled,
+            &|row| Some(row.energy),
         );
-        add(
-            "outer_pressure",
-            stress("pressure on the outer wall"),
-            true,
-            &|row| row.outer_pressure,
-        );
-        add("energy", energy("strain energy *W*"), true, &|row| {
-            Some(row.energy)
-        });
         add(
             "potential",
             energy("strain energy and potential of the pressures"),
-            false,
+            Role::Other,
             &|row| row.potential,
         );
         add(
             "max_wall_angle_deg",
             "steepest wall angle (°)".into(),
-            true,
+            Role::Tabled,
             &|row| Some(row.max_wall_angle_deg),
         );
-        add("overhang", length("overhang"), true, &|row| {
+        add("overhang", length("overhang"), Role::Tabled, &|row| {
             Some(row.overhang)
         });
         add(
             "outer_radius_min",
             length("smallest radius of the outer wall"),
-            true,
+            Role::Tabled,
             &|row| Some(row.outer_radius_min),
         );
-        add("flatness", "flatness".into(), false, &|row| {
+        add("flatness", "flatness".into(), Role::Other, &|row| {
             Some(row.flatness)
         });
         add(
             "gap",
             length("gap between folds of the wall"),
-            true,
+            Role::Tabled,
             &|row| Some(row.gap),
         );
         add(
             "lumen",
             length("narrowest width of the lumen"),
-            true,
+            Role::Tabled,
             &|row| Some(row.lumen),
         );
         if rows.iter().any(|row| row.departure_harmonic > 0) {
             add(
                 "departure",
                 length("departure from axisymmetry"),
-                true,
+                Role::Tabled,
                 &|row| Some(row.departure),
             );
         }
-        add("min_det_fe", "smallest det *F*_{e}".into(), false, &|row| {
-            Some(row.min_det_fe)
-        });
-        add("drag_work", energy("energy spent on drag"), false, &|row| {
-            Some(row.drag_work)
-        });
+        add(
+            "min_det_fe",
+            "smallest det *F*_{e}".into(),
+            Role::Other,
+            &|row| Some(row.min_det_fe),
+        );
+        add(
+            "drag_work",
+            energy("energy spent on drag"),
+            Role::Other,
+            &|row| Some(row.drag_work),
+        );
         add(
             "residual",
             "residual over the forces in play".into(),
-            false,
+            Role::Other,
             &|row| Some(row.residual),
         );
-        add("iterations", "linear solves".into(), false, &|row| {
+        add("iterations", "linear solves".into(), Role::Other, &|row| {
             Some(row.iterations as f64)
         });
         columns

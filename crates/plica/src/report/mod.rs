@@ -12,7 +12,7 @@ mod states;
 mod story;
 mod walls;
 
-pub use columns::Column;
+pub use columns::{Column, Role};
 pub use field::Field;
 pub use modes::mode_pictures;
 pub use opened::{Look, looked_at, opened};

@@ -3,124 +3,121 @@
 
 const $ = (id) => document.getElementById(id);
 
-/** How far two loads are apart; pressures and displacements in what the paths have at most. */
-function apart(a, b, sizes) {
-  return a.reduce((sum, x, i) => sum + Math.abs(x - b[i]) / sizes[i], 0);
-}
-
 class Page {
   constructor(data) {
     this.data = data;
     this.runs = data.runs;
-    this.at = 0;
+    this.stops = data.stops;
+    this.at = data.stops.length - 1;
+    this.now = this.stops[this.at];
   }
 
   async begin() {
-    for (const run of this.runs) {
-      run.walls = new Walls(run.scene, await unpacked(run.scene.data));
-      run.scene.data = null;
-    }
-    this.meet();
-    this.view = new View($("stage"), $("canvas"), this.runs, this.data.colours);
-    this.colourBar();
     this.choices();
     this.plots = [new Plot($("plot-energy"), (x) => this.goTo(x)), new Plot($("plot-measure"), (x) => this.goTo(x))];
     this.replot();
-    this.go(this.stops.length - 1);
-    $("waiting").remove();
-    document.body.dataset.ready = "yes";
+    this.go(this.at);
+    try {
+      for (const run of this.runs) {
+        run.walls = new Walls(run.scene, await unpacked(run.scene.data), this.data.steps);
+        run.scene.data = null;
+      }
+      this.view = new View($("stage"), $("canvas"), this.runs, this.data.colours);
+      this.view.onTurned = () => ($("view").selectedIndex = -1);
+      this.show();
+      $("waiting").remove();
+    } catch (error) {
+      console.error(error);
+      $("waiting").textContent = `The tube cannot be drawn in three dimensions here (${error.message}). Everything else works.`;
+      document.querySelectorAll(".for-tube").forEach((one) => (one.hidden = true));
+    }
+    document.body.dataset.ready = this.view ? "yes" : "no";
   }
 
-  /** The stops of the slider: the drawn states of the run that has most, and those of the others under the nearest load. */
-  meet() {
-    const { runs } = this;
-    const master = runs.reduce((most, run) => (run.scene.rows.length > most.scene.rows.length ? run : most));
-    this.master = runs.indexOf(master);
-    const all = runs.flatMap((run) => run.loads);
-    const sizes = all[0].map((_, i) => Math.max(...all.map((load) => load[i])) - Math.min(...all.map((load) => load[i])) || 1);
-    this.stops = master.scene.rows.map((row, k) =>
-      runs.map((run) => {
-        if (run === master) return k;
-        const part = k / Math.max(master.scene.rows.length - 1, 1);
-        const off = run.scene.rows.map(
-          (other, i) => apart(master.loads[row], run.loads[other], sizes) + 1e-6 * Math.abs(i / run.scene.rows.length - part),
-        );
-        return off.indexOf(Math.min(...off));
-      }),
-    );
+  /** Columns of any run, by their names. */
+  columns() {
+    const all = new Map();
+    this.runs.forEach((run) => run.columns.forEach((column) => all.has(column.name) || all.set(column.name, column)));
+    return all;
   }
 
   choices() {
-    const [run] = this.runs;
-    for (const { name, label } of run.scene.fields) $("field").add(new Option(label, name));
-    const measures = run.columns.filter(({ name }) => !["length_ratio", "diameter_ratio", "energy"].includes(name));
-    for (const { name, label } of measures) $("measure").add(new Option(label, name));
-    $("measure").value = "overhang";
-    $("along").add(new Option("number of the state", "step"));
-    for (const name of ["length_ratio", "diameter_ratio", "inner_pressure", "outer_pressure", "colon_displacement", "ileum_displacement"]) {
-      const measure = run.columns.find((measure) => measure.name === name);
-      if (measure && this.rising(measure.values).length > 2) $("along").add(new Option(measure.label, name));
+    for (const { name, label } of this.runs[0].scene.fields) $("field").add(new Option(label, name));
+    const columns = this.columns();
+    const options = [...columns.values()];
+    for (const { name, label, load } of options) {
+      if (!load && name !== "energy") $("measure").add(new Option(label, name));
     }
-    if ([...$("along").options].some(({ value }) => value === "length_ratio")) $("along").value = "length_ratio";
+    $("measure").value = columns.has("overhang") ? "overhang" : options.at(-1).name;
+    $("along").add(new Option("number of the state", "step"));
+    const driven = options.filter(({ name, load }) => load && this.runs.some((run) => this.rising(run, name).length > 2));
+    driven.forEach(({ name, label }) => $("along").add(new Option(label, name)));
+    // What the longest part of the path goes along.
+    const length = ({ name }) => Math.max(...this.runs.map((run) => this.rising(run, name).length));
+    const most = driven.reduce((best, one) => (best && length(best) >= length(one) ? best : one), null);
+    if (most) $("along").value = most.name;
     $("state").max = this.stops.length - 1;
-    const again = () => this.go(this.at);
+    const again = () => this.show();
     ["field", "range", "ghost"].forEach((id) => $(id).addEventListener("change", again));
     $("cut").addEventListener("input", again);
     $("state").addEventListener("input", () => this.go(Number($("state").value)));
     ["measure", "along"].forEach((id) => $(id).addEventListener("change", () => this.replot()));
     $("view").addEventListener("change", () => this.view.look($("view").value));
-    // Then the same view can be chosen again.
-    this.view.onTurned = () => ($("view").selectedIndex = -1);
     $("play").addEventListener("click", () => this.play());
     $("keep").addEventListener("click", () => this.keep());
-    addEventListener("resize", () => this.colourBar());
+    this.colourBar();
     document.querySelectorAll("tr[data-step]").forEach((line) => {
-      const go = () => this.goToRow(Number(line.dataset.run), Number(line.dataset.step));
-      line.addEventListener("click", go);
-      line.addEventListener("keydown", (event) => {
-        if (event.key === "Enter" || event.key === " ") {
-          event.preventDefault();
-          go();
-        }
-      });
+      line.addEventListener("click", () => this.goToRow(Number(line.dataset.run), Number(line.dataset.step)));
     });
-    addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((one) => (one.open = true)));
+    addEventListener("beforeprint", () => {
+      document.querySelectorAll("details").forEach((one) => (one.open = true));
+      this.plots.forEach((plot) => plot.paint());
+    });
+    addEventListener("afterprint", () => this.plots.forEach((plot) => plot.paint()));
   }
 
-  /** The last rows of a path along which a quantity rises or falls all the way; as numbers of rows, x rising. */
-  rising(values) {
+  column(run, name) {
+    return run.columns.find((column) => column.name === name);
+  }
+
+  /** The last rows of a path along which a quantity rises or falls all the way, as numbers of rows, the quantity rising. */
+  rising(run, name) {
+    const values = this.column(run, name)?.values ?? [];
     const last = values.length - 1;
     let first = last;
     const way = Math.sign(values[last] - values[last - 1]);
     while (first > 0 && way !== 0 && Math.sign(values[first] - values[first - 1]) === way) first--;
-    const rows = values.map((_, i) => i).slice(first);
+    const rows = values.map((_, i) => i).slice(Math.max(first, 0));
     return way < 0 ? rows.reverse() : rows;
   }
 
-  measure(run, name) {
-    return run.columns.find((measure) => measure.name === name);
-  }
-
-  /** Rows of a run that the plots show, and their abscissae. */
+  /** Rows of a run that the plots show, and their abscissae; none if it has not what is plotted along. */
   abscissa(run) {
     const name = $("along").value;
-    const values = name === "step" ? null : this.measure(run, name)?.values;
-    if (!values) return { rows: run.loads.map((_, i) => i), of: (row) => row };
-    return { rows: this.rising(values), of: (row) => values[row] };
+    if (name === "step") return { rows: run.stages.map((_, i) => i), of: (row) => row };
+    const rows = this.rising(run, name);
+    return rows.length < 2 ? { rows: [], of: () => null } : { rows, of: (row) => this.column(run, name).values[row] };
   }
 
   replot() {
     const xLabel = $("along").selectedOptions[0].textContent;
-    [["energy", 0], [$("measure").value, 1]].forEach(([name, which]) => {
+    const columns = this.columns();
+    ["energy", $("measure").value].forEach((name, which) => {
       const series = this.runs.map((run, i) => {
         const { rows, of } = this.abscissa(run);
-        const values = this.measure(run, name)?.values ?? run.loads.map(() => null);
+        const values = this.column(run, name)?.values ?? [];
         const [r, g, b] = this.data.lines[i % this.data.lines.length];
-        return { label: run.name, x: rows.map(of), y: rows.map((row) => values[row]), colour: `rgb(${r},${g},${b})` };
+        return { label: run.name, x: rows.map(of), y: rows.map((row) => values[row] ?? null), colour: `rgb(${r},${g},${b})` };
       });
-      const yLabel = this.measure(this.runs[0], name)?.label ?? "";
-      this.plots[which].show(xLabel, yLabel, series);
+      const label = columns.get(name)?.label ?? "";
+      this.plots[which].show(xLabel, label, series);
+      this.plots[which].box.setAttribute("aria-label", `Plot: ${label} along ${xLabel}. Its numbers are in the table of states.`);
     });
+    const away = this.runs.map((run) => run.stages.length - this.abscissa(run).rows.length);
+    const names = this.runs.map((run, i) => (this.runs.length > 1 ? `${run.name}: ` : "") + `${away[i]} of ${run.stages.length} states`);
+    $("away").textContent = away.some((n) => n > 0)
+      ? `Not on these axes: ${names.filter((_, i) => away[i] > 0).join("; ")}, before the path last turned or stood still. Plotted along the number of the state, all are.`
+      : "";
     this.mark();
   }
 
@@ -128,39 +125,55 @@ class Page {
   mark() {
     ["energy", $("measure").value].forEach((name, which) => {
       const places = this.runs.map((run, i) => {
-        const row = run.scene.rows[this.stops[this.at][i]];
+        const row = this.row(i);
         const { rows, of } = this.abscissa(run);
-        return rows.includes(row) ? [of(row), this.measure(run, name)?.values[row] ?? null] : null;
+        return rows.includes(row) ? [of(row), this.column(run, name)?.values[row] ?? null] : null;
       });
       this.plots[which].at(places);
     });
   }
 
+  /** The row of the history that is shown of a run. */
+  row(run) {
+    return this.runs[run].scene.rows[this.now[run][0]];
+  }
+
   /** To the state nearest to an abscissa of the plots. */
   goTo(x) {
-    const run = this.runs[this.master];
+    const run = this.runs[this.data.leader];
     const { rows, of } = this.abscissa(run);
-    const drawn = run.scene.rows.map((row, stop) => [rows.includes(row) ? Math.abs(of(row) - x) : Infinity, stop]);
-    const [off, stop] = drawn.reduce((best, one) => (one[0] < best[0] ? one : best));
-    if (off < Infinity && stop !== this.at) this.go(stop);
+    const off = this.stops.map((stop) => {
+      const row = run.scene.rows[stop[this.data.leader][0]];
+      return rows.includes(row) ? Math.abs(of(row) - x) : Infinity;
+    });
+    const least = Math.min(...off);
+    if (least < Infinity && off.indexOf(least) !== this.at) this.go(off.indexOf(least));
   }
 
+  /** To a row of the table: the stop that has it, or of that run alone where none has. */
   goToRow(run, row) {
-    const at = this.runs[run].scene.rows;
-    const nearest = at.reduce((best, other, k) => (Math.abs(other - row) < Math.abs(at[best] - row) ? k : best), 0);
-    const stop = this.stops.findIndex((stop) => stop[run] === nearest);
-    if (stop >= 0) this.go(stop);
+    const state = this.runs[run].scene.rows.indexOf(row);
+    const stop = this.stops.findIndex((stop) => stop[run][0] === state);
+    if (stop >= 0) return this.go(stop);
+    this.now = this.now.map((one, i) => (i === run ? [state, NaN] : one));
+    this.show();
   }
 
-  /** Shows a stop. */
+  /** To a stop of the slider. */
   go(stop) {
     this.at = stop;
+    this.now = this.stops[stop];
+    $("state").value = stop;
+    this.show();
+  }
+
+  /** Shows the states that are chosen. */
+  show() {
     const field = $("field").selectedIndex;
     const range = this.range(field);
     const cut = Number($("cut").value);
-    this.view.tubes.forEach((tube, i) => tube.show(this.stops[stop][i], field, range, cut, $("ghost").checked));
-    this.view.draw();
-    $("state").value = stop;
+    this.view?.tubes.forEach((tube, i) => tube.show(this.now[i][0], field, range, cut, $("ghost").checked));
+    this.view?.draw();
     $("cut-told").textContent = `${cut}°`;
     this.readOut();
     this.labelBar(field, range);
@@ -171,18 +184,22 @@ class Page {
   range(field) {
     const ends = this.runs.map(({ scene }, i) => {
       const one = scene.fields[field];
-      return $("range").value === "path" ? one.range : one.ends[this.stops[this.at][i]];
+      return $("range").value === "path" ? one.range : one.ends[this.now[i][0]];
     });
     const [low, high] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
     return high > low ? [low, high] : [low - 0.5, low + 0.5];
   }
 
+  /** What is shown, in words: its load, as far as that varies, its energy and shape. */
   readOut() {
     const lines = this.runs.map((run, i) => {
-      const row = run.scene.rows[this.stops[this.at][i]];
-      const of = (name) => told(this.measure(run, name)?.values[row]);
+      const row = this.row(i);
+      const varies = ({ load, values }) => load && values.some((x) => x !== values[0]);
+      const parts = run.columns.filter((column) => varies(column) || column.name === "energy");
+      const numbers = parts.map(({ label, values }) => `${label.replace("strain energy ", "")} ${told(values[row])}`);
       const name = this.runs.length > 1 ? `${run.name}, ` : "";
-      return `${name}state ${row} (${run.stages[row]}): Lmax/L = ${of("length_ratio")}, Dmin/D = ${of("diameter_ratio")}, W = ${of("energy")}, ${run.shapes[row]}`;
+      const off = this.now[i][1] > 0.02 ? " (the nearest load that this path has)" : "";
+      return `${name}state ${row} (${run.stages[row]}): ${numbers.join(", ")}; ${run.shapes[row]}${off}`;
     });
     $("told").replaceChildren(
       ...lines.map((line) => {
@@ -192,12 +209,8 @@ class Page {
       }),
     );
     $("state").setAttribute("aria-valuetext", lines.join("; "));
-    $("canvas").setAttribute("aria-label", `The tube in three dimensions. ${lines.join("; ")}`);
     document.querySelectorAll("tr.here").forEach((line) => line.classList.remove("here"));
-    this.runs.forEach((run, i) => {
-      const row = run.scene.rows[this.stops[this.at][i]];
-      document.querySelector(`tr[data-run="${i}"][data-step="${row}"]`)?.classList.add("here");
-    });
+    this.runs.forEach((_, i) => document.querySelector(`tr[data-run="${i}"][data-step="${this.row(i)}"]`)?.classList.add("here"));
   }
 
   colourBar() {
@@ -205,9 +218,13 @@ class Page {
     $("bar").style.background = `linear-gradient(to right, ${stops})`;
   }
 
-  /** Round numbers beneath the colour bar. */
+  /** Round numbers beneath the colour bar; and how far values go beyond it. */
   labelBar(field, [low, high]) {
-    $("bar-label").textContent = this.runs[0].scene.fields[field].label;
+    const fields = this.runs.map(({ scene }) => scene.fields[field]);
+    const path = $("range").value === "path";
+    const largest = Math.max(...fields.map((one, i) => (path ? one.largest : one.ends[this.now[i][0]][1])));
+    const beyond = largest > high + 1e-6 * (high - low) ? ` (darkest: up to ${told(largest, 3)})` : "";
+    $("bar-label").textContent = fields[0].label + beyond;
     const rough = (high - low) / 4;
     const power = 10 ** Math.floor(Math.log10(rough));
     const step = [1, 2, 5, 10].map((m) => m * power).find((m) => m >= rough);
@@ -226,9 +243,12 @@ class Page {
       clearInterval(this.playing);
       this.playing = null;
       $("play").textContent = "Play";
+      $("told").setAttribute("aria-live", "polite");
     };
     if (this.playing) return stop();
     if (this.at === this.stops.length - 1) this.go(0);
+    // No one could follow it read aloud.
+    $("told").setAttribute("aria-live", "off");
     $("play").textContent = "Pause";
     this.playing = setInterval(() => {
       if (this.at === this.stops.length - 1) return stop();
@@ -236,19 +256,38 @@ class Page {
     }, 150);
   }
 
-  /** What the canvas shows, as a file. */
+  /** What the canvas shows, with its colour bar and its words, as a file. */
   keep() {
     this.view.now();
+    const tube = $("canvas");
+    const zoom = tube.width / tube.clientWidth;
+    const page = document.createElement("canvas");
+    const lines = [...$("told").children].map((line) => line.textContent);
+    [page.width, page.height] = [tube.width, tube.height + zoom * (70 + 18 * lines.length)];
+    const pen = page.getContext("2d");
+    pen.fillStyle = "#ffffff";
+    pen.fillRect(0, 0, page.width, page.height);
+    pen.drawImage(tube, 0, 0);
+    pen.scale(zoom, zoom);
+    const [width, top] = [tube.clientWidth, tube.clientHeight];
+    const shade = pen.createLinearGradient(20, 0, width - 20, 0);
+    this.data.colours.forEach((rgb, i, all) => shade.addColorStop(i / (all.length - 1), `rgb(${rgb})`));
+    pen.fillStyle = shade;
+    pen.fillRect(20, top + 8, width - 40, 11);
+    pen.fillStyle = "#222222";
+    pen.font = "12px system-ui, sans-serif";
+    pen.textAlign = "center";
+    for (const mark of $("bar-marks").children) {
+      pen.fillText(mark.textContent, 20 + (parseFloat(mark.style.left) / 100) * (width - 40), top + 33);
+    }
+    pen.fillText($("bar-label").textContent, width / 2, top + 50);
+    pen.textAlign = "left";
+    lines.forEach((line, i) => pen.fillText(line, 20, top + 70 + 18 * i));
     const link = document.createElement("a");
-    link.href = $("canvas").toDataURL("image/png");
-    link.download = `${this.runs[this.master].name}-state-${this.runs[this.master].scene.rows[this.at]}.png`;
+    link.href = page.toDataURL("image/png");
+    link.download = `${this.runs.map((run, i) => `${run.name}-state-${this.row(i)}`).join("-")}.png`;
     link.click();
   }
 }
 
-new Page(JSON.parse($("data").textContent)).begin().catch((error) => {
-  console.error(error);
-  const waiting = $("waiting") ?? $("told");
-  waiting.textContent = `The tube cannot be drawn in three dimensions here (${error.message}). Everything else is below.`;
-  document.body.dataset.ready = "no";
-});
+new Page(JSON.parse($("data").textContent)).begin();

@@ -2,7 +2,7 @@
 // Plots along the path; where the pointer is, there the tubes are.
 
 /** A colour of the page's style by its name. */
-const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const ink = (name) => (matchMedia("print").matches ? { "--ink": "#000000", "--rule": "#cccccc" }[name] : null) ?? getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 
@@ -52,6 +52,7 @@ class Plot {
   paint() {
     const { xLabel, yLabel, series } = this.given;
     this.plot?.destroy();
+    if (series.every(({ x }) => x.length === 0)) series[0].x = series[0].y = [];
     const data = series.length === 1 ? [series[0].x, series[0].y] : uPlot.join(series.map(({ x, y }) => [x, y]));
     const axis = (label, more) => ({
       label,
@@ -78,7 +79,8 @@ class Plot {
           width: 1.8,
           // One beneath another is seen between the dashes.
           dash: i === 0 ? undefined : [7, 5],
-          spanGaps: true,
+          // Between states of one run there may be some of another.
+          spanGaps: series.length > 1,
           points: { show: true, size: i === 0 ? 5 : 3.5, fill: colour, stroke: colour },
         })),
       ],

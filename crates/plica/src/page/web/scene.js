@@ -10,7 +10,8 @@ async function unpacked(base64) {
 
 /** The walls of all drawn states of a run. */
 class Walls {
-  constructor(scene, bytes) {
+  constructor(scene, bytes, [steps, valueSteps]) {
+    Object.assign(this, { steps, valueSteps });
     [this.along, this.through, this.around] = scene.points;
     this.scene = scene;
     this.bytes = bytes;
@@ -33,13 +34,16 @@ class Walls {
   /** Coordinates of the stored points of a state, one array each. */
   coordinates(state) {
     const { low, high } = this.scene;
-    return [0, 1, 2].map((i) => this.numbers(state, i, low[i], high[i], 65535));
+    return [0, 1, 2].map((i) => this.numbers(state, i, low[i], high[i], this.steps));
   }
 
-  /** A field at the stored points of a state. */
+  /** A field at the stored points of a state; not a number where it has no value. */
   values(state, field) {
     const [low, high] = this.scene.fields[field].ends[state];
-    return this.numbers(state, 3 + field, low, high, 4095);
+    const values = this.numbers(state, 3 + field, low, high, this.valueSteps);
+    // Beyond the last step, and by more than rounding, is what has no value.
+    const beyond = high + (high - low) / this.valueSteps;
+    return values.map((value) => (high > low && value > beyond ? NaN : value));
   }
 }
 
@@ -137,7 +141,9 @@ class Tube {
       position[3 * vertex + 1] = x[point] * cos - y[point] * sin;
       position[3 * vertex + 2] = x[point] * sin + y[point] * cos;
       const uv = geometry.attributes.uv.array;
-      [uv[2 * vertex], uv[2 * vertex + 1]] = [colour(values[point]), 0.5];
+      const value = values[point];
+      // The texture's second row is the colour of what has no value.
+      [uv[2 * vertex], uv[2 * vertex + 1]] = Number.isNaN(value) ? [0, 0.75] : [colour(value), 0.25];
     };
     const point = (meridian, level, i) => ((meridian % around) * through + level) * along + i;
     for (let j = 0; j <= meridians; j++) {

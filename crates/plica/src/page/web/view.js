@@ -8,7 +8,7 @@ const DIRECTIONS = {
   colon: [-1, 0.3, 0.5],
   ileum: [1, 0.3, 0.5],
 };
-/** Height that a tube is given, in D. */
+/** Room that a tube is given, in its largest diameter and at rest. */
 const LANE = 1.45;
 
 class View {
@@ -26,12 +26,14 @@ class View {
     sun.target.position.set(0, 0, -1);
     this.scene.add(new THREE.AmbientLight(0xffffff, 1.45), this.camera);
 
-    const flat = new Uint8Array(colours.flatMap(([r, g, b]) => [r, g, b, 255]));
-    const map = new THREE.DataTexture(flat, colours.length, 1, THREE.RGBAFormat);
+    const rows = [...colours, ...colours.map(() => [150, 150, 150])];
+    const flat = new Uint8Array(rows.flatMap(([r, g, b]) => [r, g, b, 255]));
+    const map = new THREE.DataTexture(flat, colours.length, 2, THREE.RGBAFormat);
     map.colorSpace = THREE.SRGBColorSpace;
     [map.minFilter, map.magFilter] = [THREE.LinearFilter, THREE.LinearFilter];
+    // Halfway up either row, nothing of the other is mixed in.
     map.needsUpdate = true;
-    this.lane = LANE * runs[0].scene.diameter;
+    this.lane = Math.max(...runs.map(({ scene }) => Math.max(LANE * scene.diameter, 2.25 * scene.radius)));
     this.tubes = runs.map((run, i) => {
       const tube = new Tube(run.walls, map);
       tube.group.position.y = this.lane * ((runs.length - 1) / 2 - i);
@@ -43,7 +45,7 @@ class View {
       const half = 0.5 * (scene.high[0] - scene.low[0]) + 0.16 * scene.diameter;
       const y = this.tubes[i].group.position.y;
       const labels = [this.label("colon", "end", -half, y), this.label("ileum", "end", half, y)];
-      return runs.length > 1 ? [...labels, this.label(name, "end name", -0.5 * (scene.high[0] - scene.low[0]), y + 0.72 * scene.diameter)] : labels;
+      return runs.length > 1 ? [...labels, this.label(name, "end name", -0.5 * (scene.high[0] - scene.low[0]), y + 0.5 * this.lane)] : labels;
     });
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enablePan = true;
