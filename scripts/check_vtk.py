@@ -241,6 +241,27 @@ def check_state(run, number, row, profile):
     close("volume within the surface", six.sum() / 6, volume, 1e-2)
 
 
+def check_film(run, number):
+    """The one file of all states against the surface of one of them."""
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(run / "vtk" / "walls.vtkhdf"))
+    reader.UpdateInformation()
+    key = vtk.vtkStreamingDemandDrivenPipeline.TIME_STEPS()
+    times = list(reader.GetOutputInformation(0).Get(key))
+    saved = sorted(int(path.stem.split("-")[1]) for path in (run / "states").glob("state-*"))
+    assert times == saved, (times, saved)
+    reader.UpdateTimeStep(number)
+    film, walls = reader.GetOutputDataObject(0), read(run / "vtk" / "walls" / f"state-{number:04}.vtp")
+    points = [vtk_to_numpy(mesh.GetPoints().GetData()) for mesh in (film, walls)]
+    assert np.abs(points[0] - points[1]).max() < 1e-6
+    quads = [vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()) for mesh in (film, walls)]
+    assert np.array_equal(*quads)
+    names = [walls.GetPointData().GetArrayName(i) for i in range(walls.GetPointData().GetNumberOfArrays())]
+    for name in names:
+        assert np.array_equal(field(film, name), field(walls, name)), name
+    print(f"one file: {len(times)} states, {len(names)} fields as in the file of state {number}")
+
+
 def main():
     run = Path(sys.argv[1])
     rows = {int(row["step"]): row for row in csv.DictReader(open(run / "history.csv"))}
@@ -250,6 +271,7 @@ def main():
         number = int(path.stem.split("-")[1])
         profile = list(csv.DictReader(open(run / "profiles" / f"{path.stem}.csv")))
         check_state(run, number, rows[number], profile)
+        check_film(run, number)
     for name in ["walls", "volume", "linear"]:
         text = (run / "vtk" / f"{name}.pvd").read_text()
         named = [run / "vtk" / part.split('"')[0] for part in text.split('file="')[1:]]

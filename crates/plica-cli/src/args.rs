@@ -197,6 +197,9 @@ pub struct ExportArguments {
     /// Write volumes as linear cells too, for filters that cannot follow curved ones
     #[arg(long)]
     pub linear: bool,
+    /// Write the walls of all saved states as one VTKHDF file, too
+    #[arg(long)]
+    pub hdf: bool,
     /// Threads to use [default: all cores]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -424,6 +427,7 @@ What it leaves in the directory of the run:
   vtk/walls.pvd    the surface of the wall at every saved state: open this in ParaView
   vtk/volume.pvd   the wall itself at the chosen states, as curved cells that are the splines exactly
   vtk/linear.pvd   with --linear, the same cut into straight cells
+  vtk/walls.vtkhdf with --hdf, the surfaces of all states in one file
   vtk/walls/, volume/, linear/
                    the files of the states
 

@@ -59,6 +59,10 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
             bad.push(failure);
         }
     }
+    let film = match arguments.hdf && !ticker.stop() {
+        true => film(&run, &work.exporter, &mut ticker)?,
+        false => None,
+    };
     let stopped = ticker.stop();
     ticker.finish();
     for what in work.written.keys() {
@@ -72,6 +76,11 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
             *bytes as f64 * 1e-6,
             arguments.run.join(collection_of(*what)).display()
         );
+    }
+    if let Some(bytes) = film {
+        let path = arguments.run.join(FILM);
+        let size = bytes as f64 * 1e-6;
+        text += &format!("all states: {size:.1} MB; open {}\n", path.display());
     }
     console::say(&text)?;
     let others = bad.len().saturating_sub(1);
@@ -89,6 +98,30 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// The walls of all states in one file.
+const FILM: &str = "vtk/walls.vtkhdf";
+
+/// Writes the walls of all states as one file; its bytes, or none if it was not to go on.
+fn film(
+    run: &Finished,
+    exporter: &Exporter,
+    ticker: &mut Ticker,
+) -> Result<Option<usize>, Failure> {
+    let mut movie = exporter.movie();
+    for (done, &state) in run.saved.keys().enumerate() {
+        if ticker.stop() {
+            return Ok(None);
+        }
+        let part = done as f64 / run.saved.len() as f64;
+        ticker.working(&format!("state {state}, in one file"), part);
+        exporter.film(&mut movie, &run.state(state)?.0);
+    }
+    let trouble = |what: String| Failure::Files(format!("{FILM}: {what}"));
+    let bytes = movie.bytes().map_err(trouble)?;
+    run.directory.write(FILM, &bytes).map_err(Failure::Study)?;
+    Ok(Some(bytes.len()))
 }
 
 /// What it takes to write a file, and what is written.

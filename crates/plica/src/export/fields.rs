@@ -3,7 +3,6 @@
 use super::node::{Node, Turn};
 use super::nodes::Nodes;
 use crate::study::Scale;
-use crate::vtk::Column;
 
 /// A field: its name, the names of its components (none if it is a number), and how it is packed.
 pub struct Field {
@@ -12,7 +11,7 @@ pub struct Field {
     /// What its components are called.
     pub components: &'static [&'static str],
     /// Its numbers at all points.
-    pub column: fn(&Nodes, &Scale) -> Column,
+    pub numbers: fn(&Nodes, &Scale) -> Vec<f32>,
 }
 
 const XYZ: &[&str] = &["x", "y", "z"];
@@ -22,7 +21,7 @@ pub const FIELDS: &[Field] = &[
     Field {
         name: "displacement",
         components: XYZ,
-        column: |nodes, scale| {
+        numbers: |nodes, scale| {
             let length = scale.length as f32;
             several(nodes, |node, turn| {
                 turn.of_short(node.displacement).map(|x| length * x)
@@ -32,22 +31,22 @@ pub const FIELDS: &[Field] = &[
     Field {
         name: "det_Fe",
         components: &[],
-        column: |nodes, _| single(nodes, |node| node.jacobian),
+        numbers: |nodes, _| single(nodes, |node| node.jacobian),
     },
     Field {
         name: "theta_zeta",
         components: &[],
-        column: |nodes, _| single(nodes, |node| node.grown[0]),
+        numbers: |nodes, _| single(nodes, |node| node.grown[0]),
     },
     Field {
         name: "theta_eta",
         components: &[],
-        column: |nodes, _| single(nodes, |node| node.grown[1]),
+        numbers: |nodes, _| single(nodes, |node| node.grown[1]),
     },
     Field {
         name: "strain_energy_density",
         components: &[],
-        column: |nodes, scale| {
+        numbers: |nodes, scale| {
             let stress = scale.stress as f32;
             single(nodes, |node| stress * node.energy_density)
         },
@@ -55,7 +54,7 @@ pub const FIELDS: &[Field] = &[
     Field {
         name: "cauchy_stress",
         components: &["xx", "yy", "zz", "xy", "yz", "xz"],
-        column: |nodes, scale| {
+        numbers: |nodes, scale| {
             let stress = scale.stress as f32;
             several(nodes, |node, turn| {
                 turn.of_tensor(node.stress).map(|x| stress * x)
@@ -65,7 +64,7 @@ pub const FIELDS: &[Field] = &[
     Field {
         name: "von_mises_stress",
         components: &[],
-        column: |nodes, scale| {
+        numbers: |nodes, scale| {
             let stress = scale.stress as f32;
             single(nodes, |node| stress * node.von_mises)
         },
@@ -73,22 +72,22 @@ pub const FIELDS: &[Field] = &[
     Field {
         name: "elastic_stretch",
         components: &["1", "2", "3"],
-        column: |nodes, _| several(nodes, |node, _| node.stretches),
+        numbers: |nodes, _| several(nodes, |node, _| node.stretches),
     },
     Field {
         name: "elastic_direction_1",
         components: XYZ,
-        column: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[0])),
+        numbers: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[0])),
     },
     Field {
         name: "elastic_direction_2",
         components: XYZ,
-        column: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[1])),
+        numbers: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[1])),
     },
     Field {
         name: "elastic_direction_3",
         components: XYZ,
-        column: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[2])),
+        numbers: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[2])),
     },
     Field {
         name: "green_lagrange_strain",
@@ -100,14 +99,14 @@ pub const FIELDS: &[Field] = &[
             "eta-xi",
             "zeta-xi",
         ],
-        column: |nodes, _| several(nodes, |node, _| node.strain),
+        numbers: |nodes, _| several(nodes, |node, _| node.strain),
     },
 ];
 
-fn single(nodes: &Nodes, of: impl Fn(&Node) -> f32) -> Column {
-    Column::of(nodes.all(|node, _| of(node)))
+fn single(nodes: &Nodes, of: impl Fn(&Node) -> f32) -> Vec<f32> {
+    nodes.all(|node, _| of(node)).collect()
 }
 
-fn several<const N: usize>(nodes: &Nodes, of: impl Fn(&Node, &Turn) -> [f32; N]) -> Column {
-    Column::of(nodes.all(of).flatten())
+fn several<const N: usize>(nodes: &Nodes, of: impl Fn(&Node, &Turn) -> [f32; N]) -> Vec<f32> {
+    nodes.all(of).flatten().collect()
 }

@@ -22,7 +22,7 @@ mod nodes;
 
 use crate::assembly::SplineTube;
 use crate::study::{Plan, Row, SavedState, Scale};
-use crate::vtk::Document;
+use crate::vtk::{Column, Document, Movie};
 use fields::FIELDS;
 use nodes::Nodes;
 
@@ -113,9 +113,29 @@ impl Exporter {
             file.point_data(
                 field.name,
                 field.components,
-                (field.column)(&nodes, &self.scale),
+                Column::of((field.numbers)(&nodes, &self.scale).into_iter()),
             );
         }
         file.bytes()
+    }
+
+    /// An empty film of the wall's surface.
+    pub fn movie(&self) -> Movie {
+        let lattice = Nodes::lattice_of_walls(&self.tube, FACETS);
+        let [outwards, around, along] = lattice.points();
+        Movie::new(lattice.skin().0, outwards * around * along)
+    }
+
+    /// Adds a state to it, its number as the time.
+    pub fn film(&self, movie: &mut Movie, state: &SavedState) {
+        let lattice = Nodes::lattice_of_walls(&self.tube, FACETS);
+        let nodes = Nodes::of(&self.tube, &state.load, &state.u, lattice);
+        let length = self.scale.length;
+        let points = nodes.all(|node, turn| turn.of(node.position).map(|x| length * x));
+        let field = |field: &fields::Field| {
+            let numbers = (field.numbers)(&nodes, &self.scale);
+            (field.name, field.components.len().max(1), numbers)
+        };
+        movie.step(state.row as f64, points, FIELDS.iter().map(field).collect());
     }
 }

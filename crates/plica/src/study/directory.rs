@@ -393,6 +393,7 @@ fn clear(path: &Path) -> Result<(), StudyError> {
             && ["png", "svg", "apng", "mp4"].contains(&ending)
     }));
     old.extend(["walls", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))));
+    old.push(path.join("vtk/walls.vtkhdf"));
     old.push(path.join(MANIFEST));
     remove(old)
 }
