@@ -168,7 +168,7 @@ pub struct ReproduceArguments {
     /// Coarser meshes than the paper's: some minutes [default]
     #[arg(long, conflicts_with = "full")]
     pub quick: bool,
-    /// The paper's mesh, and three dimensions where they matter: hours
+    /// The paper's mesh, and three dimensions where they matter: an hour or two
     #[arg(long)]
     pub full: bool,
     /// List the figures and the cases that they are told from, and run none
