@@ -60,7 +60,11 @@ pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
         }
         Wanted::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
     };
-    let (_, plan) = open_with(&directory.path().join("case.toml"), &own)?;
+    let (_, mut plan) = open_with(&directory.path().join("case.toml"), &own)?;
+    // A case without a title had that of its file, which was called otherwise then.
+    if let Some(title) = directory.manifest()["title"].as_str() {
+        plan.title = title.to_owned();
+    }
     Ok(plan)
 }
 

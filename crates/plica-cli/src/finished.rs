@@ -7,6 +7,20 @@ use plica::study::{Plan, Row, RunDirectory, SavedState};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+/// Refuses to write to a file that does not end as what is written does, lest something else is written over.
+pub fn endings(path: &Path, endings: &[&str]) -> Result<(), Failure> {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    if ending.is_some_and(|ending| endings.contains(&ending)) {
+        return Ok(());
+    }
+    let named: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
+    Err(Failure::Usage(format!(
+        "--out {}: must end in {}",
+        path.display(),
+        named.join(" or ")
+    )))
+}
+
 /// A run that is there.
 pub struct Finished {
     /// Its directory.

@@ -2,7 +2,7 @@
 
 use crate::args::PlotArguments;
 use crate::failure::Failure;
-use crate::finished::Finished;
+use crate::finished::{Finished, endings};
 use plica::draw::Chart;
 use plica::report::{self, Column, Shown};
 use plica::study::Scale;
@@ -19,15 +19,11 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
                 "--out names one file, and several plots are asked for; plot one at a time, or leave --out away".into(),
             ));
         }
-        Some(path) => match path.extension().and_then(|ending| ending.to_str()) {
-            Some(ending @ ("svg" | "png")) => Some(ending.to_owned()),
-            _ => {
-                return Err(Failure::Usage(format!(
-                    "--out {}: must end in .svg or .png",
-                    path.display()
-                )));
-            }
-        },
+        Some(path) => {
+            endings(path, &["svg", "png"])?;
+            path.extension()
+                .map(|ending| ending.to_string_lossy().into_owned())
+        }
     };
     let run = Finished::open(&arguments.run)?;
     run.has(&arguments.state)?;

@@ -3,7 +3,7 @@
 use crate::args::{AnimateArguments, LookArguments, RenderArguments};
 use crate::failure::Failure;
 use crate::film;
-use crate::finished::Finished;
+use crate::finished::{Finished, endings};
 use crate::interrupt::Interrupt;
 use crate::threads;
 use crate::ticker::Ticker;
@@ -27,6 +27,9 @@ const MOST: usize = 12;
 pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     let run = Finished::open(&arguments.run)?;
     run.has(&arguments.state)?;
+    if let Some(path) = &arguments.look.out {
+        endings(path, &["png"])?;
+    }
     if arguments.state.len() > MOST {
         return Err(Failure::Usage(format!(
             "{} states in one picture are too many to see; {MOST} at most",
@@ -51,6 +54,9 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
     let run = Finished::open(&arguments.run)?;
     threads::limit(arguments.look.threads)?;
     let look = appearance(&arguments.look);
+    if let Some(path) = &arguments.look.out {
+        endings(path, &["apng", "png", "mp4"])?;
+    }
     let film = arguments
         .look
         .out

@@ -2,7 +2,7 @@
 
 use crate::args::ReportArguments;
 use crate::failure::Failure;
-use crate::finished::Finished;
+use crate::finished::{Finished, endings};
 use crate::{console, threads};
 use plica::page::{PageError, Run, page};
 use plica::study::SavedState;
@@ -11,6 +11,18 @@ use std::path::{Path, PathBuf};
 /// Writes runs as a page.
 pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     threads::limit(arguments.threads)?;
+    if let Some(path) = &arguments.out {
+        endings(path, &["html", "htm"])?;
+    }
+    for (i, path) in arguments.runs.iter().enumerate() {
+        let same = |other: &PathBuf| path.canonicalize().ok() == other.canonicalize().ok();
+        if path.exists() && arguments.runs[..i].iter().any(same) {
+            return Err(Failure::Usage(format!(
+                "{}: named twice; compare it with another run",
+                path.display()
+            )));
+        }
+    }
     let open = |path: &PathBuf| {
         let run = Finished::open(path)?;
         let state = |&number: &usize| Ok(run.state(number)?.0);

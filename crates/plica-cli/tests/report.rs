@@ -24,7 +24,7 @@ fn a_run_is_told_on_one_page_that_needs_nothing_else() {
     assert!(text(&said.stdout).contains("report.html"));
     let page = fs::read_to_string(run.join("report.html")).unwrap();
     for words in [
-        "<h1>a short run</h1>",
+        "<h1><bdi>a short run</bdi></h1>",
         "Every stage was done. At its last state the tube is narrowed to a V.",
         "<dt>energy minimum</dt>",
         "drive.circular.diameter_ratio = 0.9",
@@ -97,6 +97,8 @@ fn pages_that_cannot_be_are_refused() {
     for (arguments, code, what) in [
         (&["run", "mm"][..], 2, "give both cases the same units"),
         (&["nowhere"], 3, "nowhere"),
+        (&["run", "mm/../run"], 2, "named twice"),
+        (&["run", "--out", "run/history.csv"], 2, "must end in .html"),
         (
             &["run", "run", "run", "run", "run"],
             2,

@@ -1,7 +1,7 @@
 //! What the page's scripts know of a run.
 
-use super::Run;
 use super::scene::Scene;
+use super::{Run, words};
 use crate::draw::label;
 use crate::report::{Column, Role};
 use serde::Serialize;
@@ -15,6 +15,8 @@ pub struct Known {
     /// Of every row of the history.
     stages: Vec<String>,
     shapes: Vec<String>,
+    /// What makes of it less than it seems.
+    beware: Vec<Option<&'static str>>,
     columns: Vec<Plotted>,
 }
 
@@ -43,6 +45,7 @@ impl Known {
             scene: Scene::of(run.plan, run.states, run.upwards(), largest),
             stages: run.rows.iter().map(|row| row.stage.clone()).collect(),
             shapes: run.rows.iter().map(|row| row.shape.clone()).collect(),
+            beware: run.rows.iter().map(words::beware).collect(),
             columns: all.chain(eigenvalues(run).iter().map(plotted)).collect(),
         }
     }

@@ -46,7 +46,21 @@ fn did(last: &Row, findings: &Findings<'_>) -> Vec<String> {
             "It is not axisymmetric: its wall has {n} waves around, of {far}."
         )),
     };
-    std::iter::once(shape).chain(leans).collect()
+    let beware = beware(last).map(|what| format!("There {what}."));
+    std::iter::once(shape).chain(leans).chain(beware).collect()
+}
+
+/// What makes of a state less than it seems.
+pub fn beware(row: &Row) -> Option<&'static str> {
+    if row.crosses_itself() {
+        Some("its wall crosses itself, which is not physical")
+    } else if row.has_closed() {
+        Some("its lumen is closed, and what walls do there is not physical")
+    } else if row.equilibrium == "no" {
+        Some("it is not in equilibrium")
+    } else {
+        None
+    }
 }
 
 fn shaped(shape: &str) -> String {
@@ -160,7 +174,7 @@ fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
     );
     those(
         &|row| row.method == "relaxation",
-        "found by relaxation after Newton's way along the path had failed; they may lie on another branch than the state before.",
+        "found by relaxation after Newton's way along the path had failed: on another branch, it may be, than the state before.",
     );
     let lost = |row: &Row, to_own: bool| {
         let mut lost = row.lost_harmonics().filter(|n| *n != "unknown");

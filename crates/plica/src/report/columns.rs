@@ -144,7 +144,7 @@ impl Column {
         });
         add(
             "gap",
-            length("gap between folds of the wall"),
+            length("nearest approach of the wall to itself"),
             Role::Tabled,
             &|row| Some(row.gap),
         );

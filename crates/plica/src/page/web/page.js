@@ -48,14 +48,17 @@ class Page {
     for (const { name, label, load } of options) {
       if (!load && name !== "energy") $("measure").add(new Option(label, name));
     }
-    $("measure").value = columns.has("overhang") ? "overhang" : options.at(-1).name;
+    // What happens on these paths, if it is one of these.
+    const varies = (name) => this.runs.some((run) => this.column(run, name)?.values.some((x, _, all) => Math.abs((x ?? 0) - (all[0] ?? 0)) > 1e-3));
+    $("measure").value = ["overhang", "departure", "outer_radius_min"].find(varies) ?? options.find(({ load, name }) => !load && name !== "energy").name;
     $("along").add(new Option("number of the state", "step"));
     const driven = options.filter(({ name, load }) => load && this.runs.some((run) => this.rising(run, name).length > 2));
     driven.forEach(({ name, label }) => $("along").add(new Option(label, name)));
-    // What the longest part of the path goes along.
-    const length = ({ name }) => Math.max(...this.runs.map((run) => this.rising(run, name).length));
-    const most = driven.reduce((best, one) => (best && length(best) >= length(one) ? best : one), null);
-    if (most) $("along").value = most.name;
+    // What most of every path goes along, if there is such a load.
+    const part = ({ name }) => Math.min(...this.runs.map((run) => this.rising(run, name).length / run.stages.length));
+    const most = driven.reduce((best, one) => (best && part(best) >= part(one) ? best : one), null);
+    if (most && part(most) > 0.5) $("along").value = most.name;
+    $("stage").classList.toggle("many", this.runs.length > 2);
     $("state").max = this.stops.length - 1;
     const again = () => this.show();
     ["field", "range", "ghost"].forEach((id) => $(id).addEventListener("change", again));
@@ -67,28 +70,46 @@ class Page {
     $("keep").addEventListener("click", () => this.keep());
     this.colourBar();
     document.querySelectorAll("tr[data-step]").forEach((line) => {
+      const button = line.querySelector("button");
+      // One stop of the tabulator for the table; arrows go on from there.
+      button.tabIndex = line.previousElementSibling ? -1 : 0;
+      button.addEventListener("keydown", (event) => {
+        const to = { ArrowDown: line.nextElementSibling, ArrowUp: line.previousElementSibling }[event.key];
+        if (!to) return;
+        event.preventDefault();
+        to.querySelector("button")?.focus();
+      });
       line.addEventListener("click", () => this.goToRow(Number(line.dataset.run), Number(line.dataset.step)));
     });
+    const print = (now) => {
+      printing = now;
+      this.plots.forEach((plot) => plot.paint());
+    };
     addEventListener("beforeprint", () => {
       document.querySelectorAll("details").forEach((one) => (one.open = true));
-      this.plots.forEach((plot) => plot.paint());
+      print(true);
     });
-    addEventListener("afterprint", () => this.plots.forEach((plot) => plot.paint()));
+    addEventListener("afterprint", () => print(false));
   }
 
   column(run, name) {
     return run.columns.find((column) => column.name === name);
   }
 
-  /** The last rows of a path along which a quantity rises or falls all the way, as numbers of rows, the quantity rising. */
+  /** The longest part of a path along which a quantity rises, or falls, all the way; as numbers of rows, the quantity rising. */
   rising(run, name) {
     const values = this.column(run, name)?.values ?? [];
-    const last = values.length - 1;
-    let first = last;
-    const way = Math.sign(values[last] - values[last - 1]);
-    while (first > 0 && way !== 0 && Math.sign(values[first] - values[first - 1]) === way) first--;
-    const rows = values.map((_, i) => i).slice(Math.max(first, 0));
-    return way < 0 ? rows.reverse() : rows;
+    let best = [0, 0, 0];
+    for (let from = 0, to = 1; to < values.length; to++) {
+      const way = Math.sign(values[to] - values[to - 1]);
+      const before = to - 1 > from ? Math.sign(values[to - 1] - values[to - 2]) : way;
+      if (way === 0) from = to;
+      else if (way !== before) from = to - 1;
+      // Of two that are as long, the later.
+      if (to - from >= best[1] - best[0]) best = [from, to, way];
+    }
+    const rows = values.map((_, i) => i).slice(best[0], best[1] + 1);
+    return best[2] < 0 ? rows.reverse() : rows;
   }
 
   /** Rows of a run that the plots show, and their abscissae; none if it has not what is plotted along. */
@@ -116,7 +137,7 @@ class Page {
     const away = this.runs.map((run) => run.stages.length - this.abscissa(run).rows.length);
     const names = this.runs.map((run, i) => (this.runs.length > 1 ? `${run.name}: ` : "") + `${away[i]} of ${run.stages.length} states`);
     $("away").textContent = away.some((n) => n > 0)
-      ? `Not on these axes: ${names.filter((_, i) => away[i] > 0).join("; ")}, before the path last turned or stood still. Plotted along the number of the state, all are.`
+      ? `Not on these axes: ${names.filter((_, i) => away[i] > 0).join("; ")}, where this stands still or goes the other way. Along the number of the state, all are.`
       : "";
     this.mark();
   }
@@ -199,7 +220,8 @@ class Page {
       const numbers = parts.map(({ label, values }) => `${label.replace("strain energy ", "")} ${told(values[row])}`);
       const name = this.runs.length > 1 ? `${run.name}, ` : "";
       const off = this.now[i][1] > 0.02 ? " (the nearest load that this path has)" : "";
-      return `${name}state ${row} (${run.stages[row]}): ${numbers.join(", ")}; ${run.shapes[row]}${off}`;
+      const beware = run.beware[row] ? `; ${run.beware[row]}` : "";
+      return `${name}state ${row} (${run.stages[row]}): ${numbers.join(", ")}; ${run.shapes[row]}${beware}${off}`;
     });
     $("told").replaceChildren(
       ...lines.map((line) => {

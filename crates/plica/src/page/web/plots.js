@@ -1,8 +1,12 @@
 "use strict";
 // Plots along the path; where the pointer is, there the tubes are.
 
+/** Whether the page is on its way to paper; the style hears of it too late. */
+let printing = false;
+const PRINTED = { "--ink": "#000000", "--rule": "#cccccc", "--faint": "#444444", "--paper": "#ffffff" };
+
 /** A colour of the page's style by its name. */
-const ink = (name) => (matchMedia("print").matches ? { "--ink": "#000000", "--rule": "#cccccc" }[name] : null) ?? getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const ink = (name) => (printing ? PRINTED[name] : null) ?? getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 
@@ -20,6 +24,12 @@ function told(x, digits = 5, size = Math.abs(x)) {
 function ticks(_, splits) {
   const largest = Math.max(...splits.map((x) => Math.abs(x ?? 0)));
   return splits.map((x) => (x === null ? "" : told(x, 4, largest)));
+}
+
+/** Room for the longest tick of an axis, beside its name. */
+function wide(_, values) {
+  const longest = Math.max(0, ...(values ?? []).map((text) => text.length));
+  return 44 + 6.5 * longest;
 }
 
 /** A little room at both ends. */
@@ -60,7 +70,7 @@ class Plot {
       grid: { stroke: ink("--rule"), width: 1 },
       ticks: { stroke: ink("--rule"), width: 1 },
       font: "12px system-ui, sans-serif",
-      labelFont: "12px system-ui, sans-serif",
+      labelFont: "11.5px system-ui, sans-serif",
       values: ticks,
       ...more,
     });
@@ -70,7 +80,7 @@ class Plot {
       legend: { show: series.length > 1, live: false, markers: { width: 3 } },
       cursor: { drag: { x: false, y: false }, y: false, points: { size: 9 } },
       scales: { x: { time: false, range: roomy }, y: { range: grounded } },
-      axes: [axis(xLabel, { size: 40, labelSize: 20 }), axis(yLabel, { size: 66, labelSize: 20 })],
+      axes: [axis(xLabel, { size: 40, labelSize: 20 }), axis(yLabel, { size: wide, labelSize: 22 })],
       series: [
         {},
         ...series.map(({ label, colour }, i) => ({
@@ -98,7 +108,7 @@ class Plot {
   }
 
   height() {
-    return this.box.clientWidth < 420 ? 190 : 225;
+    return this.box.clientWidth < 420 ? 205 : 250;
   }
 
   resize() {
