@@ -15,7 +15,6 @@ pub(super) const TEXT: f64 = 8.0;
 pub(super) const SIDE: f64 = 36.0;
 /// The height of a panel, at most, in points.
 const TALLEST: f64 = 190.0;
-const SAMPLES: usize = 3;
 /// How much of its colour glass has.
 const GLASS: f64 = 0.22;
 
@@ -60,6 +59,8 @@ pub struct Cutaway {
     pub toward: [f64; 3],
     /// Points that every panel makes room for beside its own: of all pictures of an animation.
     pub room: Vec<[f64; 3]>,
+    /// Samples along either side of a pixel, 1 to 4: 2 are smooth, 3 are finer and take twice the time.
+    pub samples: usize,
     /// Printed width in points.
     pub width_pt: f64,
 }
@@ -74,6 +75,7 @@ impl Default for Cutaway {
             map: Map::default(),
             toward: [0.42, 1.0, -0.35],
             room: Vec::new(),
+            samples: 2,
             width_pt: 510.0,
         }
     }
@@ -132,11 +134,11 @@ impl Cutaway {
                 ),
             };
             let range = (scale.low, scale.high);
-            let mut tube = render(&panel.surfaces, &view, range, self.map, SAMPLES)?;
+            let mut tube = render(&panel.surfaces, &view, range, self.map, self.samples)?;
             if !panel.glass.is_empty() {
                 // Where glass is behind the rest, both pictures are the same.
                 let all = [&panel.surfaces[..], &panel.glass].concat();
-                let all = render(&all, &view, range, self.map, SAMPLES)?;
+                let all = render(&all, &view, range, self.map, self.samples)?;
                 for (pixel, glass) in tube.pixels.iter_mut().zip(all.pixels) {
                     *pixel = mix(*pixel, glass, GLASS);
                 }

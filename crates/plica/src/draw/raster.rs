@@ -7,6 +7,9 @@ use super::colour::{Map, to_byte};
 use super::light::{Shader, cross, dot, minus, unit};
 use super::{DrawError, Image};
 
+/// What counts as on an edge, in samples.
+const NEAR: f64 = 1e-6;
+
 /// A structured grid of quadrilaterals that carries a field.
 #[derive(Clone, Debug, Default)]
 pub struct Surface {
@@ -96,14 +99,23 @@ impl View {
     }
 }
 
-/// What the samples of the picture hold: light, and what lies there.
+/// What the samples of the picture hold: which triangle lies there, and where on it. What is hidden is never lit.
 struct Samples {
     width: usize,
     height: usize,
     depth: Vec<f32>,
     /// Number of the surface plus one, 0 for none.
     surface: Vec<u16>,
-    light: Vec<[f32; 3]>,
+    triangle: Vec<u32>,
+    /// Weights of the triangle's second and third corner.
+    weights: Vec<[f32; 2]>,
+}
+
+/// All triangles by their corners.
+#[derive(Default)]
+struct Scene {
+    corners: Vec<Corner>,
+    triangles: Vec<[u32; 3]>,
 }
 
 /// A corner of a triangle: page place in samples, depth towards the viewer, normal in page axes, field.
@@ -128,7 +140,7 @@ pub fn render(
     samples: usize,
 ) -> Result<Image, DrawError> {
     let image = Image::white(view.size.0 as f64, view.size.1 as f64)?;
-    // Twenty bytes a sample: a huge picture gets fewer of them, and needs fewer.
+    // Some twenty bytes a sample: a huge picture gets fewer of them, and needs fewer.
     let pixels = image.pixels.len();
     let samples = (1..=samples.min(4))
         .rev()
@@ -141,8 +153,10 @@ pub fn render(
         height,
         depth: vec![f32::NEG_INFINITY; count],
         surface: vec![0; count],
-        light: vec![[1.0; 3]; count],
+        triangle: vec![0; count],
+        weights: vec![[0.0; 2]; count],
     };
+    let mut scene = Scene::default();
     let shader = Shader::new(range, map);
     let scale = view.scale * samples as f64;
     for (number, surface) in surfaces.iter().enumerate() {
@@ -152,35 +166,41 @@ pub fn render(
         }
         let id = (number % usize::from(u16::MAX)) as u16 + 1;
         let normals = surface.normals();
-        let corners: Vec<Corner> = (0..surface.points.len())
-            .map(|i| {
-                let (p, n) = (surface.points[i], normals[i]);
-                let across = (dot(p, view.right) - view.corner.0) * scale;
-                let down = (view.corner.1 - dot(p, view.up)) * scale;
-                let place = [across, down, dot(p, view.toward) * scale];
-                let normal = [dot(n, view.right), dot(n, view.up), dot(n, view.toward)];
-                Corner {
-                    place,
-                    normal,
-                    value: surface.values[i],
-                }
-            })
-            .collect();
+        let first = scene.corners.len();
+        let corners = (0..surface.points.len()).map(|i| {
+            let (p, n) = (surface.points[i], normals[i]);
+            let across = (dot(p, view.right) - view.corner.0) * scale;
+            let down = (view.corner.1 - dot(p, view.up)) * scale;
+            let place = [across, down, dot(p, view.toward) * scale];
+            let normal = [dot(n, view.right), dot(n, view.up), dot(n, view.toward)];
+            Corner {
+                place,
+                normal,
+                value: surface.values[i],
+            }
+        });
+        scene.corners.extend(corners);
         for row in 0..surface.rows - 1 {
             for column in 0..surface.columns - 1 {
-                let i = row * surface.columns + column;
+                let i = first + row * surface.columns + column;
                 let (a, b, c, d) = (i, i + 1, i + surface.columns, i + surface.columns + 1);
-                buffer.triangle([&corners[a], &corners[b], &corners[d]], id, &shader);
-                buffer.triangle([&corners[a], &corners[d], &corners[c]], id, &shader);
+                for corners in [[a, b, d], [a, d, c]] {
+                    let number = scene.triangles.len() as u32;
+                    scene.triangles.push(corners.map(|corner| corner as u32));
+                    buffer.triangle(
+                        corners.map(|corner| scene.corners[corner].place),
+                        number,
+                        id,
+                    );
+                }
             }
         }
     }
-    Ok(buffer.resolve(image, samples))
+    Ok(buffer.resolve(image, samples, &scene, &shader))
 }
 
 impl Samples {
-    fn triangle(&mut self, corners: [&Corner; 3], id: u16, shader: &Shader) {
-        let [a, b, c] = corners.map(|c| c.place);
+    fn triangle(&mut self, [a, b, c]: [[f64; 3]; 3], number: u32, id: u16) {
         let double_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
         if double_area == 0.0 || !double_area.is_finite() || !(a[2] + b[2] + c[2]).is_finite() {
             return;
@@ -188,8 +208,6 @@ impl Samples {
         let (left, right) = (a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
         let (top, bottom) = (a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
         // Samples sit in the middle of their squares; `as` saturates outside the picture.
-        let columns = (left - 0.5).ceil().max(0.0) as usize
-            ..((right + 0.5).floor().max(0.0) as usize).min(self.width);
         let rows = (top - 0.5).ceil().max(0.0) as usize
             ..((bottom + 0.5).floor().max(0.0) as usize).min(self.height);
         // Barycentric weights of b and c are affine in the place.
@@ -198,32 +216,52 @@ impl Samples {
         let (cx, cy) = ((a[1] - b[1]) * per_area, (b[0] - a[0]) * per_area);
         for row in rows {
             let y = row as f64 + 0.5 - a[1];
-            for column in columns.clone() {
+            // From where to where no weight is negative, beside a.
+            let (mut from, mut to) = (left - a[0], right - a[0]);
+            for (at_a, slope) in [(by * y, bx), (cy * y, cx), (1.0 - (by + cy) * y, -bx - cx)] {
+                let end = -at_a / slope;
+                if slope > 0.0 {
+                    from = from.max(end);
+                } else if slope < 0.0 {
+                    to = to.min(end);
+                } else if at_a < -NEAR {
+                    to = f64::NEG_INFINITY;
+                }
+            }
+            // A sample on an edge belongs to both sides, whatever the rounding.
+            let first = (from + a[0] - 0.5 - NEAR).ceil().max(0.0) as usize;
+            let end = ((to + a[0] + 0.5 + NEAR).floor().max(0.0) as usize).min(self.width);
+            for column in first..end {
                 let x = column as f64 + 0.5 - a[0];
-                let wb = bx * x + by * y;
-                let wc = cx * x + cy * y;
-                let wa = 1.0 - wb - wc;
-                if wa < -1e-9 || wb < -1e-9 || wc < -1e-9 {
-                    continue;
-                }
-                let depth = (wa * a[2] + wb * b[2] + wc * c[2]) as f32;
+                let (wb, wc) = (bx * x + by * y, cx * x + cy * y);
+                let depth = ((1.0 - wb - wc) * a[2] + wb * b[2] + wc * c[2]) as f32;
                 let sample = row * self.width + column;
-                if depth <= self.depth[sample] {
-                    continue;
+                if depth > self.depth[sample] {
+                    self.depth[sample] = depth;
+                    self.surface[sample] = id;
+                    self.triangle[sample] = number;
+                    self.weights[sample] = [wb as f32, wc as f32];
                 }
-                let [p, q, r] = corners;
-                let normal =
-                    std::array::from_fn(|i| wa * p.normal[i] + wb * q.normal[i] + wc * r.normal[i]);
-                let value = wa * p.value + wb * q.value + wc * r.value;
-                self.depth[sample] = depth;
-                self.surface[sample] = id;
-                self.light[sample] = shader.light(normal, value);
             }
         }
     }
 
+    /// The light of a sample.
+    fn light(&self, sample: usize, scene: &Scene, shader: &Shader) -> [f32; 3] {
+        if self.surface[sample] == 0 {
+            return [1.0; 3];
+        }
+        let corners = scene.triangles[self.triangle[sample] as usize];
+        let [p, q, r] = corners.map(|corner| &scene.corners[corner as usize]);
+        let [wb, wc] = self.weights[sample].map(f64::from);
+        let wa = 1.0 - wb - wc;
+        let normal =
+            std::array::from_fn(|i| wa * p.normal[i] + wb * q.normal[i] + wc * r.normal[i]);
+        shader.light(normal, wa * p.value + wb * q.value + wc * r.value)
+    }
+
     /// Means over the samples of each pixel, with a fine dark line where a surface ends or another begins.
-    fn resolve(&self, mut image: Image, samples: usize) -> Image {
+    fn resolve(&self, mut image: Image, samples: usize, scene: &Scene, shader: &Shader) -> Image {
         let bytes: Vec<u8> = (0..4096).map(|i| to_byte(f64::from(i) / 4095.0)).collect();
         let share = 1.0 / (samples * samples) as f32;
         let across = image.width;
@@ -238,7 +276,7 @@ impl Samples {
                     } else {
                         1.0
                     };
-                    for (s, l) in sum.iter_mut().zip(self.light[sample]) {
+                    for (s, l) in sum.iter_mut().zip(self.light(sample, scene, shader)) {
                         *s += l * dim;
                     }
                 }

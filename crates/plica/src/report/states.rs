@@ -9,6 +9,9 @@ use crate::study::{Plan, Row, SavedState};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Samples along either side of a pixel of a single picture, for which there is time.
+const FINEST: usize = 3;
+
 /// How states are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Appearance {
@@ -52,7 +55,11 @@ pub fn render(plan: &Plan, states: &[Shown], look: &Appearance) -> Result<Vec<u8
     let panels = states
         .par_iter()
         .map(|shown| panel(&tube, shown, &finest, look));
-    picture(plan, panels.collect(), look).png(look.width)
+    let picture = Cutaway {
+        samples: FINEST,
+        ..picture(plan, panels.collect(), look)
+    };
+    picture.png(look.width)
 }
 
 /// The tube above its energy, state after state, as an animated PNG; `told` hears how many frames are done, and says
