@@ -443,7 +443,7 @@ Examples:
   plica plot runs/tube walls --state 15 --state 30 --out walls.svg
 
 Columns that can be plotted are those that the run has of: length_ratio, diameter_ratio, colon_displacement, ileum_displacement,
-inner_pressure, outer_pressure, energy, potential, max_wall_angle_deg, overhang, outer_radius_min, flatness, gap, lumen,
+colon_twist_deg, ileum_twist_deg, inner_pressure, outer_pressure, inner_dead_pressure, outer_dead_pressure, energy, potential, max_wall_angle_deg, overhang, outer_radius_min, flatness, gap, lumen,
 departure, min_det_fe, drag_work, residual, iterations; docs/run-directory.md tells what they are.
 
 Texts of an SVG stay texts, to be edited and set in a journal's font.";

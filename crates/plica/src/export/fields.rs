@@ -4,7 +4,7 @@ use super::node::{Node, Turn};
 use super::nodes::Nodes;
 use crate::study::Scale;
 
-/// A field: its name, the names of its components (none if it is a number), and how it is packed.
+/// A field: its name, the names of its components (none if it is a number), and its numbers.
 pub struct Field {
     /// What it is called in a file.
     pub name: &'static str,

@@ -31,7 +31,6 @@ class View {
     const map = new THREE.DataTexture(flat, colours.length, 2, THREE.RGBAFormat);
     map.colorSpace = THREE.SRGBColorSpace;
     [map.minFilter, map.magFilter] = [THREE.LinearFilter, THREE.LinearFilter];
-    // Halfway up either row, nothing of the other is mixed in.
     map.needsUpdate = true;
     this.lane = Math.max(...runs.map(({ scene }) => Math.max(LANE * scene.diameter, 2.25 * scene.radius)));
     this.tubes = runs.map((run, i) => {
