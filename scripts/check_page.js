@@ -1,11 +1,13 @@
-// Uses a page that `plica report` wrote as a reader would: node check_page.js PAGE NAME_OF_SCREENSHOTS
+// Uses a page that `plica report` wrote as a reader would: node check_page.js PAGE NAME_OF_SCREENSHOTS [RUN_DIR of each run]
 "use strict";
 const { chromium } = require("playwright-core");
 const fs = require("node:fs");
 const path = require("node:path");
 
-const [page, name] = process.argv.slice(2);
+const [page, name, ...directories] = process.argv.slice(2);
 const url = `file://${path.resolve(page)}`;
+/** How far drawn walls may be from those that the run has written, in outer diameters. */
+const OFF = 2e-3;
 /** Bytes and milliseconds that a page may take. */
 const LARGEST = 15e6;
 const SLOWEST = 3000;
@@ -54,6 +56,80 @@ async function seen(tab) {
   });
 }
 
+/** The columns of a table of numbers. */
+function table(file) {
+  const [heads, ...lines] = fs.readFileSync(file, "utf8").trim().split("\n").map((line) => line.split(","));
+  return Object.fromEntries(heads.map((head, i) => [head, lines.map((line) => (isNaN(line[i]) ? line[i] : Number(line[i])))]));
+}
+
+/** How far a point is from a polyline. */
+function away([x, y], xs, ys) {
+  let least = Infinity;
+  for (let i = 0; i + 1 < xs.length; i++) {
+    const [u, v] = [xs[i + 1] - xs[i], ys[i + 1] - ys[i]];
+    const t = Math.min(Math.max(((x - xs[i]) * u + (y - ys[i]) * v) / (u * u + v * v || 1), 0), 1);
+    least = Math.min(least, Math.hypot(x - xs[i] - t * u, y - ys[i] - t * v));
+  }
+  return least;
+}
+
+/** How far the last tube of a run is drawn from where the run's own tables have its walls: at a crest, and between two. */
+async function off(tab, which, directory) {
+  const history = table(path.join(directory, "history.csv"));
+  const last = history.step.length - 1;
+  const walls = table(path.join(directory, "profiles", `state-${String(last).padStart(4, "0")}.csv`));
+  const waves = history.departure_harmonic[last];
+  const meridians = await tab.evaluate(
+    async ([which, waves]) => {
+      const data = JSON.parse(document.getElementById("data").textContent);
+      const { scene } = data.runs[which];
+      const walls = new Walls(scene, await unpacked(scene.data), data.steps);
+      const tube = new Tube(walls, new THREE.DataTexture());
+      tube.show(scene.rows.length - 1, 0, [0, 1], 180, false);
+      const position = tube.shell.attributes.position.array;
+      const middle = 0.5 * (scene.low[0] + scene.high[0]);
+      const of = (grid, meridian) =>
+        Array.from({ length: grid.columns }, (_, i) => {
+          const [z, x, y] = position.slice(3 * grid.at(i, meridian), 3 * grid.at(i, meridian) + 3);
+          return [z + middle, Math.hypot(x, y)];
+        });
+      const at = [0, ...(waves > 0 ? [Math.round(walls.meridians / (2 * waves))] : [])];
+      return at.map((meridian) => ({ outer: of(tube.outer, meridian), inner: of(tube.inner, meridian) }));
+    },
+    [which, waves],
+  );
+  const largest = meridians.flatMap((meridian, k) =>
+    ["outer", "inner"].map((face) => {
+      const of = (what) => walls[`${k === 1 && "trough_outer_z" in walls ? "trough_" : ""}${face}_${what}`];
+      return Math.max(...meridian[face].map((point) => away(point, of("z"), of("r"))));
+    }),
+  );
+  return Math.max(...largest);
+}
+
+/** A page without a tube: plots, slider and words go on. */
+async function undrawn({ tab, complaints }) {
+  hold("shows no empty tube", !(await tab.isVisible("#stage")) && !(await tab.isVisible("#field")));
+  const told = () => tab.textContent("#told");
+  const at = await told();
+  await tab.focus("#state");
+  await tab.keyboard.press("ArrowLeft");
+  const before = await told();
+  hold("the slider moves the words", before !== at, before.slice(0, 60));
+  await tab.selectOption("#along", "step");
+  const box = await tab.locator("#plot-energy .u-over").boundingBox();
+  await tab.mouse.move(box.x + 0.3 * box.width, box.y + 0.5 * box.height);
+  hold("the pointer on a plot moves them", (await told()) !== before);
+  await tab.screenshot({ path: `${name}-whole.png`, fullPage: true });
+  hold("no complaint in the console", complaints.length === 0, complaints.join(" | "));
+}
+
+function ended() {
+  if (failures.length === 0) return;
+  console.error(`${failures.length} of ${path.basename(page)} do not hold`);
+  process.exit(1);
+}
+
 async function main() {
   const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
   const browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args });
@@ -68,6 +144,11 @@ async function main() {
     if (first.took < SLOWEST) break;
   }
   const { tab, complaints, asked, took } = first;
+  if (await tab.locator(".undrawn").count()) {
+    await undrawn(first);
+    await browser.close();
+    return ended();
+  }
   const ready = await tab.evaluate(() => document.body.dataset.ready);
   hold("draws the tube", ready === "yes", ready);
   hold("opens fast enough", took < SLOWEST, `${took} ms`);
@@ -117,15 +198,10 @@ async function main() {
     await lines.nth(2).locator("button").focus();
     await tab.keyboard.press("Enter");
   });
-  // Where the script has put the tube's points, by what the page says of them.
-  const wrong = await tab.evaluate(() => {
-    const { runs } = JSON.parse(document.getElementById("data").textContent);
-    return runs.filter((run) => {
-      const { points, turns, low, high, radius } = run.scene;
-      return !(points.every((n) => n > 0) && turns > 0 && high[0] > low[0] && radius > 0);
-    }).length;
-  });
-  hold("says where the tubes are", wrong === 0);
+  for (const [which, directory] of directories.entries()) {
+    const far = await off(tab, which, directory);
+    hold(`draws ${path.basename(directory)} where it is`, far < OFF, `off by ${far.toExponential(1)}`);
+  }
   const [file] = await Promise.all([tab.waitForEvent("download"), tab.click("#keep")]);
   await file.saveAs(`${name}-kept.png`);
   hold("saves a picture", fs.statSync(`${name}-kept.png`).size > 20000, file.suggestedFilename());
@@ -167,10 +243,7 @@ async function main() {
   await bare.goto(url);
   hold("says something without scripts", (await bare.textContent("#findings")).includes("Lmax/L"));
   await still.close();
-  if (failures.length > 0) {
-    console.error(`${failures.length} of ${path.basename(page)} do not hold`);
-    process.exit(1);
-  }
+  ended();
 }
 
 main().catch((error) => {

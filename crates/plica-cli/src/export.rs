@@ -17,7 +17,7 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let run = Finished::open(&arguments.run)?;
     run.has(&arguments.state)?;
     threads::limit(arguments.threads)?;
-    let last = run.last();
+    let last = run.last()?;
     let chosen = |state: usize| match (arguments.all, arguments.state.as_slice()) {
         (true, _) => true,
         (_, []) => state == last,
@@ -60,9 +60,13 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         }
     }
     let film = match arguments.hdf && !ticker.stop() {
-        true => film(&run, &work.exporter, &mut ticker)?,
-        false => None,
+        true => film(&run, &work.exporter, &mut ticker),
+        false => Ok(None),
     };
+    let film = film.unwrap_or_else(|failure| {
+        bad.push(failure);
+        None
+    });
     let stopped = ticker.stop();
     ticker.finish();
     for what in work.written.keys() {
@@ -116,7 +120,10 @@ fn film(
         }
         let part = done as f64 / run.saved.len() as f64;
         ticker.working(&format!("state {state}, in one file"), part);
-        exporter.film(&mut movie, &run.state(state)?.0);
+        // A bad one is told of by its own file.
+        if let Ok((state, _)) = run.state(state) {
+            exporter.film(&mut movie, &state);
+        }
     }
     let trouble = |what: String| Failure::Files(format!("{FILM}: {what}"));
     let bytes = movie.bytes().map_err(trouble)?;

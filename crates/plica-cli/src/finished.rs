@@ -29,7 +29,9 @@ pub struct Finished {
     pub plan: Plan,
     /// Its accepted states.
     pub rows: Vec<Row>,
-    /// The files of its saved states, by their numbers; at least one.
+    /// What is wrong with the rest of `history.csv`, if not all of it could be read.
+    pub broken: Option<String>,
+    /// The files of its saved states, by their numbers.
     pub saved: BTreeMap<usize, PathBuf>,
 }
 
@@ -40,29 +42,53 @@ impl Finished {
         let saved = directory
             .numbered("states", "safetensors")
             .map_err(Failure::Study)?;
-        if saved.is_empty() {
+        let plan = case_file::of_run(&directory)?;
+        let (rows, broken) = directory.history_so_far().map_err(Failure::Study)?;
+        if rows.is_empty() {
             return Err(Failure::Usage(format!(
-                "{}: the run has saved no states; set output.states_every in its case and run it again",
+                "{}: the run has not come to its first state",
                 path.display()
             )));
         }
-        let plan = case_file::of_run(&directory)?;
-        let rows = directory.history().map_err(Failure::Study)?;
+        let broken = broken.map(|why| {
+            format!(
+                "{} beyond state {}: {why}",
+                path.join("history.csv").display(),
+                rows.len() - 1
+            )
+        });
+        if let Some(broken) = &broken {
+            console::tell(&format!("warning: not read: {broken}"));
+        }
         Ok(Self {
             directory,
             plan,
             rows,
+            broken,
             saved,
         })
     }
 
     /// The number of the last saved state.
-    pub fn last(&self) -> usize {
-        self.saved.last_key_value().map_or(0, |(&number, _)| number)
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] if there is none.
+    pub fn last(&self) -> Result<usize, Failure> {
+        let last = self.saved.last_key_value().map(|(&number, _)| number);
+        last.ok_or_else(|| {
+            Failure::Usage(format!(
+                "{}: the run has saved no states; set output.states_every in its case and run it again",
+                self.directory.path().display()
+            ))
+        })
     }
 
     /// Refuses numbers of states that are not saved.
     pub fn has(&self, states: &[usize]) -> Result<(), Failure> {
+        if states.is_empty() {
+            return Ok(());
+        }
+        self.last()?;
         match states.iter().find(|state| !self.saved.contains_key(state)) {
             None => Ok(()),
             Some(state) => Err(Failure::Usage(format!(
@@ -75,9 +101,13 @@ impl Finished {
 
     /// A saved state, and its row.
     pub fn state(&self, number: usize) -> Result<(SavedState, Row), Failure> {
+        self.try_state(number).map_err(Failure::Files)
+    }
+
+    /// As [`Finished::state`], or in words why not.
+    pub fn try_state(&self, number: usize) -> Result<(SavedState, Row), String> {
         let path = &self.saved[&number];
-        let trouble =
-            |why: &dyn std::fmt::Display| Failure::Files(format!("{}: {why}", path.display()));
+        let trouble = |why: &dyn std::fmt::Display| format!("{}: {why}", path.display());
         let state = SavedState::read(path).map_err(|error| trouble(&error))?;
         state
             .belongs_to(&self.plan)

@@ -56,7 +56,7 @@ fn chart(
 ) -> Result<(String, Chart), Failure> {
     if what == WALLS {
         let numbers = match arguments.state.as_slice() {
-            [] => vec![run.last()],
+            [] => vec![run.last()?],
             states => states.to_vec(),
         };
         let states: Result<Vec<Shown>, Failure> = numbers.iter().map(|&n| run.state(n)).collect();

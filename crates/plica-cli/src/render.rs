@@ -38,7 +38,7 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     }
     threads::limit(arguments.look.threads)?;
     let numbers = match arguments.state.as_slice() {
-        [] => vec![run.last()],
+        [] => vec![run.last()?],
         states => states.to_vec(),
     };
     let look = appearance(&arguments.look);
@@ -52,6 +52,7 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
 /// Draws the whole path of a run as a picture that moves.
 pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
     let run = Finished::open(&arguments.run)?;
+    run.last()?;
     threads::limit(arguments.look.threads)?;
     let look = appearance(&arguments.look);
     if let Some(path) = &arguments.look.out {

@@ -4,7 +4,7 @@ use crate::args::ReportArguments;
 use crate::failure::Failure;
 use crate::finished::{Finished, endings};
 use crate::{console, threads};
-use plica::page::{PageError, Run, page};
+use plica::page::{PageError, Run, drawn, page};
 use plica::study::SavedState;
 use std::path::{Path, PathBuf};
 
@@ -23,31 +23,17 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
             )));
         }
     }
-    let open = |path: &PathBuf| {
-        let run = Finished::open(path)?;
-        let state = |&number: &usize| Ok(run.state(number)?.0);
-        let states: Result<Vec<SavedState>, Failure> = run.saved.keys().map(state).collect();
-        Ok((run, states?))
-    };
-    let runs: Result<Vec<(Finished, Vec<SavedState>)>, Failure> =
-        arguments.runs.iter().map(open).collect();
+    let open = |path: &PathBuf| Told::open(path, arguments.runs.len());
+    let runs: Result<Vec<Told>, Failure> = arguments.runs.iter().map(open).collect();
     let runs = runs?;
     let names = names(&arguments.runs);
-    let told: Vec<Run<'_>> = (runs.iter().zip(names))
-        .map(|((run, states), name)| Run {
-            name,
-            plan: &run.plan,
-            rows: &run.rows,
-            states,
-            directory: &run.directory,
-        })
-        .collect();
+    let told: Vec<Run<'_>> = runs.iter().zip(names).map(Told::under).collect();
     let html = page(&told).map_err(|error| match error {
         PageError::Units(_) => Failure::Usage(error.to_string()),
         PageError::Template(_) => Failure::Fault(error.to_string()),
     })?;
     let path = match (&arguments.out, runs.as_slice()) {
-        (None, [(run, _)]) => {
+        (None, [Told { run, .. }]) => {
             let name = "report.html";
             run.directory
                 .write(name, html.as_bytes())
@@ -66,6 +52,54 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
         path.display(),
         html.len() as f64 * 1e-6
     ))
+}
+
+/// A run, and what of it could be read.
+struct Told {
+    run: Finished,
+    states: Vec<SavedState>,
+    left_out: usize,
+    unread: Vec<String>,
+}
+
+impl Told {
+    /// Opens one of so many. A state that cannot be read is no reason to keep back the others.
+    fn open(path: &Path, runs: usize) -> Result<Self, Failure> {
+        let run = Finished::open(path)?;
+        let saved: Vec<usize> = run.saved.keys().copied().collect();
+        let chosen = drawn(&run.plan, &saved, runs);
+        let mut unread: Vec<String> = run.broken.iter().cloned().collect();
+        let mut states = vec![];
+        for &number in &chosen {
+            match run.try_state(number) {
+                Ok((state, _)) => states.push(state),
+                Err(why) => {
+                    console::tell(&format!("warning: not read: {why}"));
+                    unread.push(why);
+                }
+            }
+        }
+        Ok(Self {
+            left_out: saved.len() - chosen.len(),
+            run,
+            states,
+            unread,
+        })
+    }
+
+    /// As the page knows it, under a name.
+    fn under((told, name): (&Self, String)) -> Run<'_> {
+        Run {
+            name,
+            plan: &told.run.plan,
+            rows: &told.run.rows,
+            states: &told.states,
+            saved: told.run.saved.len(),
+            left_out: told.left_out,
+            unread: &told.unread,
+            directory: &told.run.directory,
+        }
+    }
 }
 
 /// What runs are called: by their folders, or by the whole way there where those are alike.

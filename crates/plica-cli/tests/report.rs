@@ -123,3 +123,67 @@ fn pages_that_cannot_be_are_refused() {
     let page = fs::read_to_string(directory.join("mm/report.html")).unwrap();
     assert!(page.contains("overhang (mm)") && page.contains("strain energy density w (kPa)"));
 }
+
+#[test]
+fn a_run_without_saved_states_has_a_page_of_numbers() {
+    let directory = scratch("report-bare");
+    let run = short_run(&directory);
+    let case = fs::read_to_string(run.join("case.toml")).unwrap();
+    let case = match case.contains("[output]") {
+        true => case.replace("[output]", "[output]\nstates_every = 0"),
+        false => case + "\n[output]\nstates_every = 0\n",
+    };
+    fs::write(directory.join("bare.toml"), case).unwrap();
+    let said = plica(&directory, &["run", "bare.toml", "--out", "bare"]);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    let said = plica(&directory, &["report", "bare"]);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    let page = fs::read_to_string(directory.join("bare/report.html")).unwrap();
+    assert!(page.contains("No state is saved in full") && page.contains("class=\"undrawn\""));
+    let known = data(&directory.join("bare/report.html"));
+    assert_eq!(known["runs"][0]["scene"]["drawn"], false);
+    assert_eq!(known["stops"].as_array().unwrap().len(), 4);
+    // Beside one that has states, its plots go along.
+    let said = plica(&directory, &["report", "bare", "run"]);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    let known = data(&directory.join("comparison.html"));
+    assert_eq!(known["runs"][1]["scene"]["drawn"], true);
+    // What looks at states says that there are none.
+    for command in ["render", "animate", "export"] {
+        let said = plica(&directory, &[command, "bare"]);
+        assert_eq!(said.status.code(), Some(2), "{command}");
+        assert!(
+            text(&said.stderr).contains("saved no states"),
+            "{command}: {}",
+            text(&said.stderr)
+        );
+    }
+    let said = plica(&directory, &["plot", "bare", "overhang"]);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+}
+
+#[test]
+fn what_is_broken_is_left_out_and_told() {
+    let directory = scratch("report-broken");
+    let run = short_run(&directory);
+    let state = run.join("states/state-0001.safetensors");
+    let mut bytes = fs::read(&state).unwrap();
+    let last = bytes.len() - 1;
+    bytes[last] ^= 1;
+    fs::write(&state, bytes).unwrap();
+    let history = fs::read_to_string(run.join("history.csv")).unwrap();
+    let cut = history.len() - 40;
+    fs::write(run.join("history.csv"), &history[..cut]).unwrap();
+    let said = plica(&directory, &["report", "run"]);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    let told = text(&said.stderr);
+    for what in ["state-0001.safetensors", "history.csv beyond state 2"] {
+        assert!(told.contains(what), "{told}");
+    }
+    let page = fs::read_to_string(run.join("report.html")).unwrap();
+    assert!(page.contains("Not read: run/states/state-0001.safetensors"));
+    assert!(page.contains("Not read: run/history.csv beyond state 2"));
+    let known = &data(&run.join("report.html"))["runs"][0];
+    // The last state has lost its row, and is not shown either.
+    assert_eq!(known["scene"]["rows"], serde_json::json!([0, 2]));
+}

@@ -15,6 +15,8 @@ use super::{DrawError, Image};
 
 /// How much finer than asked kuva draws.
 const FINER: usize = 2;
+/// White that is drawn around what is, in final pixels.
+const AROUND: f64 = 3.0;
 /// Farther from the corner, in points, nothing is drawn.
 const FAR: f64 = 1e5;
 /// Fonts of texts that stay texts; they are measured in the first.
@@ -60,6 +62,8 @@ pub(super) struct Canvas {
     /// kuva's pixels per point.
     zoom: f64,
     scene: Scene,
+    /// From where to where down the page something is drawn, in points.
+    inked: Vec<(f64, f64)>,
     stamps: Vec<(Image, i64, i64)>,
     /// Pages that lie on their left side, and the middle of each.
     upward: Vec<(Canvas, Place)>,
@@ -77,11 +81,39 @@ impl Canvas {
             width,
             zoom,
             scene,
+            inked: Vec::new(),
             stamps: Vec::new(),
             upward: Vec::new(),
             clips: 0,
             paper,
         })
+    }
+
+    /// Remembers that something is drawn at these heights, and so far above and below.
+    fn ink(&mut self, heights: impl IntoIterator<Item = f64>, beyond: f64) {
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        let (top, bottom) = (heights.into_iter()).fold(none, |(a, b), y| (a.min(y), b.max(y)));
+        if top <= bottom {
+            self.inked.push((top - beyond, bottom + beyond));
+        }
+    }
+
+    /// The bands of the page on which anything is drawn, in final rows of pixels from the top, with a little white around.
+    fn bands(&self) -> Vec<(usize, usize)> {
+        let (rows, height) = (self.pixels_per_point(), self.paper.height);
+        let row = |y: f64, more: f64| (y * rows + more).clamp(0.0, height as f64) as usize;
+        let mut inked = self.inked.clone();
+        inked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut bands: Vec<(usize, usize)> = vec![];
+        for (top, bottom) in inked {
+            let (top, bottom) = (row(top, -AROUND), row(bottom, AROUND));
+            match bands.last_mut() {
+                Some(last) if top <= last.1 => last.1 = last.1.max(bottom),
+                _ => bands.push((top, bottom)),
+            }
+        }
+        bands.retain(|(top, bottom)| top < bottom);
+        bands
     }
 
     /// Final pixels per point.
@@ -112,6 +144,7 @@ impl Canvas {
             .map(|&(x, y)| (x * self.zoom, y * self.zoom))
             .collect();
         let stroke_width = pen.width * self.zoom;
+        self.ink(run.iter().map(|place| place.1), pen.width);
         self.scene.add(Primitive::PolyLine {
             points,
             stroke: ink(pen.colour),
@@ -122,6 +155,7 @@ impl Canvas {
 
     /// A filled disc; a white rim lifts it off the lines beneath.
     pub fn disc(&mut self, (x, y): Place, radius: f64, colour: [u8; 3], rim: f64) {
+        self.ink([y], radius + rim);
         for (r, c) in [(radius + rim, [255; 3]), (radius, colour)] {
             let (cx, cy, r) = (x * self.zoom, y * self.zoom, r * self.zoom);
             let (fill, none) = (ink(c), None);
@@ -139,6 +173,7 @@ impl Canvas {
 
     /// A filled rectangle without an outline.
     pub fn rectangle(&mut self, (x, y): Place, width: f64, height: f64, colour: [u8; 3]) {
+        self.ink([y, y + height], 0.0);
         let (x, y, width, height) = (
             x * self.zoom,
             y * self.zoom,
@@ -160,6 +195,7 @@ impl Canvas {
 
     /// A filled polygon without an outline.
     pub fn polygon(&mut self, corners: &[Place], colour: [u8; 3]) {
+        self.ink(corners.iter().map(|corner| corner.1), 0.0);
         let mut d = String::new();
         for (i, (x, y)) in corners.iter().enumerate() {
             let word = if i == 0 { 'M' } else { 'L' };
@@ -201,6 +237,7 @@ impl Canvas {
 
     /// Writes a label with its baseline at `place`; `size` in points.
     pub fn text(&mut self, (x, y): Place, label: &str, size: f64, anchor: Anchor, colour: [u8; 3]) {
+        self.ink([y - size, y], size);
         let pieces = pieces(label);
         let widths: Vec<f64> = pieces
             .iter()
@@ -266,9 +303,13 @@ impl Canvas {
             let turned = slip.finish()?.turned_left();
             self.stamp(turned, (x - height / 2.0, y - width / 2.0));
         }
-        let fine = rendered(&self.scene)?;
+        // Most of a page of tubes is not kuva's, and what is costs by the area.
+        let bands = self.bands();
         let mut page = self.paper;
-        page.stamp(&fine.reduced(FINER), 0, 0);
+        for (top, bottom) in bands {
+            let fine = rendered(&band(&self.scene, FINER * top, FINER * bottom))?;
+            page.stamp(&fine.reduced(FINER), 0, top as i64);
+        }
         for (picture, x, y) in &self.stamps {
             page.stamp(picture, *x, *y);
         }
@@ -322,6 +363,19 @@ impl Canvas {
 /// A scene as SVG.
 fn lines(scene: &Scene) -> String {
     SvgBackend::new().render_scene(scene)
+}
+
+/// The part of a scene between two heights, in its pixels.
+fn band(scene: &Scene, top: usize, bottom: usize) -> Scene {
+    let mut band = Scene::new(scene.width, (bottom - top) as f64);
+    band.add(Primitive::GroupStart {
+        transform: Some(format!("translate(0,-{top})")),
+        title: None,
+        extra_attrs: None,
+    });
+    scene.elements.iter().for_each(|one| band.add(one.clone()));
+    band.add(Primitive::GroupEnd);
+    band
 }
 
 fn ink([r, g, b]: [u8; 3]) -> Color {

@@ -2,80 +2,31 @@
 
 use super::DrawError;
 use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen};
-use super::cutaway::{Cutaway, Range, SIDE, TEXT, TITLE, ends};
-use super::ticks::{power_of_ten, short, step, ticks};
-
-/// Most intervals on the bar.
-const INTERVALS: usize = 6;
-
-/// Ends of the colour bar, and the field's own ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
-    pub low: f64,
-    pub high: f64,
-    pub least: f64,
-    pub largest: f64,
-}
+use super::cutaway::{Cutaway, SIDE, TEXT, TITLE};
+use super::range::{INTERVALS, Spanned};
+use super::ticks::{power_of_ten, short, ticks};
 
 impl Cutaway {
-    pub(super) fn scale(&self) -> Result<Scale, DrawError> {
-        let values = self
-            .panels
-            .iter()
-            .flat_map(|p| &p.surfaces)
-            .flat_map(|s| &s.values);
-        let mut finite: Vec<f64> = values.copied().filter(|v| v.is_finite()).collect();
-        let (least, largest) = ends(finite.iter().copied());
-        if finite.is_empty() {
-            return Err(DrawError::Empty { what: "field" });
-        }
-        let (low, high) = match self.range {
-            Range::Given(low, high) => {
-                if !(low.is_finite() && high.is_finite() && low < high) {
-                    return Err(DrawError::Range { low, high });
-                }
-                (low, high)
-            }
-            Range::Full => (least, largest),
-            Range::Automatic => {
-                let place = (finite.len() - 1) * 995 / 1000;
-                let (_, high, _) = finite.select_nth_unstable_by(place, f64::total_cmp);
-                let high = *high;
-                let low = if (0.0..0.25 * high).contains(&least) {
-                    0.0
-                } else {
-                    least
-                };
-                rounded(low, high)
-            }
-        };
-        // A field of one value still needs a bar.
-        let (low, high) = if high > low {
-            (low, high)
-        } else {
-            (low - 0.5 * low.abs() - 0.5, low + 0.5 * low.abs() + 0.5)
-        };
-        Ok(Scale {
-            low,
-            high,
-            least,
-            largest,
-        })
+    /// What its colours span.
+    pub(super) fn spanned(&self) -> Result<Spanned, DrawError> {
+        let surfaces = self.panels.iter().flat_map(|p| &p.surfaces);
+        self.range.of(surfaces.flat_map(|s| &s.values).copied())
     }
 
     /// The bar with its ticks and title, left of `end`; an arrow and a note where the field goes on beyond it.
-    pub(super) fn draw_colour_bar(&self, canvas: &mut Canvas, top: f64, end: f64, scale: Scale) {
+    pub(super) fn draw_colour_bar(&self, canvas: &mut Canvas, top: f64, end: f64, scale: Spanned) {
         let hair = (scale.high - scale.low) * 1e-6;
         let (above, below) = (
             scale.largest > scale.high + hair,
             scale.least < scale.low - hair,
         );
         let exponent = ticks(scale.low, scale.high, INTERVALS).exponent;
-        let beyond = short(scale.largest / 10f64.powi(exponent), 2);
-        let note = if above {
-            format!("up to {beyond}")
-        } else {
-            String::new()
+        let told = |value: f64| short(value / 10f64.powi(exponent), 2);
+        let note = match (below, above) {
+            (false, false) => String::new(),
+            (false, true) => format!("up to {}", told(scale.largest)),
+            (true, false) => format!("down to {}", told(scale.least)),
+            (true, true) => format!("{} to {}", told(scale.least), told(scale.largest)),
         };
         let (left, tip, height) = (SIDE + 8.0, 7.0, 8.0);
         let room = end - left - tip - 4.0 - canvas.text_width(&note, TEXT);
@@ -142,7 +93,7 @@ impl Cutaway {
             Anchor::Middle,
             INK,
         );
-        if above {
+        if !note.is_empty() {
             canvas.text(
                 (right + tip + 4.0, middle + TEXT * CAPITAL / 2.0),
                 &note,
@@ -151,33 +102,5 @@ impl Cutaway {
                 INK,
             );
         }
-    }
-}
-
-/// The range widened to whole ticks; one without length stays as it is.
-fn rounded(low: f64, high: f64) -> (f64, f64) {
-    if high <= low {
-        return (low, high);
-    }
-    let round = step(low, high, INTERVALS);
-    // An end within a hair of a tick is that tick.
-    (
-        (low / round + 1e-9).floor() * round,
-        (high / round - 1e-9).ceil() * round,
-    )
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::draw::cutaway::tests::straight;
-
-    #[test]
-    fn a_peak_does_not_stretch_the_bar() {
-        let scale = straight(|z| if z == 0.5 { 100.0 } else { z })
-            .scale()
-            .unwrap();
-        assert_eq!((scale.low, scale.high), (0.0, 1.0));
-        let scale = straight(|z| 3.0 + 0.0 * z).scale().unwrap();
-        assert!(scale.low < 3.0 && scale.high > 3.0);
     }
 }

@@ -3,11 +3,12 @@
 //! The tubes lie with z to the right and the colon end left, seen from the front and a little above; x points up and y
 //! towards the viewer. All panels share scale, place along z and colours.
 
-use super::DrawError;
 use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen};
 use super::colour::{Map, mix};
 use super::light::dot;
+use super::range::Range;
 use super::raster::{Surface, View, render};
+use super::{DrawError, Image};
 
 pub(super) const TITLE: f64 = 9.0;
 pub(super) const TEXT: f64 = 8.0;
@@ -29,17 +30,26 @@ pub struct Panel {
     pub glass: Vec<Surface>,
 }
 
-/// Values at the two ends of the colour bar.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Range {
-    /// From the least value (or zero, if that is near) to a round number that leaves out the largest half per cent:
-    /// fields peak at folds, and one peak must not darken all the rest.
-    #[default]
-    Automatic,
-    /// From the least to the largest value.
-    Full,
-    /// These two.
-    Given(f64, f64),
+impl Panel {
+    /// The tube from a direction, what is of glass before it.
+    fn seen(
+        &self,
+        view: &View,
+        range: (f64, f64),
+        map: Map,
+        samples: usize,
+    ) -> Result<Image, DrawError> {
+        let mut tube = render(&self.surfaces, view, range, map, samples)?;
+        if !self.glass.is_empty() {
+            // Where glass is behind the rest, both pictures are the same.
+            let all = [&self.surfaces[..], &self.glass].concat();
+            let all = render(&all, view, range, map, samples)?;
+            for (pixel, glass) in tube.pixels.iter_mut().zip(all.pixels) {
+                *pixel = mix(*pixel, glass, GLASS);
+            }
+        }
+        Ok(tube)
+    }
 }
 
 /// Opened tubes, one above the other. Labels take the markup of [`super::Chart`].
@@ -91,7 +101,7 @@ impl Cutaway {
         for surface in self.panels.iter().flat_map(|p| &p.surfaces) {
             surface.check()?;
         }
-        let scale = self.scale()?;
+        let spanned = self.spanned()?;
         let [right, up, toward] = View::axes(self.toward);
         let (left, width) = self.extent(self.panels.iter(), right)?;
         let mut tallest: f64 = 0.0;
@@ -116,12 +126,8 @@ impl Cutaway {
         }
         let margin = 2.0; // points around a tube, for the line at its edge
         let pixels = canvas.pixels_per_point();
-        for (panel, (top, high, height)) in self.panels.iter().zip(tops) {
-            let mut top = top;
-            if !panel.label.is_empty() {
-                canvas.text((SIDE, top + 8.0), &panel.label, TEXT, Anchor::Start, INK);
-                top += 13.0;
-            }
+        let range = (spanned.low, spanned.high);
+        let tube = |(panel, &(_, high, height)): (&Panel, &(f64, f64, f64))| {
             let view = View {
                 right,
                 up,
@@ -133,15 +139,15 @@ impl Cutaway {
                     ((height + 2.0 * margin) * pixels).ceil() as usize,
                 ),
             };
-            let range = (scale.low, scale.high);
-            let mut tube = render(&panel.surfaces, &view, range, self.map, self.samples)?;
-            if !panel.glass.is_empty() {
-                // Where glass is behind the rest, both pictures are the same.
-                let all = [&panel.surfaces[..], &panel.glass].concat();
-                let all = render(&all, &view, range, self.map, self.samples)?;
-                for (pixel, glass) in tube.pixels.iter_mut().zip(all.pixels) {
-                    *pixel = mix(*pixel, glass, GLASS);
-                }
+            panel.seen(&view, range, self.map, self.samples)
+        };
+        let tubes: Result<Vec<Image>, DrawError> =
+            self.panels.iter().zip(&tops).map(tube).collect();
+        for ((panel, (top, _, height)), tube) in self.panels.iter().zip(tops).zip(tubes?) {
+            let mut top = top;
+            if !panel.label.is_empty() {
+                canvas.text((SIDE, top + 8.0), &panel.label, TEXT, Anchor::Start, INK);
+                top += 13.0;
             }
             canvas.stamp(tube, (inset - margin, top - margin));
             let middle = top + height / 2.0 + TEXT * CAPITAL / 2.0;
@@ -164,7 +170,7 @@ impl Cutaway {
             Anchor::Middle,
             INK,
         );
-        self.draw_colour_bar(&mut canvas, bottom + 6.0, end - diameter - 12.0, scale);
+        self.draw_colour_bar(&mut canvas, bottom + 6.0, end - diameter - 12.0, spanned);
         canvas.finish()?.to_png(self.width_pt * 25.4 / 72.0)
     }
 
@@ -173,8 +179,8 @@ impl Cutaway {
     /// # Errors
     /// As [`Cutaway::png`].
     pub fn ends(&self) -> Result<(f64, f64), DrawError> {
-        let scale = self.scale()?;
-        Ok((scale.low, scale.high))
+        let spanned = self.spanned()?;
+        Ok((spanned.low, spanned.high))
     }
 
     /// Start and length of what the panels cover along a direction.
@@ -206,7 +212,7 @@ pub(super) fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::draw::{Image, Opening};
+    use crate::draw::Opening;
 
     pub(in crate::draw) fn straight(values: impl Fn(f64) -> f64) -> Cutaway {
         let opening = Opening {

@@ -36,7 +36,7 @@ impl Chart {
             panels: self.insets.iter().map(panel).collect(),
             ..Cutaway::default()
         };
-        let scale = all.scale()?;
+        let spanned = all.spanned()?;
         let [right, up, toward] = View::axes(all.toward);
         let pixels = canvas.pixels_per_point();
         for (inset, panel) in self.insets.iter().zip(&all.panels) {
@@ -72,7 +72,7 @@ impl Chart {
                     .map(|s| (s * pixels).ceil().max(1.0) as usize)
                     .into(),
             };
-            let range = (scale.low, scale.high);
+            let range = (spanned.low, spanned.high);
             let tube = render(&panel.surfaces, &view, range, all.map, SAMPLES)?;
             canvas.stamp(tube, (middle.0 - 0.5 * size.0, middle.1 - 0.5 * size.1));
         }

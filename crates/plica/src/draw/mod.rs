@@ -6,6 +6,7 @@
 //! | [`cutaway`] | opened tubes, coloured by a field, over one colour bar |
 //! | `frame`, `notes` | a chart's frame; its legend, rules and markers |
 //! | [`inset`] | small tubes inside a chart |
+//! | [`Range`] | which values the colours of a field span |
 //! | `colour_bar` | the bar beneath the cut-aways |
 //! | [`section`] | the surfaces of a tube cut open along its axis, from any wall mapping |
 //! | [`raster`] | shaded surfaces: a z-buffer with smooth normals |
@@ -43,6 +44,7 @@ pub mod inset;
 pub mod label;
 mod light;
 mod notes;
+mod range;
 pub mod raster;
 pub mod section;
 mod ticks;
@@ -50,9 +52,10 @@ mod ticks;
 pub use animation::animation;
 pub use chart::{Chart, Curve, Marker, Rule, Stroke};
 pub use colour::Map;
-pub use cutaway::{Cutaway, Panel, Range};
+pub use cutaway::{Cutaway, Panel};
 pub use image::Image;
 pub use inset::Inset;
+pub use range::{Range, Spanned};
 pub use raster::Surface;
 pub use section::Opening;
 

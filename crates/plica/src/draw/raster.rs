@@ -6,7 +6,11 @@
 use super::colour::{Map, to_byte};
 use super::light::{Shader, cross, dot, minus, unit};
 use super::{DrawError, Image};
+use rayon::prelude::*;
+use std::ops::Range;
 
+/// Rows of pixels that are drawn at a time.
+const STRIP: usize = 16;
 /// What counts as on an edge, in samples.
 const NEAR: f64 = 1e-6;
 
@@ -99,36 +103,10 @@ impl View {
     }
 }
 
-/// What the samples of the picture hold: which triangle lies there, and where on it. What is hidden is never lit.
-struct Samples {
-    width: usize,
-    height: usize,
-    depth: Vec<f32>,
-    /// Number of the surface plus one, 0 for none.
-    surface: Vec<u16>,
-    triangle: Vec<u32>,
-    /// Weights of the triangle's second and third corner.
-    weights: Vec<[f32; 2]>,
-}
-
-/// All triangles by their corners.
-#[derive(Default)]
-struct Scene {
-    corners: Vec<Corner>,
-    triangles: Vec<[u32; 3]>,
-}
-
-/// A corner of a triangle: page place in samples, depth towards the viewer, normal in page axes, field.
-#[derive(Clone, Copy)]
-struct Corner {
-    place: [f64; 3],
-    normal: [f64; 3],
-    value: f64,
-}
-
 /// Draws surfaces on white; `range` spans the colour `map`.
 ///
-/// A pixel is the mean of `samples` by `samples` samples, of fewer in huge pictures.
+/// A pixel is the mean of `samples` by `samples` samples, 4 by 4 at most. The picture is drawn in strips, for which threads
+/// take turns: a strip's samples fit a cache, and what a strip shows depends on nothing but the surfaces.
 ///
 /// # Errors
 /// [`DrawError::Grid`] for a surface whose lists do not fill its grid, [`DrawError::Size`] for an absurd picture.
@@ -139,87 +117,175 @@ pub fn render(
     map: Map,
     samples: usize,
 ) -> Result<Image, DrawError> {
-    let image = Image::white(view.size.0 as f64, view.size.1 as f64)?;
-    // Some twenty bytes a sample: a huge picture gets fewer of them, and needs fewer.
-    let pixels = image.pixels.len();
-    let samples = (1..=samples.min(4))
-        .rev()
-        .find(|s| pixels * s * s < 40_000_000)
-        .unwrap_or(1);
-    let (width, height) = (image.width * samples, image.height * samples);
-    let count = width * height;
-    let mut buffer = Samples {
-        width,
-        height,
-        depth: vec![f32::NEG_INFINITY; count],
-        surface: vec![0; count],
-        triangle: vec![0; count],
-        weights: vec![[0.0; 2]; count],
-    };
-    let mut scene = Scene::default();
-    let shader = Shader::new(range, map);
-    let scale = view.scale * samples as f64;
-    for (number, surface) in surfaces.iter().enumerate() {
-        surface.check()?;
-        if surface.columns < 2 || surface.rows < 2 {
+    let mut image = Image::white(view.size.0 as f64, view.size.1 as f64)?;
+    let samples = samples.clamp(1, 4);
+    let scene = Scene::of(surfaces, view, samples)?;
+    let size = (image.width * samples, image.height * samples);
+    let (width, height) = (image.width, STRIP * samples);
+    // Of every strip its triangles, those just above and below it too: edges look there.
+    let mut strips: Vec<Vec<u32>> = vec![vec![]; image.height.div_ceil(STRIP)];
+    for (number, corners) in scene.triangles.iter().enumerate() {
+        let Some(rows) = rows(scene.places(*corners), size.1) else {
             continue;
+        };
+        let first = rows.start.saturating_sub(samples) / height;
+        let last = ((rows.end - 1 + samples) / height).min(strips.len() - 1);
+        for strip in &mut strips[first..=last] {
+            strip.push(number as u32);
         }
-        let id = (number % usize::from(u16::MAX)) as u16 + 1;
-        let normals = surface.normals();
-        let first = scene.corners.len();
-        let corners = (0..surface.points.len()).map(|i| {
-            let (p, n) = (surface.points[i], normals[i]);
-            let across = (dot(p, view.right) - view.corner.0) * scale;
-            let down = (view.corner.1 - dot(p, view.up)) * scale;
-            let place = [across, down, dot(p, view.toward) * scale];
-            let normal = [dot(n, view.right), dot(n, view.up), dot(n, view.toward)];
-            Corner {
-                place,
-                normal,
-                value: surface.values[i],
+    }
+    let shader = Shader::new(range, map);
+    let pixels = image.pixels.par_chunks_mut(STRIP * width);
+    pixels
+        .zip(strips)
+        .enumerate()
+        .for_each(|(k, (pixels, own))| {
+            let top = (k * height).saturating_sub(samples);
+            let bottom = ((k + 1) * height + samples).min(size.1);
+            let mut buffer = Samples::new(size.0, top..bottom);
+            for number in own {
+                let corners = scene.triangles[number as usize];
+                buffer.triangle(
+                    scene.places(corners),
+                    number,
+                    scene.surface[number as usize],
+                );
             }
+            buffer.resolve(pixels, k * height, samples, &scene, &shader);
         });
-        scene.corners.extend(corners);
-        for row in 0..surface.rows - 1 {
-            for column in 0..surface.columns - 1 {
-                let i = first + row * surface.columns + column;
-                let (a, b, c, d) = (i, i + 1, i + surface.columns, i + surface.columns + 1);
-                for corners in [[a, b, d], [a, d, c]] {
-                    let number = scene.triangles.len() as u32;
-                    scene.triangles.push(corners.map(|corner| corner as u32));
-                    buffer.triangle(
-                        corners.map(|corner| scene.corners[corner].place),
-                        number,
-                        id,
-                    );
+    Ok(image)
+}
+
+/// All triangles by their corners.
+#[derive(Default)]
+struct Scene {
+    corners: Vec<Corner>,
+    triangles: Vec<[u32; 3]>,
+    /// Of every triangle, the number of its surface plus one.
+    surface: Vec<u16>,
+}
+
+/// A corner of a triangle: page place in samples, depth towards the viewer, normal in page axes, field.
+#[derive(Clone, Copy)]
+struct Corner {
+    place: [f64; 3],
+    normal: [f64; 3],
+    value: f64,
+}
+
+impl Scene {
+    fn of(surfaces: &[Surface], view: &View, samples: usize) -> Result<Self, DrawError> {
+        let mut scene = Self::default();
+        let scale = view.scale * samples as f64;
+        for (number, surface) in surfaces.iter().enumerate() {
+            surface.check()?;
+            if surface.columns < 2 || surface.rows < 2 {
+                continue;
+            }
+            let id = (number % usize::from(u16::MAX)) as u16 + 1;
+            let first = scene.corners.len();
+            let points = surface.points.iter().zip(surface.normals());
+            let corners = points.zip(&surface.values).map(|((&p, n), &value)| {
+                let across = (dot(p, view.right) - view.corner.0) * scale;
+                let down = (view.corner.1 - dot(p, view.up)) * scale;
+                Corner {
+                    place: [across, down, dot(p, view.toward) * scale],
+                    normal: [dot(n, view.right), dot(n, view.up), dot(n, view.toward)],
+                    value,
+                }
+            });
+            scene.corners.extend(corners);
+            for row in 0..surface.rows - 1 {
+                for column in 0..surface.columns - 1 {
+                    let i = first + row * surface.columns + column;
+                    let (a, b, c, d) = (i, i + 1, i + surface.columns, i + surface.columns + 1);
+                    for corners in [[a, b, d], [a, d, c]] {
+                        scene.triangles.push(corners.map(|corner| corner as u32));
+                        scene.surface.push(id);
+                    }
                 }
             }
         }
+        Ok(scene)
     }
-    Ok(buffer.resolve(image, samples, &scene, &shader))
+
+    fn places(&self, corners: [u32; 3]) -> [[f64; 3]; 3] {
+        corners.map(|corner| self.corners[corner as usize].place)
+    }
+}
+
+/// The least whole number that is not less, zero at least; `as` cuts towards zero and stays inside.
+#[inline]
+fn from_above(x: f64) -> usize {
+    let below = x as usize;
+    below + usize::from((below as f64) < x)
+}
+
+/// The largest whole number that is not more, zero at least.
+#[inline]
+fn from_below(x: f64) -> usize {
+    x as usize
+}
+
+/// The rows of samples that a triangle may cover in a picture so high; none if it has no area, or no place.
+fn rows([a, b, c]: [[f64; 3]; 3], height: usize) -> Option<Range<usize>> {
+    let double_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    if double_area == 0.0 || !double_area.is_finite() || !(a[2] + b[2] + c[2]).is_finite() {
+        return None;
+    }
+    let (top, bottom) = (a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
+    // Samples sit in the middle of their squares; `as` saturates outside the picture.
+    let (first, end) = (from_above(top - 0.5), from_below(bottom + 0.5).min(height));
+    (first < end).then_some(first..end)
+}
+
+/// What the samples of a strip of the picture hold: which triangle lies there, and where on it. What is hidden is never lit.
+struct Samples {
+    width: usize,
+    /// Rows of the picture's samples.
+    rows: Range<usize>,
+    depth: Vec<f32>,
+    /// Number of the surface plus one, 0 for none.
+    surface: Vec<u16>,
+    triangle: Vec<u32>,
+    /// Weights of the triangle's second and third corner.
+    weights: Vec<[f32; 2]>,
 }
 
 impl Samples {
-    fn triangle(&mut self, [a, b, c]: [[f64; 3]; 3], number: u32, id: u16) {
-        let double_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-        if double_area == 0.0 || !double_area.is_finite() || !(a[2] + b[2] + c[2]).is_finite() {
-            return;
+    fn new(width: usize, rows: Range<usize>) -> Self {
+        let count = width * rows.len();
+        Self {
+            width,
+            rows,
+            depth: vec![f32::NEG_INFINITY; count],
+            surface: vec![0; count],
+            triangle: vec![0; count],
+            weights: vec![[0.0; 2]; count],
         }
+    }
+
+    fn triangle(&mut self, [a, b, c]: [[f64; 3]; 3], number: u32, id: u16) {
+        let Some(rows) = rows([a, b, c], self.rows.end) else {
+            return;
+        };
+        let double_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
         let (left, right) = (a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
-        let (top, bottom) = (a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
-        // Samples sit in the middle of their squares; `as` saturates outside the picture.
-        let rows = (top - 0.5).ceil().max(0.0) as usize
-            ..((bottom + 0.5).floor().max(0.0) as usize).min(self.height);
         // Barycentric weights of b and c are affine in the place.
         let per_area = 1.0 / double_area;
         let (bx, by) = ((c[1] - a[1]) * per_area, (a[0] - c[0]) * per_area);
         let (cx, cy) = ((a[1] - b[1]) * per_area, (b[0] - a[0]) * per_area);
-        for row in rows {
+        let slopes = [bx, cx, -bx - cx];
+        let per_slope = slopes.map(|slope| 1.0 / slope);
+        for row in rows.start.max(self.rows.start)..rows.end {
             let y = row as f64 + 0.5 - a[1];
             // From where to where no weight is negative, beside a.
             let (mut from, mut to) = (left - a[0], right - a[0]);
-            for (at_a, slope) in [(by * y, bx), (cy * y, cx), (1.0 - (by + cy) * y, -bx - cx)] {
-                let end = -at_a / slope;
+            let at_a = [by * y, cy * y, 1.0 - (by + cy) * y];
+            for (at_a, (slope, per_slope)) in
+                at_a.into_iter().zip(slopes.into_iter().zip(per_slope))
+            {
+                let end = -at_a * per_slope;
                 if slope > 0.0 {
                     from = from.max(end);
                 } else if slope < 0.0 {
@@ -229,13 +295,13 @@ impl Samples {
                 }
             }
             // A sample on an edge belongs to both sides, whatever the rounding.
-            let first = (from + a[0] - 0.5 - NEAR).ceil().max(0.0) as usize;
-            let end = ((to + a[0] + 0.5 + NEAR).floor().max(0.0) as usize).min(self.width);
+            let first = from_above(from + a[0] - 0.5 - NEAR);
+            let end = from_below(to + a[0] + 0.5 + NEAR).min(self.width);
             for column in first..end {
                 let x = column as f64 + 0.5 - a[0];
                 let (wb, wc) = (bx * x + by * y, cx * x + cy * y);
                 let depth = ((1.0 - wb - wc) * a[2] + wb * b[2] + wc * c[2]) as f32;
-                let sample = row * self.width + column;
+                let sample = (row - self.rows.start) * self.width + column;
                 if depth > self.depth[sample] {
                     self.depth[sample] = depth;
                     self.surface[sample] = id;
@@ -260,13 +326,22 @@ impl Samples {
         shader.light(normal, wa * p.value + wb * q.value + wc * r.value)
     }
 
-    /// Means over the samples of each pixel, with a fine dark line where a surface ends or another begins.
-    fn resolve(&self, mut image: Image, samples: usize, scene: &Scene, shader: &Shader) -> Image {
+    /// Means over the samples of each pixel from a row of samples on, with a fine dark line where a surface ends or another
+    /// begins.
+    fn resolve(
+        &self,
+        pixels: &mut [[u8; 3]],
+        from: usize,
+        samples: usize,
+        scene: &Scene,
+        shader: &Shader,
+    ) {
         let bytes: Vec<u8> = (0..4096).map(|i| to_byte(f64::from(i) / 4095.0)).collect();
         let share = 1.0 / (samples * samples) as f32;
-        let across = image.width;
-        for (pixel, out) in image.pixels.iter_mut().enumerate() {
-            let (row, column) = (pixel / across * samples, pixel % across * samples);
+        let across = self.width / samples;
+        for (pixel, out) in pixels.iter_mut().enumerate() {
+            let row = from - self.rows.start + pixel / across * samples;
+            let column = pixel % across * samples;
             let mut sum = [0.0f32; 3];
             for y in row..row + samples {
                 for x in column..column + samples {
@@ -283,10 +358,10 @@ impl Samples {
             }
             *out = sum.map(|s| bytes[((s * share).clamp(0.0, 1.0) * 4095.0) as usize]);
         }
-        image
     }
 
-    /// Whether another surface, nothing, or a step in depth begins `reach` samples to the right or below.
+    /// Whether another surface, nothing, or a step in depth begins `reach` samples to the right or below; rows are counted in
+    /// the strip, which reaches as far beyond what is drawn of it.
     fn is_edge(&self, x: usize, y: usize, reach: usize) -> bool {
         let here = y * self.width + x;
         let differs = |there: usize, back: Option<usize>| {
@@ -311,7 +386,7 @@ impl Samples {
         );
         let above = above.map(|_| here - reach * self.width);
         (x + reach < self.width && differs(here + reach, left))
-            || (y + reach < self.height && differs(here + reach * self.width, above))
+            || (y + reach < self.rows.len() && differs(here + reach * self.width, above))
     }
 }
 
@@ -413,6 +488,30 @@ mod tests {
                 .iter()
                 .all(|&p| p == WHITE)
         );
+    }
+
+    #[test]
+    fn strips_leave_no_seam() {
+        let surfaces = [square(3.0, 90.0, 0.0, 0.2), square(20.0, 60.0, 40.0, 0.9)];
+        let from = |top: f64| {
+            let view = View {
+                right: [0.9, 0.1, 0.0],
+                up: [-0.3, 0.8, 0.1],
+                corner: (-30.0, top),
+                size: (130, 100),
+                ..view()
+            };
+            let image = render(&surfaces, &view, (0.0, 1.0), Map::Viridis, 3).unwrap();
+            image.pixels
+        };
+        let (here, lower) = (from(80.0), from(75.0));
+        let drawn = here.iter().filter(|&&pixel| pixel != WHITE).count();
+        assert!(drawn > 3000, "{drawn}");
+        // Five rows further down everything is the same, but for rounding.
+        let near = |a: &[u8; 3], b: &[u8; 3]| a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) < 3);
+        let same = here[5 * 130..].iter().zip(&lower);
+        let off = same.filter(|(a, b)| !near(a, b)).count();
+        assert!(off < 20, "{off}");
     }
 
     #[test]

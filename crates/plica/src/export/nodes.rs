@@ -87,28 +87,11 @@ impl Nodes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::{Material, NeoHookean};
-    use crate::tube::{Mesh, Support, Tube};
+    use crate::tube::fixture;
 
     /// A tube of `rings` rings of 12.
     fn tube(rings: usize) -> SplineTube {
-        let tube = Tube {
-            length: 1.0,
-            thickness: 0.1,
-            material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
-            muscles: vec![],
-            ends: [Support::Free; 2],
-            imperfections: vec![],
-        };
-        let mesh = Mesh {
-            axial: 6,
-            around: 12,
-            thickness: 4,
-            degree: 3,
-            refinements: vec![],
-            volumetric: Default::default(),
-        };
-        SplineTube::new(&tube, &mesh, rings)
+        SplineTube::new(&fixture::short(), &fixture::coarse(), rings)
     }
 
     fn nodes(tube: &SplineTube, lattice: Lattice) -> Vec<Node> {

@@ -40,9 +40,13 @@ impl Known {
             values: column.values.clone(),
         };
         let all = columns.iter().map(plotted);
+        let scene = match run.states {
+            [] => Scene::without(run.plan, run.rows.iter().map(|row| row.step).collect()),
+            states => Scene::of(run.plan, states, run.upwards(), largest),
+        };
         Self {
             name: run.name.clone(),
-            scene: Scene::of(run.plan, run.states, run.upwards(), largest),
+            scene,
             stages: run.rows.iter().map(|row| row.stage.clone()).collect(),
             shapes: run.rows.iter().map(|row| row.shape.clone()).collect(),
             beware: run.rows.iter().map(words::beware).collect(),

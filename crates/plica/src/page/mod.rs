@@ -31,6 +31,7 @@ use known::Known;
 use minijinja::value::Serde;
 use minijinja::{Environment, context};
 use sheet::Sheet;
+use stops::Parts;
 
 /// Departure from axisymmetry, in D, that is worth a word, and above which its crest is turned up.
 const VISIBLE: f64 = 2e-3;
@@ -48,8 +49,14 @@ pub struct Run<'a> {
     pub plan: &'a Plan,
     /// Its history.
     pub rows: &'a [Row],
-    /// Its saved states; at least one.
+    /// Those of its saved states that are to be drawn, in the order of their numbers; see [`drawn`].
     pub states: &'a [SavedState],
+    /// How many states it has saved.
+    pub saved: usize,
+    /// How many of these are not to be drawn.
+    pub left_out: usize,
+    /// What of it could not be read, in words.
+    pub unread: &'a [String],
     /// Where its case, its tables and its pictures are.
     pub directory: &'a RunDirectory,
 }
@@ -73,10 +80,25 @@ impl Run<'_> {
         leans.map_or(0.0, |row| row.departure_angle_deg.to_radians())
     }
 
+    /// Its states by their loads.
+    fn loads(&self) -> Vec<Parts> {
+        let scale = Scale::of(self.plan.units.as_ref());
+        let rows = self.rows.iter().map(|row| stops::of_row(row, &scale));
+        match self.states {
+            [] => rows.collect(),
+            states => states.iter().map(stops::of_state).collect(),
+        }
+    }
+
     fn units(&self) -> String {
         let scale = Scale::of(self.plan.units.as_ref());
         format!("{}, {}", scale.length_name, scale.stress_name)
     }
+}
+
+/// Which of the saved states of one of so many runs a page draws, so that it stays small.
+pub fn drawn(plan: &Plan, saved: &[usize], runs: usize) -> Vec<usize> {
+    scene::drawn(plan, saved, LARGEST / runs.max(1))
 }
 
 /// One run, or several with one slider.
@@ -97,12 +119,8 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
         sheets.push(Sheet::of(run, &columns, &one));
         known.push(one);
     }
-    let mut drawn = vec![];
-    for (run, known) in runs.iter().zip(&known) {
-        let is = |state: &&SavedState| known.scene.rows.contains(&state.row);
-        drawn.push(run.states.iter().filter(is).collect::<Vec<&SavedState>>());
-    }
-    let (leader, stops) = stops::stops(&drawn);
+    let loads: Vec<Vec<Parts>> = runs.iter().map(Run::loads).collect();
+    let (leader, stops) = stops::stops(&loads);
     let colour = |i: usize| Map::default().colour(i as f64 / (COLOURS - 1) as f64);
     let lines = [1, 2, 3, 4].map(line_colour);
     let data = serde_json::json!({
@@ -118,6 +136,7 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
     let page = templates.get_template("page.html")?;
     Ok(page.render(context! {
         runs => Serde(&sheets),
+        drawn => runs.iter().any(|run| !run.states.is_empty()),
         version => env!("CARGO_PKG_VERSION"),
         style => include_str!("web/page.css"),
         plot_style => include_str!("web/vendor/uplot.css"),

@@ -1,6 +1,7 @@
 //! The walls of a path as numbers that a browser draws: sampled, quantised, packed.
 
 use crate::assembly::{Point, Sample, SplineTube};
+use crate::draw::Range;
 use crate::report::Field;
 use crate::study::{Plan, SavedState};
 use base64::Engine;
@@ -24,8 +25,6 @@ pub const STEPS: (f64, f64) = (65535.0, 4095.0);
 const MISSING: u16 = u16::MAX;
 /// Numbers of a point, two bytes each.
 const NUMBERS: usize = 3 + Field::ALL.len();
-/// The part of all values that the colours span.
-const SHOWN: f64 = 0.995;
 
 /// A path of walls.
 ///
@@ -35,6 +34,8 @@ const SHOWN: f64 = 0.995;
 /// then through the wall, then around.
 #[derive(Clone, Debug, Serialize)]
 pub struct Scene {
+    /// Whether there is anything to draw.
+    pub drawn: bool,
     /// Points along the tube, through the wall and around one sector.
     pub points: [usize; 3],
     /// How often the sector is repeated around the tube.
@@ -51,8 +52,6 @@ pub struct Scene {
     pub fields: Vec<Colouring>,
     /// Which rows of the history the states are.
     pub rows: Vec<usize>,
-    /// States that are saved and left out so that the page stays small.
-    pub left_out: usize,
     /// Drawn points at which a field has no value.
     pub missing: usize,
     /// The states, packed with zlib, as base64.
@@ -66,9 +65,11 @@ pub struct Colouring {
     pub name: &'static str,
     /// Its name beside a colour bar, as plain text.
     pub label: String,
-    /// Ends of its values over the whole path, outliers aside.
+    /// What its colours span over the whole path.
     pub range: [f64; 2],
-    /// Its largest value.
+    /// Its least value.
+    pub least: f64,
+    /// Its largest.
     pub largest: f64,
     /// Its least and largest value in each state.
     pub ends: Vec<[f64; 2]>,
@@ -80,20 +81,46 @@ struct Wall {
     values: Vec<Vec<f64>>,
 }
 
-impl Scene {
-    /// The saved states of a path, in so many bytes at most before they are packed; the meridian at the angle `upwards` comes
-    /// first.
-    pub fn of(plan: &Plan, states: &[SavedState], upwards: f64, largest: usize) -> Self {
-        let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
-        let (points, turns) = fineness(&tube, states.len(), largest);
-        let every = (bytes(points) * states.len()).div_ceil(largest).max(1);
-        // The last one always.
-        let kept = |i: &usize| (states.len() - 1 - i).is_multiple_of(every);
-        let kept: Vec<&SavedState> = (0..states.len()).filter(kept).map(|i| &states[i]).collect();
+/// Which of a run's saved states are drawn, in so many bytes at most before they are packed.
+pub fn drawn(plan: &Plan, saved: &[usize], largest: usize) -> Vec<usize> {
+    let tube = tube_of(plan);
+    let (points, _) = fineness(&tube, saved.len(), largest);
+    let every = (bytes(points) * saved.len()).div_ceil(largest).max(1);
+    // The last one always.
+    let kept = |(i, _): &(usize, &usize)| (saved.len() - 1 - i).is_multiple_of(every);
+    let kept = saved.iter().enumerate().filter(kept);
+    kept.map(|(_, number)| *number).collect()
+}
 
+fn tube_of(plan: &Plan) -> SplineTube {
+    SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry))
+}
+
+impl Scene {
+    /// The path of a run that has saved no state: its rows, and nothing to draw.
+    pub fn without(plan: &Plan, rows: Vec<usize>) -> Self {
+        Self {
+            drawn: false,
+            points: [0; 3],
+            turns: 0,
+            low: [0.0; 3],
+            high: [0.0; 3],
+            diameter: Field::Displacement.label(plan).1,
+            radius: 0.0,
+            fields: vec![],
+            rows,
+            missing: 0,
+            data: String::new(),
+        }
+    }
+
+    /// The states of a path; the meridian at the angle `upwards` comes first. As fine as so many bytes allow.
+    pub fn of(plan: &Plan, states: &[SavedState], upwards: f64, largest: usize) -> Self {
+        let tube = tube_of(plan);
+        let (points, turns) = fineness(&tube, states.len(), largest);
         let labels: Vec<(String, f64)> = Field::ALL.iter().map(|f| f.label(plan)).collect();
         let length = Field::Displacement.label(plan).1;
-        let walls: Vec<Wall> = kept
+        let walls: Vec<Wall> = states
             .par_iter()
             .map(|state| {
                 let at = |point| tube.sample(&state.load, &state.u, point);
@@ -118,17 +145,23 @@ impl Scene {
             }
         }
         let fields = Field::ALL.iter().zip(labels).enumerate();
-        let colouring = fields.map(|(i, (field, (label, _)))| Colouring {
-            name: field.name(),
-            label: crate::draw::label::plain(&label),
-            range: shown(walls.iter().flat_map(|wall| &wall.values[i]).copied()),
-            largest: ends(walls.iter().flat_map(|wall| &wall.values[i]))[1],
-            ends: walls
-                .iter()
-                .map(|wall| ends(wall.values[i].iter()))
-                .collect(),
+        let colouring = fields.map(|(i, (field, (label, _)))| {
+            let values = walls.iter().flat_map(|wall| &wall.values[i]).copied();
+            let spanned = Range::Automatic.of(values).ok();
+            Colouring {
+                name: field.name(),
+                label: crate::draw::label::plain(&label),
+                range: spanned.map_or([0.0, 1.0], |field| [field.low, field.high]),
+                least: spanned.map_or(0.0, |field| field.least),
+                largest: spanned.map_or(1.0, |field| field.largest),
+                ends: walls
+                    .iter()
+                    .map(|wall| ends(wall.values[i].iter()))
+                    .collect(),
+            }
         });
         Self {
+            drawn: true,
             points,
             turns,
             low: bounds.map(|[low, _]| low),
@@ -136,8 +169,7 @@ impl Scene {
             diameter: length,
             radius: walls.iter().map(Wall::radius).fold(0.0, f64::max),
             fields: colouring.collect(),
-            rows: kept.iter().map(|state| state.row).collect(),
-            left_out: states.len() - kept.len(),
+            rows: states.iter().map(|state| state.row).collect(),
             missing: walls.iter().map(Wall::missing).sum(),
             data: packed(&data),
         }
@@ -227,30 +259,6 @@ fn ends<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
     if low <= high { [low, high] } else { [0.0, 0.0] }
 }
 
-/// The ends of most values; from zero where that is near.
-fn shown(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
-    let Some(last) = values.len().checked_sub(1) else {
-        return [0.0, 1.0];
-    };
-    let mut at = |part: f64| {
-        let place = (last as f64 * part).round() as usize;
-        *values.select_nth_unstable_by(place, f64::total_cmp).1
-    };
-    let (least, low, high) = (at(0.0), at(1.0 - SHOWN), at(SHOWN));
-    let low = if least < 0.0 { low } else { least };
-    let low = if (0.0..0.25 * high).contains(&low) {
-        0.0
-    } else {
-        low
-    };
-    if high - low > 1e-9 * high.abs().max(low.abs()) {
-        [low, high]
-    } else {
-        [low - 0.5, low + 0.5]
-    }
-}
-
 /// Values in so many steps between two ends, each less the one before it.
 fn differences(values: &[f64], [low, high]: [f64; 2], steps: f64) -> Vec<u16> {
     let scale = if high > low {
@@ -282,57 +290,10 @@ fn packed(data: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::{Material, NeoHookean};
-    use crate::study::{Layout, Output};
-    use crate::tube::{Mesh, Support, Symmetry, Tube};
+    use crate::study::fixture::{plan, state};
+    use crate::tube::Symmetry;
     use flate2::read::ZlibDecoder;
     use std::io::Read;
-
-    /// A tube of `12` rings under a symmetry, its states to come.
-    fn plan(symmetry: Symmetry) -> Plan {
-        Plan {
-            title: String::new(),
-            tube: Tube {
-                length: 1.0,
-                thickness: 0.1,
-                material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
-                muscles: vec![],
-                ends: [Support::Free; 2],
-                imperfections: vec![],
-            },
-            mesh: Mesh {
-                axial: 6,
-                around: 12,
-                thickness: 4,
-                degree: 3,
-                refinements: vec![],
-                volumetric: Default::default(),
-            },
-            symmetry,
-            start: None,
-            modes: vec![],
-            stages: vec![],
-            solver: Default::default(),
-            output: Output::default(),
-            units: None,
-        }
-    }
-
-    /// A tube that is wider along it, and twisted, the more so the later.
-    fn state(plan: &Plan, tube: &SplineTube, row: usize) -> SavedState {
-        SavedState {
-            stage: String::new(),
-            row,
-            along: 0.0,
-            muscles: vec![],
-            load: plan.tube.rest(),
-            layout: Layout::of(plan),
-            u: tube.control_values(|z, r, _| {
-                [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * row as f64)
-            }),
-            arrays: Default::default(),
-        }
-    }
 
     /// What the page's script does, in Rust.
     fn unpacked(bytes: &[u8], [low, high]: [f64; 2], steps: f64) -> Vec<f64> {
@@ -348,9 +309,9 @@ mod tests {
     fn is_where_the_tube_is(symmetry: Symmetry) {
         let plan = plan(symmetry);
         let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(symmetry));
-        let (states, upwards) = ([1, 2].map(|row| state(&plan, &tube, row)), 0.4);
+        let (states, upwards) = ([1, 2].map(|row| state(&plan, row)), 0.4);
         let scene = Scene::of(&plan, &states, upwards, 1 << 30);
-        assert_eq!((scene.rows.as_slice(), scene.left_out), (&[1, 2][..], 0));
+        assert_eq!(scene.rows, [1, 2]);
         let [along, through, around] = scene.points;
         let count = along * through * around;
         let mut bytes = vec![];
@@ -420,19 +381,18 @@ mod tests {
             bytes(points) * states
         };
         assert!(whole(10) <= 10_000_000 && whole(100) <= 10_000_000);
-        let states: Vec<SavedState> = (0..7).map(|row| state(&plan, &tube, row)).collect();
+        let saved: Vec<usize> = (0..7).collect();
         let two = 2 * bytes(fineness(&tube, 7, 1).0);
-        let scene = Scene::of(&plan, &states, 0.0, two);
-        // Never the last.
-        assert_eq!((scene.rows.as_slice(), scene.left_out), (&[2, 6][..], 5));
+        // The last one always.
+        assert_eq!(drawn(&plan, &saved, two), [2, 6]);
+        assert_eq!(drawn(&plan, &saved, 100 * two), saved);
+        assert!(drawn(&plan, &[], two).is_empty());
     }
 
     #[test]
     fn what_has_no_value_spoils_nothing() {
         let values = [1.0, f64::NAN, 3.0, -f64::NAN, f64::INFINITY];
         assert_eq!(ends(values.iter()), [1.0, 3.0]);
-        assert!(shown(values.into_iter()).iter().all(|x| x.is_finite()));
-        assert!(shown([f64::NAN].into_iter()).iter().all(|x| x.is_finite()));
         let steps = differences(&values, [1.0, 3.0], STEPS.1);
         let mut at = 0_u16;
         let steps: Vec<u16> = (steps.iter())
@@ -445,11 +405,8 @@ mod tests {
     }
 
     #[test]
-    fn colours_span_most_values() {
-        let mut values: Vec<f64> = (0..1000).map(|i| 1e-3 * f64::from(i)).collect();
-        values.push(50.0);
-        let [low, high] = shown(values.iter().copied());
-        assert!(low == 0.0 && (0.9..1.0).contains(&high), "{low} {high}");
-        assert_eq!(shown([3.0; 5].into_iter()), [2.5, 3.5]);
+    fn a_run_without_saved_states_has_its_rows() {
+        let scene = Scene::without(&plan(Symmetry::Axisymmetric), vec![0, 1, 2]);
+        assert!(!scene.drawn && scene.data.is_empty() && scene.rows == [0, 1, 2]);
     }
 }

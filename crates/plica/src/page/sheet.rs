@@ -111,10 +111,14 @@ impl Sheet {
             mesh: format!("{axial} × {around} × {thickness} control points, {symmetry}"),
             unknowns: 3 * axial * rings * thickness,
             seconds: format!("{seconds:.1}"),
-            drawn: format!(
-                "{along} × {} × {through} points of every state (along, around, through the wall)",
-                meridians * known.scene.turns
-            ),
+            drawn: if known.scene.drawn {
+                format!(
+                    "{along} × {} × {through} points of every state (along, around, through the wall)",
+                    meridians * known.scene.turns
+                )
+            } else {
+                "nothing: no state is saved in full".into()
+            },
             table: run.rows.iter().enumerate().map(line).collect(),
             heads: tabled.iter().map(|c| label::html(&c.label)).collect(),
             stability: Stability::of(run),
@@ -132,15 +136,13 @@ impl Sheet {
     }
 }
 
-/// A finding, its units set as on the rest of the page.
+/// A finding, its units and numbers set as on the rest of the page.
 fn set((name, words): (&'static str, String)) -> (&'static str, String) {
-    (
-        name,
-        words
-            .replace("D^3", "D³")
-            .replace(" uJ", " µJ")
-            .replace(" um", " µm"),
-    )
+    let words = words
+        .replace("D^3", "D³")
+        .replace(" uJ", " µJ")
+        .replace(" um", " µm");
+    (name, raised(&words))
 }
 
 /// A number in a table, with as many digits as a reader compares.
@@ -149,6 +151,39 @@ fn number(value: Option<f64>) -> String {
         None => "–".into(),
         Some(0.0) => "0".into(),
         Some(x) if (1e-2..1e4).contains(&x.abs()) => format!("{x:.4}").replace('-', "−"),
-        Some(x) => format!("{x:.3e}").replace('-', "−"),
+        Some(x) => raised(&format!("{x:.3e}")),
+    }
+}
+
+/// A text whose numbers such as -1.5e-4 are set as −1.5×10⁻⁴.
+fn raised(text: &str) -> String {
+    let set = |word: &str| {
+        let end = word.trim_end_matches(|c: char| !c.is_ascii_digit()).len();
+        let (bare, rest) = word.split_at(end);
+        let begin = bare.len() - bare.trim_start_matches(|c: char| "(".contains(c)).len();
+        let (before, bare) = bare.split_at(begin);
+        match bare.split_once('e') {
+            Some((mantissa, power)) if bare.parse::<f64>().is_ok() => {
+                let power = label::plain(&format!("^{{{power}}}"));
+                format!("{before}{}×10{power}{rest}", mantissa.replace('-', "−"))
+            }
+            _ => word.to_owned(),
+        }
+    };
+    text.split(' ').map(set).collect::<Vec<String>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_of_ten_are_raised_and_nothing_else() {
+        assert_eq!(
+            raised("W = -1.500e-4 D³ (residual 3e-12), 2 states, the end 1e5"),
+            "W = −1.500×10⁻⁴ D³ (residual 3×10⁻¹²), 2 states, the end 1×10⁵"
+        );
+        assert_eq!(number(Some(1.5e-5)), "1.500×10⁻⁵");
+        assert_eq!(number(Some(-0.25)), "−0.2500");
     }
 }

@@ -98,7 +98,8 @@ impl Stability {
             "No lowest eigenvalue that was found is negative.".into()
         } else {
             format!(
-                "Negative eigenvalues were found of state(s) {}.",
+                "Negative eigenvalues were found of state{} {}.",
+                if unstable.len() == 1 { "" } else { "s" },
                 unstable.join(", ")
             )
         };

@@ -1,6 +1,6 @@
 //! Which states of several runs are shown together.
 
-use crate::study::SavedState;
+use crate::study::{Row, SavedState, Scale};
 use std::collections::BTreeMap;
 
 /// How near states count as equally near, in what loads vary by: then the one as far along its path is taken.
@@ -11,18 +11,15 @@ const ALIKE: f64 = 1e-9;
 pub type Stop = Vec<(usize, f64)>;
 
 /// A load by the names of its parts; what has no name here is at rest.
-type Parts = BTreeMap<String, f64>;
+pub type Parts = BTreeMap<String, f64>;
 
 /// The states of the run that has most, and of each other run those under the nearest load, as far as both vary; where nothing
-/// varies in both, as far along their paths. And which run has most.
-pub fn stops(runs: &[Vec<&SavedState>]) -> (usize, Vec<Stop>) {
-    let loads: Vec<Vec<Parts>> = (runs.iter())
-        .map(|states| states.iter().map(|state| parts(state)).collect())
-        .collect();
+/// varies in both, as far along their paths. And which run has most. Runs are given by the loads of their states.
+pub fn stops(loads: &[Vec<Parts>]) -> (usize, Vec<Stop>) {
     let all = sizes(loads.iter().flatten());
     // The first of those that have most.
-    let most = |&a: &usize, &b: &usize| runs[a].len().cmp(&runs[b].len()).then(b.cmp(&a));
-    let leader = (0..runs.len()).max_by(most).unwrap_or(0);
+    let most = |&a: &usize, &b: &usize| loads[a].len().cmp(&loads[b].len()).then(b.cmp(&a));
+    let leader = (0..loads.len()).max_by(most).unwrap_or(0);
     let varied: Vec<Parts> = loads.iter().map(|loads| sizes(loads.iter())).collect();
     let common: Vec<Parts> = varied
         .iter()
@@ -53,7 +50,8 @@ pub fn stops(runs: &[Vec<&SavedState>]) -> (usize, Vec<Stop>) {
     (leader, (0..loads[leader].len()).map(stop).collect())
 }
 
-fn parts(state: &SavedState) -> Parts {
+/// The load of a saved state.
+pub fn of_state(state: &SavedState) -> Parts {
     let load = &state.load;
     let names = state
         .muscles
@@ -61,21 +59,51 @@ fn parts(state: &SavedState) -> Parts {
         .map(|(name, _)| format!("muscle {name}"));
     // Of a muscle at rest, 1 as well, and so nothing.
     let muscles = names.zip(load.muscles.iter().map(|target| target - 1.0));
-    let ends = ["colon", "ileum"].into_iter().zip(&load.ends);
-    let ends = ends.flat_map(|(name, end)| {
-        [
-            (format!("displacement {name}"), end.displacement),
-            (format!("twist {name}"), end.twist),
-        ]
-    });
-    let walls = ["inner", "outer"].into_iter().zip(&load.pressures);
-    let walls = walls.flat_map(|(name, pressure)| {
-        [
-            (format!("pressure {name}"), pressure.follower),
-            (format!("dead {name}"), pressure.dead),
-        ]
-    });
-    muscles.chain(ends).chain(walls).collect()
+    let [inner, outer] = load.pressures;
+    let pressures = [inner.follower, outer.follower, inner.dead, outer.dead];
+    let [colon, ileum] = load.ends;
+    let ends = [
+        colon.displacement,
+        ileum.displacement,
+        colon.twist,
+        ileum.twist,
+    ];
+    muscles.chain(outside(ends, pressures)).collect()
+}
+
+/// The load of a row of the history in the tables' units, as far as it tells it: not of every muscle.
+pub fn of_row(row: &Row, scale: &Scale) -> Parts {
+    let ends = [
+        row.colon_displacement / scale.length,
+        row.ileum_displacement / scale.length,
+        row.colon_twist_deg.to_radians(),
+        row.ileum_twist_deg.to_radians(),
+    ];
+    let pressures = [
+        row.inner_pressure,
+        row.outer_pressure,
+        row.inner_dead_pressure,
+        row.outer_dead_pressure,
+    ];
+    let pressures = pressures.map(|p| p.unwrap_or(0.0) / scale.stress);
+    outside(ends, pressures).collect()
+}
+
+/// What is done to a tube from outside: displacement and twist of its ends; pressures that follow the inner and the outer wall,
+/// and dead ones.
+fn outside(ends: [f64; 4], pressures: [f64; 4]) -> impl Iterator<Item = (String, f64)> {
+    let names = [
+        "displacement colon",
+        "displacement ileum",
+        "twist colon",
+        "twist ileum",
+        "pressure inner",
+        "pressure outer",
+        "dead inner",
+        "dead outer",
+    ];
+    let values = ends.into_iter().chain(pressures);
+    names.map(String::from).into_iter().zip(values)
 }
 
 /// By how much each part varies.
@@ -101,48 +129,24 @@ fn apart(a: &Parts, b: &Parts, sizes: &Parts) -> f64 {
 mod tests {
     use super::*;
     use crate::activation::Direction;
-    use crate::study::Layout;
-    use crate::tube::{EndMotion, Load, Mesh, Pressure};
+    use crate::study::fixture;
+    use crate::tube::Symmetry;
 
     fn state(muscle: f64, dead: f64) -> SavedState {
-        let mesh = Mesh {
-            axial: 6,
-            around: 12,
-            thickness: 4,
-            degree: 3,
-            refinements: vec![],
-            volumetric: Default::default(),
-        };
-        SavedState {
-            stage: String::new(),
-            row: 0,
-            along: 0.0,
-            muscles: vec![("circular".into(), Direction::Circular)],
-            load: Load {
-                muscles: vec![muscle],
-                ends: [EndMotion::default(); 2],
-                pressures: [
-                    Pressure::default(),
-                    Pressure {
-                        follower: 0.0,
-                        dead,
-                    },
-                ],
-            },
-            layout: Layout {
-                length: 1.0,
-                thickness: 0.1,
-                mesh,
-                rings: 1,
-            },
-            u: vec![],
-            arrays: Default::default(),
-        }
+        let mut state = fixture::state(&fixture::plan(Symmetry::Axisymmetric), 0);
+        state.muscles = vec![("circular".into(), Direction::Circular)];
+        state.load.muscles = vec![muscle];
+        state.load.pressures[1].dead = dead;
+        state
+    }
+
+    fn both(a: &[SavedState], b: &[SavedState]) -> (usize, Vec<Stop>) {
+        stops(&[a, b].map(|run| run.iter().map(of_state).collect::<Vec<Parts>>()))
     }
 
     /// The states of the second run that go with those of the first.
     fn pairs(a: &[SavedState], b: &[SavedState]) -> Vec<usize> {
-        let (leader, stops) = stops(&[a.iter().collect(), b.iter().collect()]);
+        let (leader, stops) = both(a, b);
         assert_eq!(leader, 0);
         stops.iter().map(|stop| stop[1].0).collect()
     }
@@ -170,7 +174,7 @@ mod tests {
         let a = [1.0, 0.8, 0.6, 0.4, 0.2].map(|x| state(x, 0.0));
         let b = [0.0, 1e-3, 2e-3].map(|x| state(1.0, x));
         assert_eq!(pairs(&a, &b), [0, 0, 1, 1, 2]);
-        let (_, stops) = stops(&[a.iter().collect(), b.iter().collect()]);
+        let (_, stops) = both(&a, &b);
         assert!(stops[4][1].1 > 0.5);
     }
 }

@@ -2,8 +2,7 @@
 
 use super::scene::Scene;
 use super::{Run, VISIBLE};
-use crate::stability::effect;
-use crate::study::{Findings, Row};
+use crate::study::{Findings, Row, named};
 use crate::tube::Symmetry;
 use std::collections::BTreeMap;
 
@@ -79,10 +78,8 @@ fn unstable(run: &Run<'_>) -> Option<String> {
             lost.entry(harmonic).or_default().push(row.step);
         }
     }
-    let told = lost.iter().map(|(harmonic, steps)| match harmonic.parse() {
-        Ok(n) => format!("to harmonic {n} ({}) in {}", effect(n), states(steps)),
-        Err(_) => format!("to a mode of its own in {}", states(steps)),
-    });
+    let told = (lost.iter())
+        .map(|(harmonic, steps)| format!("to {} in {}", named(harmonic), states(steps)));
     let told: Vec<String> = told.collect();
     (!told.is_empty()).then(|| format!("Its path is unstable {}.", told.join(", and ")))
 }
@@ -131,16 +128,25 @@ pub fn warnings(run: &Run<'_>, scene: &Scene) -> Vec<String> {
             scene.missing
         ));
     }
-    if scene.left_out > 0 {
+    warnings.extend(run.unread.iter().map(|what| format!("Not read: {what}.")));
+    let drawn = run.states.len();
+    if drawn == 0 {
+        warnings.push(
+            "No state is saved in full that could be drawn; with `output.states_every` in its case the run would leave some."
+                .into(),
+        );
+        return warnings;
+    }
+    if run.left_out > 0 {
         warnings.push(format!(
             "{} of the saved states are not drawn in three dimensions, so that this page stays small; their numbers are all here.",
-            scene.left_out
+            run.left_out
         ));
     }
-    if run.states.len() < run.rows.len() {
+    if run.saved < run.rows.len() {
         warnings.push(format!(
             "{} of {} states are saved in full; the others have their numbers here, and no picture.",
-            run.states.len(),
+            run.saved,
             run.rows.len()
         ));
     }

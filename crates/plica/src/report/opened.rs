@@ -53,7 +53,7 @@ impl Look {
     }
 }
 
-/// The surfaces of a tube with its near half taken away, coloured by strain energy density; the
+/// The surfaces of a tube with its near half taken away, coloured by strain energy density, in E; the
 /// meridian at the angle `upwards` is uppermost.
 pub fn opened(tube: &SplineTube, load: &Load, u: &[f64], upwards: f64) -> Vec<Surface> {
     looked_at(tube, load, u, upwards, &Look::half(tube))

@@ -1,8 +1,8 @@
 //! The pictures of a run.
 
-use super::opened::opened;
+use super::opened::{Look, looked_at};
 use super::walls::{Wall, departure, walls};
-use super::{Abscissa, Story};
+use super::{Abscissa, Field, Story};
 use crate::assembly::SplineTube;
 use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Panel, Rule};
 use crate::study::{Plan, Row, Scale, Snapshot, Summary};
@@ -10,6 +10,9 @@ use rayon::prelude::*;
 
 /// Width of every picture, in pixels.
 const WIDTH: usize = 1800;
+
+/// Pieces along a tube that are fine enough for that.
+const ALONG: usize = 300;
 
 /// How a picture comes about.
 type Drawing<'a> = dyn Fn() -> Result<Vec<u8>, DrawError> + Sync + 'a;
@@ -97,15 +100,23 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
 
 /// The tube cut open at the chosen states, along the plane of an angle, which points up.
 fn cutaway(plan: &Plan, tube: &SplineTube, chosen: &[Wall<'_>], upwards: f64) -> Cutaway {
+    let (value_label, factor) = Field::EnergyDensity.label(plan);
+    let mut look = Look {
+        factor,
+        ..Look::half(tube)
+    };
+    // A run does not wait for what is finer than its picture shows.
+    let elements = tube.axial.elements();
+    look.opening.points[0] = elements * (ALONG / elements).clamp(1, 2) + 1;
     let panel = |state: &Wall<'_>| Panel {
         label: state.label.clone(),
-        surfaces: opened(tube, state.load, state.u, upwards),
+        surfaces: looked_at(tube, state.load, state.u, upwards, &look),
         ..Panel::default()
     };
     Cutaway {
         title: plan.title.clone(),
-        panels: chosen.iter().map(panel).collect(),
-        value_label: "strain energy density *w*/*E*".into(),
+        panels: chosen.par_iter().map(panel).collect(),
+        value_label,
         ..Cutaway::default()
     }
 }

@@ -5,8 +5,8 @@ use crate::draw::{
     Chart, Curve, Cutaway, DrawError, Image, Map, Marker, Opening, Panel, Range, Rule, Stroke,
     Surface,
 };
-use crate::stability::{Change, How, Mode, Quantity, Stability, Station, effect};
-use crate::study::Plan;
+use crate::stability::{Change, How, Mode, Quantity, Stability, Station};
+use crate::study::{Plan, effect};
 use crate::tube::Tube;
 use std::cell::RefCell;
 use std::collections::HashMap;

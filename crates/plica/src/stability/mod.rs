@@ -46,4 +46,3 @@ pub use mass::harmonic_mass;
 pub use observer::Observer;
 pub use quantity::Quantity;
 pub use spectrum::{Eigenvalue, Shown, Spectra, Spectrum};
-pub use table::effect;

@@ -1,19 +1,9 @@
 //! What is found, as tables.
 
 use super::{Change, How, Stability, Station};
-use crate::study::{Array, RunDirectory, StudyError};
+use crate::study::{Array, RunDirectory, StudyError, effect, named};
 use crate::tube::Tube;
 use std::fmt::Write;
-
-/// What a harmonic does to a tube.
-pub fn effect(harmonic: usize) -> String {
-    match harmonic {
-        0 => "swells, or tilts along z".into(),
-        1 => "tilts sideways".into(),
-        2 => "turns oval".into(),
-        n => format!("folds into {n} lobes"),
-    }
-}
 
 impl Change {
     /// Lost, or regained.
@@ -97,7 +87,7 @@ impl Stability {
                 how => format!("{name} = {from} to {to} ({})", how.name()),
             };
             let n = change.harmonic;
-            format!("harmonic {n} ({}), at {place}", effect(n))
+            format!("{}, at {place}", named(&n.to_string()))
         });
         let line = |page: &mut String, name: &str, value: &str| {
             let _ = writeln!(page, "  {name:<22} {value}");

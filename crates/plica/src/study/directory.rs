@@ -35,6 +35,9 @@ pub const PROGRAM: &str = "plica";
 /// Name of the file by which a directory is known to be a run.
 const MANIFEST: &str = "manifest.json";
 
+/// Name of the table of states.
+const HISTORY: &str = "history.csv";
+
 /// Name of the case as it was run.
 const CASE: &str = "case.toml";
 
@@ -159,16 +162,36 @@ impl RunDirectory {
     /// # Errors
     /// [`StudyError::File`] if it is not there, or not one of this version's.
     pub fn history(&self) -> Result<Vec<Row>, StudyError> {
-        let path = self.path.join("history.csv");
+        match self.history_so_far()? {
+            (rows, None) => Ok(rows),
+            (_, Some(broken)) => Err(StudyError::File {
+                path: self.path.join(HISTORY),
+                source: std::io::Error::other(broken),
+            }),
+        }
+    }
+
+    /// The rows of `history.csv` up to the first that is broken, as power that fails or a full disk may leave one; and what is
+    /// wrong with that, if there is one.
+    ///
+    /// # Errors
+    /// [`StudyError::File`] if it is not there, or not one of this version's: if already its first row is none.
+    pub fn history_so_far(&self) -> Result<(Vec<Row>, Option<String>), StudyError> {
+        let path = self.path.join(HISTORY);
         let trouble = |error: csv::Error| StudyError::File {
             path: path.clone(),
             source: std::io::Error::other(error),
         };
         let mut table = csv::Reader::from_path(&path).map_err(trouble)?;
-        table
-            .deserialize()
-            .map(|row| row.map_err(trouble))
-            .collect()
+        let mut rows: Vec<Row> = vec![];
+        for row in table.deserialize() {
+            match row {
+                Ok(row) => rows.push(row),
+                Err(error) if rows.is_empty() => return Err(trouble(error)),
+                Err(error) => return Ok((rows, Some(error.to_string()))),
+            }
+        }
+        Ok((rows, None))
     }
 
     /// The files of the saved states, in the order of their numbers.
@@ -225,7 +248,7 @@ impl RunDirectory {
 
     /// Adds a row to `history.csv`; it is on its way to the disk when this returns.
     pub fn record(&mut self, row: &Row) -> Result<(), StudyError> {
-        let path = self.path.join("history.csv");
+        let path = self.path.join(HISTORY);
         let trouble = |source| StudyError::File {
             path: path.clone(),
             source,
@@ -367,7 +390,7 @@ fn clear(path: &Path) -> Result<(), StudyError> {
     let mut old = stability_files(path);
     let pictures = ["energy.png", "walls.png", "tube.png", "report.html"];
     old.extend(
-        [CASE, "history.csv"]
+        [CASE, HISTORY]
             .iter()
             .chain(&pictures)
             .map(|name| path.join(name)),

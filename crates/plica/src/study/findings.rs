@@ -1,6 +1,7 @@
 //! What a path has come to, in words.
 
 use super::Row;
+use super::harmonics::named;
 use super::units::Scale;
 use std::collections::BTreeMap;
 
@@ -95,8 +96,8 @@ impl<'a> Findings<'a> {
             ("lumen is closed", closed),
         ] {
             if let [first, .., last] | [first @ last] = states.as_slice() {
-                let (count, span) = (states.len(), span(first, last));
-                line(name, format!("at {count} state(s), {span}: {physical}"));
+                let (count, span) = (counted(states.len(), "state"), span(first, last));
+                line(name, format!("at {count}, {span}: {physical}"));
             }
         }
         line(
@@ -127,38 +128,37 @@ impl<'a> Findings<'a> {
             line("unstable", "no state".into());
         }
         for (i, (harmonic, rows)) in lost.iter().enumerate() {
-            let (count, span) = (rows.len(), span(rows[0], rows[rows.len() - 1]));
+            let (count, span) = (
+                counted(rows.len(), "state"),
+                span(rows[0], rows[rows.len() - 1]),
+            );
             if *harmonic == "unknown" {
-                line(
-                    "stability",
-                    format!("not known of {count} state(s), {span}"),
-                );
+                line("stability", format!("not known of {count}, {span}"));
                 continue;
             }
             let name = if i == 0 { "unstable" } else { "" };
             let harmonic = named(harmonic);
-            line(name, format!("to {harmonic} at {count} state(s), {span}"));
+            line(name, format!("to {harmonic} at {count}, {span}"));
         }
         let relaxed = count(|row| row.method == "relaxation");
         let solves: usize = self.rows.iter().map(|row| row.iterations).sum();
         let seconds: f64 = self.rows.iter().map(|row| row.seconds).sum();
         line(
             "work",
-            format!("{solves} solves in {seconds:.1} s, {relaxed} steps by relaxation"),
+            format!(
+                "{} in {seconds:.1} s, {} by relaxation",
+                counted(solves, "solve"),
+                counted(relaxed, "step")
+            ),
         );
         lines
     }
 }
 
-/// What a harmonic does to a tube.
-fn named(harmonic: &str) -> String {
-    match harmonic {
-        "0" => "harmonic 0 (along or around the axis)".into(),
-        "1" => "harmonic 1 (sideways)".into(),
-        "2" => "harmonic 2 (oval)".into(),
-        "any" => "its own lowest mode".into(),
-        n => format!("harmonic {n} ({n} lobes)"),
-    }
+/// So many of something.
+fn counted(count: usize, what: &str) -> String {
+    let more = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{more}")
 }
 
 /// The pressures that a state is under, if its case has any.

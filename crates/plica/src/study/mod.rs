@@ -3,8 +3,11 @@
 mod directory;
 mod error;
 mod findings;
+#[cfg(test)]
+pub(crate) mod fixture;
 mod forecast;
 mod harmonic_tangent;
+mod harmonics;
 mod history;
 mod layout;
 mod lowest_modes;
@@ -25,6 +28,7 @@ pub use directory::RunDirectory;
 pub use error::StudyError;
 pub use findings::Findings;
 pub use forecast::{Forecast, forecast};
+pub use harmonics::{effect, named};
 pub use history::Row;
 pub use layout::Layout;
 pub use mode::NamedMode;

@@ -4,6 +4,8 @@
 //! Everything is dimensionless: lengths in the outer diameter D, stresses in Young's modulus E,
 //! energies in E·D³. z = 0 is the colon end, z = L the ileum end.
 
+#[cfg(test)]
+pub(crate) mod fixture;
 mod imperfection;
 mod load;
 mod mesh;

@@ -7,6 +7,8 @@ class Page {
   constructor(data) {
     this.data = data;
     this.runs = data.runs;
+    // Those with a tube, each with its place among all.
+    this.drawn = this.runs.map((run, place) => ({ run, place })).filter(({ run }) => run.scene.drawn);
     this.stops = data.stops;
     this.at = data.stops.length - 1;
     this.now = this.stops[this.at];
@@ -18,20 +20,23 @@ class Page {
     this.replot();
     this.go(this.at);
     try {
-      for (const run of this.runs) {
+      for (const { run } of this.drawn) {
         run.walls = new Walls(run.scene, await unpacked(run.scene.data), this.data.steps);
         run.scene.data = null;
       }
-      this.view = new View($("stage"), $("canvas"), this.runs, this.data.colours);
-      this.view.onTurned = () => ($("view").selectedIndex = -1);
-      this.show();
+      if (this.drawn.length > 0) {
+        const runs = this.drawn.map(({ run }) => run);
+        this.view = new View($("stage"), $("canvas"), runs, this.data.colours);
+        this.view.onTurned = () => ($("view").selectedIndex = -1);
+        this.show();
+      }
       $("waiting").remove();
     } catch (error) {
       console.error(error);
       $("waiting").textContent = `The tube cannot be drawn in three dimensions here (${error.message}). Everything else works.`;
       document.querySelectorAll(".for-tube").forEach((one) => (one.hidden = true));
     }
-    document.body.dataset.ready = this.view ? "yes" : "no";
+    document.body.dataset.ready = this.view || this.drawn.length === 0 ? "yes" : "no";
   }
 
   /** Columns of any run, by their names. */
@@ -42,7 +47,7 @@ class Page {
   }
 
   choices() {
-    for (const { name, label } of this.runs[0].scene.fields) $("field").add(new Option(label, name));
+    for (const { name, label } of this.drawn[0]?.run.scene.fields ?? []) $("field").add(new Option(label, name));
     const columns = this.columns();
     const options = [...columns.values()];
     for (const { name, label, load } of options) {
@@ -58,7 +63,7 @@ class Page {
     const part = ({ name }) => Math.min(...this.runs.map((run) => this.rising(run, name).length / run.stages.length));
     const most = driven.reduce((best, one) => (best && part(best) >= part(one) ? best : one), null);
     if (most && part(most) > 0.5) $("along").value = most.name;
-    $("stage").classList.toggle("many", this.runs.length > 2);
+    $("stage").classList.toggle("many", this.drawn.length > 2);
     $("state").max = this.stops.length - 1;
     const again = () => this.show();
     ["field", "range", "ghost"].forEach((id) => $(id).addEventListener("change", again));
@@ -190,22 +195,29 @@ class Page {
 
   /** Shows the states that are chosen. */
   show() {
-    const field = $("field").selectedIndex;
-    const range = this.range(field);
-    const cut = Number($("cut").value);
-    this.view?.tubes.forEach((tube, i) => tube.show(this.now[i][0], field, range, cut, $("ghost").checked));
-    this.view?.draw();
-    $("cut-told").textContent = `${cut}°`;
+    if (this.drawn.length > 0) {
+      const field = $("field").selectedIndex;
+      const range = this.range(field);
+      const cut = Number($("cut").value);
+      this.view?.tubes.forEach((tube, i) => tube.show(this.state(i), field, range, cut, $("ghost").checked));
+      this.view?.draw();
+      $("cut-told").textContent = `${cut}°`;
+      this.labelBar(field, range);
+    }
     this.readOut();
-    this.labelBar(field, range);
     this.mark();
+  }
+
+  /** The number among the drawn states of what is shown of the so many-th tube. */
+  state(tube) {
+    return this.now[this.drawn[tube].place][0];
   }
 
   /** Ends of the colours: of the whole of all paths, or of what is shown. */
   range(field) {
-    const ends = this.runs.map(({ scene }, i) => {
-      const one = scene.fields[field];
-      return $("range").value === "path" ? one.range : one.ends[this.now[i][0]];
+    const ends = this.drawn.map(({ run }, i) => {
+      const one = run.scene.fields[field];
+      return $("range").value === "path" ? one.range : one.ends[this.state(i)];
     });
     const [low, high] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
     return high > low ? [low, high] : [low - 0.5, low + 0.5];
@@ -242,10 +254,12 @@ class Page {
 
   /** Round numbers beneath the colour bar; and how far values go beyond it. */
   labelBar(field, [low, high]) {
-    const fields = this.runs.map(({ scene }) => scene.fields[field]);
-    const path = $("range").value === "path";
-    const largest = Math.max(...fields.map((one, i) => (path ? one.largest : one.ends[this.now[i][0]][1])));
-    const beyond = largest > high + 1e-6 * (high - low) ? ` (darkest: up to ${told(largest, 3)})` : "";
+    const fields = this.drawn.map(({ run }) => run.scene.fields[field]);
+    const ends = fields.map((one, i) => ($("range").value === "path" ? [one.least, one.largest] : one.ends[this.state(i)]));
+    const [least, largest] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
+    const hair = 1e-6 * (high - low);
+    const outside = [least < low - hair && `down to ${told(least, 3)}`, largest > high + hair && `up to ${told(largest, 3)}`].filter(Boolean);
+    const beyond = outside.length > 0 ? ` (beyond the bar: ${outside.join(", ")})` : "";
     $("bar-label").textContent = fields[0].label + beyond;
     const rough = (high - low) / 4;
     const power = 10 ** Math.floor(Math.log10(rough));

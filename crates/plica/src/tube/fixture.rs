@@ -1,0 +1,28 @@
+//! A small tube for the tests of any room.
+
+use super::{Mesh, Support, Tube};
+use crate::material::{Material, NeoHookean};
+
+/// A tube as long as it is wide, with free ends and nothing to drive it.
+pub fn short() -> Tube {
+    Tube {
+        length: 1.0,
+        thickness: 0.1,
+        material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+        muscles: vec![],
+        ends: [Support::Free; 2],
+        imperfections: vec![],
+    }
+}
+
+/// A coarse cubic mesh: 6 control points along, 12 around, 4 through the wall.
+pub fn coarse() -> Mesh {
+    Mesh {
+        axial: 6,
+        around: 12,
+        thickness: 4,
+        degree: 3,
+        refinements: vec![],
+        volumetric: Default::default(),
+    }
+}
