@@ -28,7 +28,7 @@ use crate::draw::colour::line_colour;
 use crate::report::Column;
 use crate::study::{Plan, Row, RunDirectory, SavedState, Scale};
 use known::Known;
-use minijinja::value::Serde;
+use minijinja::value::{Serde, Value};
 use minijinja::{Environment, context};
 use sheet::Sheet;
 use stops::Parts;
@@ -96,6 +96,18 @@ impl Run<'_> {
     }
 }
 
+/// A sentence as HTML, what is between backticks as code.
+fn code(sentence: &str) -> Value {
+    let parts = sentence.split('`').enumerate().map(|(i, part)| {
+        let part = part.replace('&', "&amp;").replace('<', "&lt;");
+        match i % 2 {
+            0 => part,
+            _ => format!("<code>{part}</code>"),
+        }
+    });
+    Value::from_safe_string(parts.collect())
+}
+
 /// Which of the saved states of one of so many runs a page draws, so that it stays small.
 pub fn drawn(plan: &Plan, saved: &[usize], runs: usize) -> Vec<usize> {
     scene::drawn(plan, saved, LARGEST / runs.max(1))
@@ -132,6 +144,7 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
         "lines": lines,
     });
     let mut templates = Environment::new();
+    templates.add_filter("code", code);
     templates.add_template("page.html", include_str!("web/page.html"))?;
     let page = templates.get_template("page.html")?;
     Ok(page.render(context! {
