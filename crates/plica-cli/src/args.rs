@@ -20,6 +20,8 @@ pub enum Command {
     /// Run a case and write its states, curves and pictures to a directory
     #[command(after_long_help = RUN_EPILOGUE)]
     Run(RunArguments),
+    /// Go on with a run where it was left: by Ctrl-C, a time limit, a full disk or a failure of power
+    Resume(ResumeArguments),
     /// Tell which modes a run's path becomes unstable to, where, and in what shape
     #[command(after_long_help = STABILITY_EPILOGUE)]
     Stability(StabilityArguments),
@@ -73,6 +75,21 @@ pub struct RunArguments {
     /// Replace a former run in that directory
     #[arg(long)]
     pub overwrite: bool,
+    /// Go on with a former run in that directory where it was left, or begin if there is none. Of the case the
+    /// title, [solver], [output], the steps of the stage it is in and all later stages may have changed
+    #[arg(long, conflicts_with = "overwrite")]
+    pub resume: bool,
+    /// Threads to use [default: all cores]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// What `plica resume` takes.
+#[derive(Args, Debug)]
+pub struct ResumeArguments {
+    /// The directory of a run
+    #[arg(value_name = "RUN_DIR")]
+    pub run: PathBuf,
     /// Threads to use [default: all cores]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -340,6 +357,7 @@ Examples:
   plica check tube.toml          is it sound, how large, how long?
   plica run tube.toml            run it; results go to runs/tube
   plica run tube.toml -o again -t 4
+  plica resume runs/tube         go on where a run was left
   plica stability runs/tube      where does its path become unstable, and how?
   plica verify                   is this program right?
   plica render runs/tube         its last state as a picture
@@ -369,7 +387,7 @@ What a run leaves behind:
   pictures        curves and walls (unless the case says otherwise)
 
 Ctrl-C or SIGTERM ends a run after the solve or iteration at hand, with everything written. A second
-Ctrl-C ends it at once.";
+Ctrl-C ends it at once. However it ends, `plica resume RUN_DIR` goes on from its last state.";
 
 const STABILITY_EPILOGUE: &str = "\
 Every saved state of an axisymmetric run is tested against circumferential harmonics: 0 keeps the

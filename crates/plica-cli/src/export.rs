@@ -98,7 +98,7 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     }
     if stopped {
         return Err(Failure::Interrupted(
-            "interrupted; what is written is whole, and the collections name it",
+            "interrupted; what is written is whole, and the collections name it".into(),
         ));
     }
     Ok(())

@@ -29,7 +29,7 @@ pub enum Failure {
     /// The library could not go on.
     Study(StudyError),
     /// Someone pressed Ctrl-C; what is left of the work.
-    Interrupted(&'static str),
+    Interrupted(String),
 }
 
 impl Failure {

@@ -73,6 +73,10 @@ impl Observer for Progress {
         ));
     }
 
+    fn noticed(&mut self, what: &str) {
+        self.ticker.line(what);
+    }
+
     fn working(&mut self, what: &str, fraction: f64) {
         self.ticker.working(what, fraction);
     }

@@ -92,7 +92,9 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
             let usual = format!("{}-path.apng", look.field.name());
             run.leave(arguments.look.out.as_deref(), &usual, &bytes)
         }
-        None => Err(Failure::Interrupted("interrupted; nothing is written")),
+        None => Err(Failure::Interrupted(
+            "interrupted; nothing is written".into(),
+        )),
     }
 }
 

@@ -59,7 +59,7 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
     watcher.0.finish();
     let told = told.map_err(|trouble| match trouble {
         Trouble::Stopped => Failure::Interrupted(
-            "interrupted; the same command goes on after the runs that are done",
+            "interrupted; the same command goes on after the runs that are done".into(),
         ),
         trouble => Failure::Files(trouble.to_string()),
     })?;

@@ -1,14 +1,14 @@
-//! `plica run`.
+//! `plica run` and `plica resume`.
 
-use crate::args::RunArguments;
+use crate::args::{ResumeArguments, RunArguments};
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{case_file, console, threads};
-use plica::case::advice;
+use plica::case::{advice, differences};
 use plica::report::pictures;
-use plica::study::{self, Plan, RunDirectory, Summary};
-use std::path::PathBuf;
+use plica::study::{self, Observer, Plan, RunDirectory, StudyError, Summary};
+use std::path::{Path, PathBuf};
 
 /// Draws the pictures of a run; says which. A picture that cannot be drawn does not undo a run.
 fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<String, Failure> {
@@ -29,7 +29,7 @@ fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<Stri
     Ok(format!("  {:<22} {}\n", "pictures", names.join(", ")))
 }
 
-/// Runs a case.
+/// Runs a case, from the beginning or where it was left.
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     // Before anything computes, which checking a case may do already.
     threads::limit(arguments.threads)?;
@@ -38,32 +38,103 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         Some(out) => out.clone(),
         None => PathBuf::from("runs").join(case_file::stem(&arguments.case)),
     };
-    let interrupt = Interrupt::listen()
-        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
+    let interrupt = listen()?;
     study::fits(&plan).map_err(Failure::Study)?;
-    let mut directory =
+    if arguments.resume && !is_blank(&out) {
+        let mut directory = RunDirectory::open(&out).map_err(Failure::Study)?;
+        directory.own().map_err(Failure::Study)?;
+        let before = directory.read("case.toml").unwrap_or_default();
+        if before != text.as_bytes() {
+            let old = case_file::of_run(&directory)?;
+            let before = String::from_utf8_lossy(&before);
+            may_go_on(&directory, [(&before, &old), (&text, &plan)])?;
+            directory.write_case(&text).map_err(Failure::Study)?;
+        }
+        return lead(&plan, directory, interrupt, study::resume);
+    }
+    let directory =
         RunDirectory::create(&out, &text, arguments.overwrite).map_err(Failure::Study)?;
+    lead(&plan, directory, interrupt, study::run)
+}
+
+/// Goes on with a run.
+pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
+    threads::limit(arguments.threads)?;
+    let mut directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
+    directory.own().map_err(Failure::Study)?;
+    let plan = case_file::of_run(&directory)?;
+    lead(&plan, directory, listen()?, study::resume)
+}
+
+fn listen() -> Result<Interrupt, Failure> {
+    Interrupt::listen()
+        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))
+}
+
+/// Whether there is nothing at a path, or an empty folder.
+fn is_blank(path: &Path) -> bool {
+    match std::fs::read_dir(path) {
+        Ok(mut entries) => entries.next().is_none(),
+        Err(error) => error.kind() == std::io::ErrorKind::NotFound,
+    }
+}
+
+/// Refuses another case than the one that was begun, but for what may change.
+fn may_go_on(
+    directory: &RunDirectory,
+    [(before, old), (text, new)]: [(&str, &Plan); 2],
+) -> Result<(), Failure> {
+    let (rows, _) = directory.history_so_far().map_err(Failure::Study)?;
+    let stage = match directory.checkpoint(old, &rows) {
+        Ok((checkpoint, _)) => checkpoint.stage,
+        // It will be told of.
+        Err(_) => None,
+    };
+    let kept = study::kept(old, new, stage);
+    if kept.is_empty() {
+        return Ok(());
+    }
+    let mut what = format!(
+        "{}: begun with another case. Of this one {} must stay as it was:",
+        directory.path().display(),
+        kept.join(", ")
+    );
+    for difference in differences(before, text) {
+        what += &format!("\n  {difference}");
+    }
+    what += "\nThe title, [solver], [output], the steps of the stage it is in and all later stages may change. \
+        Run this case into another directory, or begin again with --overwrite";
+    Err(Failure::Usage(what))
+}
+
+/// Leads a run to its end, and draws it.
+fn lead(
+    plan: &Plan,
+    mut directory: RunDirectory,
+    interrupt: Interrupt,
+    by: fn(&Plan, &mut RunDirectory, &mut dyn Observer) -> Result<Summary, StudyError>,
+) -> Result<(), Failure> {
+    let out = directory.path().to_owned();
     console::tell(&format!("{}\nwriting to {}", plan.title, out.display()));
-    for warning in advice(&plan) {
+    for warning in advice(plan) {
         console::tell(&format!("warning: {warning}"));
     }
-
-    let mut progress = Progress::new(&plan, interrupt.clone());
-    let summary = study::run(&plan, &mut directory, &mut progress);
+    let mut progress = Progress::new(plan, interrupt.clone());
+    let summary = by(plan, &mut directory, &mut progress);
     progress.finish();
     let summary = summary.map_err(Failure::Study)?;
-    let drawn = draw(&plan, &summary, &directory)?;
+    let drawn = draw(plan, &summary, &directory)?;
     console::say(&format!("{summary}{drawn}"))?;
-    if !summary.finished() {
-        console::tell(&summary.ending().to_string());
-    }
     if summary.finished() {
-        Ok(())
-    } else if interrupt.asked() {
-        Err(Failure::Interrupted(
-            "interrupted; everything up to the last accepted state is written",
-        ))
-    } else {
-        Err(Failure::Unfinished)
+        directory.tidy().map_err(Failure::Study)?;
+        return Ok(());
     }
+    console::tell(&summary.ending().to_string());
+    if interrupt.asked() {
+        return Err(Failure::Interrupted(format!(
+            "interrupted; everything up to the last accepted state is written, and `plica resume {}` goes on from there",
+            out.display()
+        )));
+    }
+    Err(Failure::Unfinished)
 }

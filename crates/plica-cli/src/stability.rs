@@ -20,7 +20,8 @@ const MODES: u8 = 3;
 
 /// Tests a run's states, and writes what it finds beside them.
 pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
-    let directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
+    let mut directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
+    directory.own().map_err(Failure::Study)?;
     if directory.states().map_err(Failure::Study)?.is_empty() {
         let none = StabilityError::NoStates {
             directory: arguments.run.clone(),
@@ -117,7 +118,7 @@ fn by_modes(
     finish(arguments, directory, table, names, pictures)?;
     if found.stopped {
         return Err(Failure::Interrupted(
-            "interrupted; the states before were written",
+            "interrupted; the states before were written".into(),
         ));
     }
     Ok(())
@@ -125,7 +126,7 @@ fn by_modes(
 
 fn failure(error: StabilityError) -> Failure {
     match error {
-        StabilityError::Stopped => Failure::Interrupted("interrupted; nothing was written"),
+        StabilityError::Stopped => Failure::Interrupted("interrupted; nothing was written".into()),
         error if error.is_misuse() => Failure::Usage(error.to_string()),
         error => Failure::Files(error.to_string()),
     }

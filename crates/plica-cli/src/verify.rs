@@ -56,7 +56,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     let held = hold(full, &wanted, &mut watch);
     watch.ticker.finish();
     let held = held.map_err(|trouble| match trouble {
-        Trouble::Stopped => Failure::Interrupted("interrupted; nothing was written"),
+        Trouble::Stopped => Failure::Interrupted("interrupted; nothing was written".into()),
         trouble => Failure::Files(trouble.to_string()),
     })?;
     // First of all, whatever becomes of the files.

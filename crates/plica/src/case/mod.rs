@@ -29,6 +29,7 @@
 
 mod advice;
 mod check;
+mod difference;
 mod edit;
 mod keys;
 mod locate;
@@ -41,6 +42,7 @@ mod starter;
 mod table;
 
 pub use advice::advice;
+pub use difference::{Difference, differences};
 pub use edit::{EditError, edited};
 pub use keys::{Given, Key, Kind, Limit, Range};
 pub use problem::{CaseError, Problem};

@@ -46,7 +46,7 @@ pub use conjugate_gradients::conjugate_gradients;
 pub use lowest::{Lowest, Search, lowest};
 pub use newton::newton;
 pub use operator::Operator;
-pub use path::{Path, PathError, Step};
+pub use path::{Behind, Memory, Path, PathError, Step};
 pub use pseudo_time::pseudo_time;
 pub use relaxation::relaxation;
 pub use settings::{Integrator, PseudoTime, Scheme, Settings};

@@ -41,11 +41,27 @@ pub struct Path<'a, P: Equilibrium> {
 type SolverOf<P> = <<P as Equilibrium>::Tangent as Tangent>::Solver;
 
 /// A state of the path and its tangent du/dt.
-#[derive(Clone, Debug)]
-struct Behind {
-    t: f64,
-    u: Vec<f64>,
-    tangent: Vec<f64>,
+#[derive(Clone, Debug, PartialEq)]
+pub struct Behind {
+    /// How far along the leg.
+    pub t: f64,
+    /// The unknowns.
+    pub u: Vec<f64>,
+    /// Their change along the leg.
+    pub tangent: Vec<f64>,
+}
+
+/// What a path keeps of its way beside its state: with both it goes on as if it had never been left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Memory {
+    /// How far along its leg it is, 0 to 1.
+    pub reached: f64,
+    /// How often the last step had to be halved.
+    pub pace: usize,
+    /// The state before on this leg, unless a snap lies between.
+    pub behind: Option<Behind>,
+    /// u̇ of the pseudo-time.
+    pub velocity: Vec<f64>,
 }
 
 /// How an accepted state was reached.
@@ -116,6 +132,36 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             pace: 0,
             velocity,
         })
+    }
+
+    /// Goes on from an accepted state of a leg between two loads.
+    pub fn go_on(
+        problem: &'a P,
+        [from, to]: [P::Load; 2],
+        load: P::Load,
+        u: Vec<f64>,
+        memory: Memory,
+        settings: Settings,
+    ) -> Result<Self, P::Broken> {
+        Ok(Self {
+            from,
+            to,
+            t: memory.reached,
+            behind: memory.behind,
+            pace: memory.pace,
+            velocity: memory.velocity,
+            ..Self::begin(problem, load, u, settings)?
+        })
+    }
+
+    /// What it takes to go on later from the last accepted state.
+    pub fn memory(&self) -> Memory {
+        Memory {
+            reached: self.t,
+            pace: self.pace,
+            behind: self.behind.clone(),
+            velocity: self.velocity.clone(),
+        }
     }
 
     /// The last accepted state.

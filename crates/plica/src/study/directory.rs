@@ -1,6 +1,7 @@
 //! What a run leaves on disk.
 
-use super::{NamedMode, Row, SavedState, StudyError};
+use super::lock::{LOCK, Lock};
+use super::{Checkpoint, NamedMode, Plan, Row, SavedState, StudyError};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -16,6 +17,9 @@ use std::path::{Path, PathBuf};
 /// | `history.csv` | one row per accepted state, see [`Row`] |
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
 /// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
+/// | `checkpoint.safetensors`, `checkpoint-before.safetensors` | the last accepted state and the one before, with what it takes to go on, see [`Checkpoint`] |
+/// | `spare/` | states that are not saved, until pictures are drawn |
+/// | `lock` | held by the process that runs it |
 /// | `*.png` | pictures |
 /// | `pictures/` | states and paths drawn on request |
 /// | `report.html` | the run as a page, on request |
@@ -27,6 +31,8 @@ pub struct RunDirectory {
     path: PathBuf,
     case_hash: String,
     history: Option<csv::Writer<File>>,
+    /// Held by whoever writes a run.
+    lock: Option<Lock>,
 }
 
 /// What a manifest names as its program.
@@ -40,6 +46,14 @@ const HISTORY: &str = "history.csv";
 
 /// Name of the case as it was run.
 const CASE: &str = "case.toml";
+
+/// Folders of walls, of saved states, and of states that are kept only until pictures are drawn.
+const PROFILES: &str = "profiles";
+const STATES: &str = "states";
+const SPARE: &str = "spare";
+
+/// The newest checkpoint, and the one before it.
+const CHECKPOINTS: [&str; 2] = ["checkpoint.safetensors", "checkpoint-before.safetensors"];
 
 /// Ending of the files of saved states.
 const STATE_ENDING: &str = "safetensors";
@@ -61,7 +75,6 @@ impl RunDirectory {
                     if !overwrite {
                         return Err(StudyError::Occupied(path.to_owned()));
                     }
-                    clear(path)?;
                 }
             }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
@@ -69,16 +82,42 @@ impl RunDirectory {
             }
             Err(e) => return Err(trouble(e)),
         }
-        let directory = Self {
+        let lock = Some(Lock::take(path)?);
+        clear(path)?;
+        let mut directory = Self {
             path: path.to_owned(),
-            case_hash: blake3::hash(case_text.as_bytes()).to_string(),
+            case_hash: String::new(),
             history: None,
+            lock,
         };
-        // First of all, so that whatever becomes of the rest it is known as a run.
-        let begun = format!("{{ \"program\": \"{PROGRAM}\" }}\n");
-        directory.write(MANIFEST, begun.as_bytes())?;
-        directory.write(CASE, case_text.as_bytes())?;
+        directory.write_case(case_text)?;
         Ok(directory)
+    }
+
+    /// Writes the case, in the place of another if there is one.
+    pub fn write_case(&mut self, case_text: &str) -> Result<(), StudyError> {
+        // First of all the manifest, so that whatever becomes of the rest it is known as a run; and it holds no case to be another.
+        let mut about = match self.manifest() {
+            serde_json::Value::Object(about) => about,
+            _ => serde_json::Map::new(),
+        };
+        about.remove("case_hash");
+        about.insert("program".into(), PROGRAM.into());
+        self.write_manifest(&about)?;
+        self.write(CASE, case_text.as_bytes())?;
+        self.case_hash = blake3::hash(case_text.as_bytes()).to_string();
+        Ok(())
+    }
+
+    /// Takes it for this process, until it is dropped.
+    ///
+    /// # Errors
+    /// [`StudyError::Busy`] if another process has it.
+    pub fn own(&mut self) -> Result<(), StudyError> {
+        if self.lock.is_none() {
+            self.lock = Some(Lock::take(&self.path)?);
+        }
+        Ok(())
     }
 
     /// Opens the directory of a former run, finished or not.
@@ -113,6 +152,7 @@ impl RunDirectory {
             path: path.to_owned(),
             case_hash,
             history: None,
+            lock: None,
         })
     }
 
@@ -199,10 +239,7 @@ impl RunDirectory {
     /// # Errors
     /// [`StudyError::File`] if they cannot be listed; none are no error.
     pub fn states(&self) -> Result<Vec<PathBuf>, StudyError> {
-        Ok(self
-            .numbered("states", STATE_ENDING)?
-            .into_values()
-            .collect())
+        Ok(self.numbered(STATES, STATE_ENDING)?.into_values().collect())
     }
 
     /// The files `state-N` with an ending in a folder, by their numbers.
@@ -233,7 +270,7 @@ impl RunDirectory {
 
     /// The relative path of the file of a saved state, by the number of its row.
     pub fn name_of_state(row: usize) -> String {
-        format!("states/state-{row:04}.{STATE_ENDING}")
+        format!("{STATES}/state-{row:04}.{STATE_ENDING}")
     }
 
     /// Where it is.
@@ -262,7 +299,139 @@ impl RunDirectory {
         history
             .serialize(row)
             .map_err(|e| trouble(std::io::Error::other(e)))?;
-        history.flush().map_err(trouble)
+        history.flush().map_err(trouble)?;
+        // A checkpoint, which comes to the disk for certain, is of no use without its row.
+        history.get_ref().sync_data().map_err(trouble)
+    }
+
+    /// Makes a former history end with these rows, and goes on after them: files of later states go, too.
+    pub fn go_on_after(&mut self, rows: &[Row]) -> Result<(), StudyError> {
+        self.history = None;
+        let path = self.path.join(HISTORY);
+        let trouble = |source| StudyError::File {
+            path: path.clone(),
+            source,
+        };
+        let mut later = vec![];
+        for (folder, ending) in [
+            (PROFILES, "csv"),
+            (STATES, STATE_ENDING),
+            (SPARE, STATE_ENDING),
+        ] {
+            let beyond = |(number, file): (usize, PathBuf)| (number >= rows.len()).then_some(file);
+            later.extend(
+                self.numbered(folder, ending)?
+                    .into_iter()
+                    .filter_map(beyond),
+            );
+        }
+        remove(later)?;
+        if rows.is_empty() {
+            return remove(vec![path]);
+        }
+        let mut table = csv::Writer::from_writer(vec![]);
+        for row in rows {
+            let written = table.serialize(row);
+            written.map_err(|e| trouble(std::io::Error::other(e)))?;
+        }
+        let bytes = table.into_inner().map_err(|e| trouble(e.into_error()))?;
+        self.write(HISTORY, &bytes)?;
+        let file = File::options().append(true).open(&path).map_err(trouble)?;
+        let headless = csv::WriterBuilder::new()
+            .has_headers(false)
+            .from_writer(file);
+        self.history = Some(headless);
+        Ok(())
+    }
+
+    /// Leaves a checkpoint; the one before it is kept until this one is safe, and then still.
+    pub fn write_checkpoint(&self, checkpoint: Checkpoint) -> Result<(), StudyError> {
+        let [now, before] = CHECKPOINTS.map(|name| self.path.join(name));
+        let trouble = |source| StudyError::File {
+            path: now.clone(),
+            source,
+        };
+        let state = checkpoint.into_state();
+        let bytes = state.to_bytes().map_err(|source| StudyError::State {
+            path: now.clone(),
+            source,
+        })?;
+        match fs::rename(&now, &before) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(trouble(e)),
+            _ => {}
+        }
+        self.write(CHECKPOINTS[0], &bytes)
+    }
+
+    /// The checkpoint to go on from, and what is wrong with a newer one.
+    ///
+    /// # Errors
+    /// [`StudyError::NoCheckpoint`] if there is none that fits the plan and the rows.
+    pub fn checkpoint(
+        &self,
+        plan: &Plan,
+        rows: &[Row],
+    ) -> Result<(Checkpoint, Vec<String>), StudyError> {
+        let mut reasons = vec![];
+        for name in CHECKPOINTS {
+            let path = self.path.join(name);
+            if !path.exists() {
+                continue;
+            }
+            let read = SavedState::read(&path).and_then(Checkpoint::from_state);
+            match read.map_err(|error| error.to_string()) {
+                Ok(checkpoint) => match checkpoint.fits(plan, rows) {
+                    Ok(()) => return Ok((checkpoint, reasons)),
+                    Err(why) => reasons.push(format!("{name}: {why}")),
+                },
+                Err(why) => reasons.push(format!("{name}: {why}")),
+            }
+        }
+        if reasons.is_empty() {
+            reasons.push("it has left no checkpoint".into());
+        }
+        Err(StudyError::NoCheckpoint {
+            path: self.path.clone(),
+            reasons,
+        })
+    }
+
+    /// Whether it has left any checkpoint, sound or not.
+    pub fn has_checkpoint(&self) -> bool {
+        CHECKPOINTS.iter().any(|name| self.path.join(name).exists())
+    }
+
+    /// Takes out a newest checkpoint that is broken, lest it push out the one before it.
+    pub fn drop_newest_checkpoint(&self) -> Result<(), StudyError> {
+        remove(vec![self.path.join(CHECKPOINTS[0])])
+    }
+
+    /// Keeps a state that pictures may need and that is not among the saved ones.
+    pub fn write_spare(&self, state: &SavedState) -> Result<(), StudyError> {
+        let name = format!("{SPARE}/state-{:04}.{STATE_ENDING}", state.row);
+        let bytes = state.to_bytes().map_err(|source| StudyError::State {
+            path: self.path.join(&name),
+            source,
+        })?;
+        self.write(&name, &bytes)
+    }
+
+    /// A state by the number of its row, among the saved ones or else among the spare.
+    pub fn state(&self, row: usize) -> Result<SavedState, StudyError> {
+        let saved = self.path.join(Self::name_of_state(row));
+        let spare = self
+            .path
+            .join(format!("{SPARE}/state-{row:04}.{STATE_ENDING}"));
+        let path = if saved.exists() { saved } else { spare };
+        SavedState::read(&path).map_err(|source| StudyError::State { path, source })
+    }
+
+    /// Takes out what only a run that goes on needs.
+    pub fn tidy(&self) -> Result<(), StudyError> {
+        remove(self.numbered(SPARE, STATE_ENDING)?.into_values().collect())?;
+        // Empty by now; if not, it holds something that is not a run's.
+        let _ = fs::remove_dir(self.path.join(SPARE));
+        remove(vec![self.path.join(CHECKPOINTS[1])])
     }
 
     /// Writes `manifest.json`.
@@ -360,10 +529,15 @@ impl RunDirectory {
         }
         let aside = path.with_extension("part");
         let mut file = File::create(&aside).map_err(trouble)?;
-        file.write_all(bytes)
+        let written = file
+            .write_all(bytes)
             .and_then(|()| file.sync_all())
-            .map_err(trouble)?;
-        fs::rename(&aside, &path).map_err(trouble)
+            .and_then(|()| fs::rename(&aside, &path));
+        if written.is_err() {
+            // On a full disk it would only stand in the way.
+            let _ = fs::remove_file(&aside);
+        }
+        written.map_err(trouble)
     }
 }
 
@@ -381,7 +555,9 @@ fn is_a_run(path: &Path) -> bool {
 /// Whether a file is what is left of a run that could not even begin.
 fn is_left_over(file: &Path) -> bool {
     let name = file.file_name().and_then(|name| name.to_str());
-    ["manifest.part", "case.part"].map(Some).contains(&name)
+    ["manifest.part", "case.part", LOCK]
+        .map(Some)
+        .contains(&name)
 }
 
 /// Takes what a former run wrote out of its directory, known by name; every other file stays. The
@@ -390,15 +566,17 @@ fn clear(path: &Path) -> Result<(), StudyError> {
     let mut old = stability_files(path);
     let pictures = ["energy.png", "walls.png", "tube.png", "report.html"];
     old.extend(
-        [CASE, HISTORY]
+        [CASE, HISTORY, "history.part", "checkpoint.part"]
             .iter()
+            .chain(&CHECKPOINTS)
             .chain(&pictures)
             .map(|name| path.join(name)),
     );
     old.extend(modes(&path.join("imperfections")));
     for (folder, ending) in [
-        ("profiles", "csv"),
-        ("states", STATE_ENDING),
+        (PROFILES, "csv"),
+        (STATES, STATE_ENDING),
+        (SPARE, STATE_ENDING),
         ("vtk/walls", "vtp"),
         ("vtk/volume", "vtu"),
         ("vtk/linear", "vtu"),

@@ -26,6 +26,29 @@ pub enum StudyError {
     /// The directory holds a run already.
     #[error("{} holds a run already; give another directory with --out, or --overwrite it", .0.display())]
     Occupied(PathBuf),
+    /// Another process is at work in the directory.
+    #[error(
+        "another plica is at work in {} ({owner}); wait for it, end it, or give another directory with --out",
+        path.display()
+    )]
+    Busy {
+        /// The directory.
+        path: PathBuf,
+        /// What the other has told of itself.
+        owner: String,
+    },
+    /// The run has left nothing to go on from.
+    #[error(
+        "{}: nothing to go on from ({}); run the case again with --overwrite",
+        path.display(),
+        reasons.join("; ")
+    )]
+    NoCheckpoint {
+        /// The directory.
+        path: PathBuf,
+        /// What is wrong with its checkpoints.
+        reasons: Vec<String>,
+    },
     /// The directory holds something that is not a run.
     #[error(
         "{} is not empty and holds no former run, so nothing in it is touched (not even with \

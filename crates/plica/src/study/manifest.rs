@@ -33,6 +33,9 @@ pub struct Manifest {
     pub stress_unit: String,
     /// Seconds since 1970 at the start.
     pub started_unix: u64,
+    /// Seconds since 1970 at which it was taken up again, each time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub resumed_unix: Vec<u64>,
     /// Seconds since 1970 at the end; none while it runs.
     pub ended_unix: Option<u64>,
     /// running, complete, stopped or lost.
@@ -64,12 +67,29 @@ impl Manifest {
             energy_unit: scale.energy_name,
             stress_unit: scale.stress_name,
             started_unix: now(),
+            resumed_unix: vec![],
             ended_unix: None,
             verdict: "running".into(),
             verdict_text: "the run has not ended (or was killed)".into(),
             states: 0,
             states_out_of_equilibrium: 0,
             states_unstable: 0,
+        }
+    }
+
+    /// Where a run is taken up again.
+    pub fn again(plan: &Plan, directory: &RunDirectory) -> Self {
+        let begun = Self::begin(plan, directory);
+        let before = directory.manifest();
+        let times = before["resumed_unix"].as_array().into_iter().flatten();
+        let mut resumed_unix: Vec<u64> = times.filter_map(serde_json::Value::as_u64).collect();
+        resumed_unix.push(begun.started_unix);
+        Self {
+            started_unix: before["started_unix"]
+                .as_u64()
+                .unwrap_or(begun.started_unix),
+            resumed_unix,
+            ..begun
         }
     }
 

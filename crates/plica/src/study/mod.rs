@@ -1,5 +1,6 @@
 //! A study: a tube led through stages of load, state by accepted state, into a run directory.
 
+mod checkpoint;
 mod directory;
 mod error;
 mod findings;
@@ -9,7 +10,9 @@ mod forecast;
 mod harmonic_tangent;
 mod harmonics;
 mod history;
+mod kept;
 mod layout;
+mod lock;
 mod lowest_modes;
 mod manifest;
 mod mode;
@@ -24,19 +27,21 @@ mod stability;
 mod summary;
 mod units;
 
+pub use checkpoint::Checkpoint;
 pub use directory::RunDirectory;
 pub use error::StudyError;
 pub use findings::Findings;
 pub use forecast::{Forecast, forecast};
 pub use harmonics::{effect, named};
 pub use history::Row;
+pub use kept::kept;
 pub use layout::Layout;
 pub use mode::NamedMode;
 pub use observer::Observer;
 pub use plan::{Output, Plan, Stage, Start, Units};
 pub use problem::TubeProblem;
 pub use prolong::prolong;
-pub use run::{fits, folded, run};
+pub use run::{fits, folded, resume, run};
 pub use saved_state::{Array, SavedState, SavedStateError};
 pub use summary::{Ending, Snapshot, Summary};
 pub use units::Scale;

@@ -1,11 +1,12 @@
 //! Leads a tube through its stages and writes down every accepted state.
 
+use super::checkpoint::Digest;
 use super::manifest::Manifest;
 use super::stability::unstable_harmonics;
 use super::summary::{Ending, Summary};
 use super::units::Scale;
 use super::{
-    Layout, Observer, Plan, Row, RunDirectory, SavedState, Snapshot, Start, StudyError,
+    Checkpoint, Layout, Observer, Plan, Row, RunDirectory, SavedState, Snapshot, Start, StudyError,
     TubeProblem, forecast, prolong,
 };
 use crate::assembly::{Inverted, SplineTube};
@@ -25,16 +26,86 @@ pub fn run(
     observer: &mut dyn Observer,
 ) -> Result<Summary, StudyError> {
     fits(plan)?;
-    let mut manifest = Manifest::begin(plan, directory);
+    directory.own()?;
+    let manifest = Manifest::begin(plan, directory);
     directory.write_manifest(&manifest)?;
     for mode in &plan.modes {
         directory.write_imperfection(mode)?;
     }
+    lead(plan, directory, observer, manifest, None)
+}
 
+/// Takes up a run where it was left: by its last checkpoint, or the one before where that is broken. What was computed beyond it
+/// is computed again. The end is that of a run which was never interrupted, to the bit.
+///
+/// The plan may differ from the one that was begun in what [`kept`] allows. A run that has come to no state begins.
+///
+/// # Errors
+/// [`StudyError::NoCheckpoint`] if it has left none that fits; else as [`run`].
+pub fn resume(
+    plan: &Plan,
+    directory: &mut RunDirectory,
+    observer: &mut dyn Observer,
+) -> Result<Summary, StudyError> {
+    fits(plan)?;
+    directory.own()?;
+    let rows = match directory.history_so_far() {
+        Ok((rows, _)) => rows,
+        // Killed before its first state was written down.
+        Err(_) if !directory.has_checkpoint() => vec![],
+        Err(error) => return Err(error),
+    };
+    if rows.is_empty() && !directory.has_checkpoint() {
+        observer.noticed("the run had come to no state; it begins");
+        directory.go_on_after(&[])?;
+        return run(plan, directory, observer);
+    }
+    let (checkpoint, broken) = directory.checkpoint(plan, &rows)?;
+    for why in &broken {
+        observer.noticed(&format!(
+            "not used: {why}; going on from the checkpoint before"
+        ));
+    }
+    if !broken.is_empty() {
+        directory.drop_newest_checkpoint()?;
+    }
+    let rows = rows[..=checkpoint.state.row].to_vec();
+    observer.noticed(&format!("going on from state {}", checkpoint.state.row));
+    let manifest = Manifest::again(plan, directory);
+    directory.write_manifest(&manifest)?;
+    directory.go_on_after(&rows)?;
+    lead(
+        plan,
+        directory,
+        observer,
+        manifest,
+        Some((checkpoint, rows)),
+    )
+}
+
+/// Leads a tube to the end, from the beginning or from a checkpoint that its rows end with.
+fn lead(
+    plan: &Plan,
+    directory: &mut RunDirectory,
+    observer: &mut dyn Observer,
+    mut manifest: Manifest,
+    from: Option<(Checkpoint, Vec<Row>)>,
+) -> Result<Summary, StudyError> {
     let rings = plan.mesh.rings(plan.symmetry);
     let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
     let mut record = Record::new(plan, &problem, directory);
-    let ending = follow(plan, &problem, &mut record, observer)?;
+    let begun = match from {
+        None => begin(plan, &problem, &mut record, observer)?.map(|path| (path, None)),
+        Some((checkpoint, rows)) => {
+            record.restore(rows, observer);
+            let stage = checkpoint.stage;
+            Ok((take_up(plan, &problem, checkpoint), stage))
+        }
+    };
+    let ending = match begun {
+        Ok((path, stage)) => follow(plan, path, stage, &mut record, observer)?,
+        Err(ending) => ending,
+    };
     let Record {
         rows, snapshots, ..
     } = record;
@@ -50,23 +121,62 @@ pub fn run(
     ))
 }
 
-/// Stage after stage, step after step.
+/// The path at a checkpoint of a plan.
+fn take_up<'a>(
+    plan: &Plan,
+    problem: &'a TubeProblem,
+    checkpoint: Checkpoint,
+) -> Path<'a, TubeProblem> {
+    let Checkpoint {
+        state,
+        stage,
+        memory,
+        ..
+    } = checkpoint;
+    let first = || {
+        plan.start
+            .as_ref()
+            .map_or(plan.tube.rest(), |start| start.load.clone())
+    };
+    let end = |stage: usize| plan.stages[stage].load.clone();
+    let leg = match stage {
+        None => [first(), first()],
+        Some(0) => [first(), end(0)],
+        Some(stage) => [end(stage - 1), end(stage)],
+    };
+    match Path::go_on(
+        problem,
+        leg,
+        state.load,
+        state.u,
+        memory,
+        plan.solver.clone(),
+    ) {
+        Ok(path) => path,
+        Err(broken) => unreachable!("a state that was accepted is not inverted: {broken}"),
+    }
+}
+
+/// Stage after stage, step after step; the path may be on its way through one already.
 fn follow(
     plan: &Plan,
-    problem: &TubeProblem,
+    mut path: Path<'_, TubeProblem>,
+    within: Option<usize>,
     record: &mut Record<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Ending, StudyError> {
-    let mut path = match begin(plan, problem, record, observer)? {
-        Ok(path) => path,
-        Err(ending) => return Ok(ending),
-    };
-
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
-    let mut done = 0;
-    for stage in &plan.stages {
-        path.set_out(stage.load.clone());
-        for n in 1..=stage.steps {
+    let steps_before = |stage: usize| plan.stages[..stage].iter().map(|stage| stage.steps).sum();
+    for (k, stage) in plan.stages.iter().enumerate().skip(within.unwrap_or(0)) {
+        let mut behind = 0;
+        if within == Some(k) {
+            behind = steps_behind(stage.steps, path.reached());
+        } else {
+            path.set_out(stage.load.clone());
+        }
+        let before: usize = steps_before(k);
+        for n in behind + 1..=stage.steps {
+            let done = before + n - 1;
             let mut watch = Relay {
                 observer: &mut *observer,
                 what: format!("{}, step {n} of {}", stage.name, stage.steps),
@@ -77,7 +187,8 @@ fn follow(
             let from = path.reached();
             match path.advance(n as f64 / stage.steps as f64, &mut watch) {
                 Ok(step) => {
-                    record.accept(&stage.name, &mut path, &step, n == stage.steps, observer)?
+                    record.accept(&stage.name, &mut path, &step, n == stage.steps, observer)?;
+                    record.leave_checkpoint(Some(k), &path, observer)?;
                 }
                 Err(error) => {
                     // What was reached on the way is a good state too.
@@ -94,13 +205,18 @@ fn follow(
                     });
                 }
             }
-            done += 1;
-            if observer.stop() && done < states {
+            if observer.stop() && done + 1 < states {
                 return Ok(Ending::Stopped);
             }
         }
     }
     Ok(Ending::Complete)
+}
+
+/// How many of a stage's equal steps lie behind a place along it.
+fn steps_behind(steps: usize, reached: f64) -> usize {
+    let behind = |n: &usize| *n as f64 / steps as f64 <= reached;
+    (1..=steps).take_while(behind).count()
 }
 
 /// The path at its first state: at rest, or at the state that the plan starts from, on this mesh and
@@ -142,6 +258,7 @@ fn begin<'a>(
             }
         }
         record.accept("rest", &mut path, &step, true, observer)?;
+        record.leave_checkpoint(None, &path, observer)?;
         return Ok(Ok(path));
     };
     let mut watch = Relay::new(observer, START);
@@ -155,6 +272,7 @@ fn begin<'a>(
         Err(broken) => unreachable!("a state in equilibrium is not inverted: {broken}"),
     };
     record.accept(START, &mut path, &step, true, observer)?;
+    record.leave_checkpoint(None, &path, observer)?;
     Ok(Ok(path))
 }
 
@@ -257,7 +375,10 @@ struct Record<'a> {
     directory: &'a mut RunDirectory,
     scale: Scale,
     rows: Vec<Row>,
+    digest: Digest,
     snapshots: Vec<Snapshot>,
+    /// Whether snapshots are taken.
+    draws: bool,
     since: Instant,
 }
 
@@ -271,7 +392,9 @@ impl<'a> Record<'a> {
             directory,
             scale,
             rows: vec![],
+            digest: Digest::default(),
             snapshots: vec![],
+            draws: plan.output.pictures,
             since,
         }
     }
@@ -347,15 +470,18 @@ impl<'a> Record<'a> {
         }
         let every = self.plan.output.states_every;
         if every > 0 && (last || row.step.is_multiple_of(every)) {
-            self.write_state(&row, path)?;
+            self.directory.write_state(&self.saved(&row, path))?;
+        } else if self.draws {
+            self.directory.write_spare(&self.saved(&row, path))?;
         }
-        if self.plan.output.pictures {
+        if self.draws {
             self.snapshots.push(Snapshot {
                 load: state.load.clone(),
                 u: state.u.clone(),
             });
         }
         observer.accepted(&row);
+        self.digest.add(&row);
         self.rows.push(row);
         self.since = Instant::now();
         Ok(())
@@ -368,9 +494,48 @@ impl<'a> Record<'a> {
         if energy.abs() < rounding { 0.0 } else { energy }
     }
 
-    fn write_state(&self, row: &Row, path: &Path<'_, TubeProblem>) -> Result<(), StudyError> {
+    /// What was accepted before the run was left.
+    fn restore(&mut self, rows: Vec<Row>, observer: &mut dyn Observer) {
+        if self.plan.output.pictures {
+            let states = rows.iter().map(|row| self.directory.state(row.step));
+            let states: Result<Vec<SavedState>, StudyError> = states.collect();
+            match states {
+                Ok(states) => {
+                    let snapshot = |SavedState { load, u, .. }| Snapshot { load, u };
+                    self.snapshots = states.into_iter().map(snapshot).collect();
+                }
+                Err(error) => {
+                    self.draws = false;
+                    observer.noticed(&format!("there will be no pictures: {error}"));
+                }
+            }
+        }
+        self.digest = Digest::of(&rows);
+        self.rows = rows;
+    }
+
+    /// Leaves what it takes to go on from the last accepted state, in a stage or before the first. Not where someone has asked
+    /// to stop: what was to be found out about the state may have been cut short.
+    fn leave_checkpoint(
+        &self,
+        stage: Option<usize>,
+        path: &Path<'_, TubeProblem>,
+        observer: &mut dyn Observer,
+    ) -> Result<(), StudyError> {
+        let Some(row) = self.rows.last().filter(|_| !observer.stop()) else {
+            return Ok(());
+        };
+        self.directory.write_checkpoint(Checkpoint {
+            state: self.saved(row, path),
+            stage,
+            memory: path.memory(),
+            history: self.digest.finish(),
+        })
+    }
+
+    fn saved(&self, row: &Row, path: &Path<'_, TubeProblem>) -> SavedState {
         let muscles = self.plan.tube.muscles.iter();
-        self.directory.write_state(&SavedState {
+        SavedState {
             stage: row.stage.clone(),
             row: row.step,
             along: path.reached(),
@@ -379,7 +544,7 @@ impl<'a> Record<'a> {
             layout: Layout::of(self.plan),
             u: path.state().u.clone(),
             arrays: BTreeMap::new(),
-        })
+        }
     }
 
     /// The walls of a state: one meridian, or where they differ those at crest and trough.
