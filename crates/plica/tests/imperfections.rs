@@ -21,8 +21,11 @@ fn waves(name: &str, case: &str, n: usize) -> Vec<(f64, [f64; 2])> {
     let summary = study::run(&plan, &mut directory, &mut Nobody).unwrap();
     std::fs::remove_dir_all(&path).unwrap();
     assert!(summary.finished(), "{}", summary.ending());
-    let rest = &summary.snapshots()[0].u;
-    let states = summary.rows().iter().zip(summary.snapshots());
+    let rest = &summary.snapshots()[0].as_ref().unwrap().u;
+    let states = summary
+        .rows()
+        .iter()
+        .zip(summary.snapshots().iter().flatten());
     states
         .map(|(row, state)| {
             let moved: Vec<f64> = state.u.iter().zip(rest).map(|(u, r)| u - r).collect();

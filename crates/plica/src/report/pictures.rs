@@ -17,7 +17,8 @@ const ALONG: usize = 300;
 /// How a picture comes about.
 type Drawing<'a> = dyn Fn() -> Result<Vec<u8>, DrawError> + Sync + 'a;
 
-/// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots.
+/// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots; of a chosen state without one no more
+/// than its energy.
 ///
 /// - `energy.png`: strain energy along the path;
 /// - `walls.png`: outer and inner wall at chosen states;
@@ -30,11 +31,11 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
     let story = Story::of(summary);
     let state = |row: &&Row| {
-        let Snapshot { load, u } = &summary.snapshots()[row.step];
+        let Snapshot { load, u } = summary.snapshots()[row.step].as_ref()?;
         let label = label(&story, row);
-        Wall { label, load, u }
+        Some(Wall { label, load, u })
     };
-    let chosen: Vec<Wall<'_>> = story.chosen.iter().map(state).collect();
+    let chosen: Vec<Wall<'_>> = story.chosen.iter().filter_map(state).collect();
     let upwards = departure(&tube, &chosen).crest;
     let drawings: [(&str, &Drawing<'_>); 3] = [
         ("energy.png", &|| energy(plan, summary, &story).png(WIDTH)),

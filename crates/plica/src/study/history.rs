@@ -89,6 +89,21 @@ pub struct Row {
 }
 
 impl Row {
+    /// The same with numbers for pressures, if the case has come to have some.
+    #[must_use]
+    pub fn pressed(mut self) -> Self {
+        for pressure in [
+            &mut self.inner_pressure,
+            &mut self.outer_pressure,
+            &mut self.inner_dead_pressure,
+            &mut self.outer_dead_pressure,
+        ] {
+            pressure.get_or_insert(0.0);
+        }
+        self.potential.get_or_insert(self.energy);
+        self
+    }
+
     /// The harmonics it is unstable to, as the column names them: numbers, `any`, or `unknown`; none if it is stable.
     pub fn lost_harmonics(&self) -> impl Iterator<Item = &str> {
         let all = self.unstable_harmonics.split(' ');

@@ -38,7 +38,7 @@ pub fn run(
 /// Takes up a run where it was left: by its last checkpoint, or the one before where that is broken. What was computed beyond it
 /// is computed again. The end is that of a run which was never interrupted, to the bit.
 ///
-/// The plan may differ from the one that was begun in what [`kept`] allows. A run that has come to no state begins.
+/// The plan may differ from the one that was begun in what [`super::kept`] allows. A run that had hardly begun begins again.
 ///
 /// # Errors
 /// [`StudyError::NoCheckpoint`] if it has left none that fits; else as [`run`].
@@ -55,8 +55,9 @@ pub fn resume(
         Err(_) if !directory.has_checkpoint() => vec![],
         Err(error) => return Err(error),
     };
-    if rows.is_empty() && !directory.has_checkpoint() {
-        observer.noticed("the run had come to no state; it begins");
+    // A run that ended before its first checkpoint has one state at most.
+    if rows.len() <= 1 && !directory.has_checkpoint() {
+        observer.noticed("the run had hardly begun; it begins again");
         directory.go_on_after(&[])?;
         return run(plan, directory, observer);
     }
@@ -69,7 +70,10 @@ pub fn resume(
     if !broken.is_empty() {
         directory.drop_newest_checkpoint()?;
     }
-    let rows = rows[..=checkpoint.state.row].to_vec();
+    let mut rows = rows[..=checkpoint.state.row].to_vec();
+    if plan.is_pressed() {
+        rows = rows.into_iter().map(Row::pressed).collect();
+    }
     observer.noticed(&format!("going on from state {}", checkpoint.state.row));
     let manifest = Manifest::again(plan, directory);
     directory.write_manifest(&manifest)?;
@@ -376,9 +380,7 @@ struct Record<'a> {
     scale: Scale,
     rows: Vec<Row>,
     digest: Digest,
-    snapshots: Vec<Snapshot>,
-    /// Whether snapshots are taken.
-    draws: bool,
+    snapshots: Vec<Option<Snapshot>>,
     since: Instant,
 }
 
@@ -394,7 +396,6 @@ impl<'a> Record<'a> {
             rows: vec![],
             digest: Digest::default(),
             snapshots: vec![],
-            draws: plan.output.pictures,
             since,
         }
     }
@@ -418,7 +419,10 @@ impl<'a> Record<'a> {
         };
         let measures = Measures::of(tube, &state.load, &state.u);
         let (length, energy) = (self.scale.length, self.scale.energy);
-        let (pressed, [inner, outer]) = (self.plan.is_pressed(), state.load.pressures);
+        let [inner, outer] = state.load.pressures;
+        // All rows have the same columns.
+        let of_rows = self.rows.first().map(|row| row.potential.is_some());
+        let pressed = of_rows.unwrap_or(self.plan.is_pressed());
         let pressure = |p: f64| pressed.then_some(self.scale.stress * p);
         let row = Row {
             step: self.rows.len(),
@@ -471,14 +475,14 @@ impl<'a> Record<'a> {
         let every = self.plan.output.states_every;
         if every > 0 && (last || row.step.is_multiple_of(every)) {
             self.directory.write_state(&self.saved(&row, path))?;
-        } else if self.draws {
+        } else if self.plan.output.pictures {
             self.directory.write_spare(&self.saved(&row, path))?;
         }
-        if self.draws {
-            self.snapshots.push(Snapshot {
+        if self.plan.output.pictures {
+            self.snapshots.push(Some(Snapshot {
                 load: state.load.clone(),
                 u: state.u.clone(),
-            });
+            }));
         }
         observer.accepted(&row);
         self.digest.add(&row);
@@ -497,17 +501,17 @@ impl<'a> Record<'a> {
     /// What was accepted before the run was left.
     fn restore(&mut self, rows: Vec<Row>, observer: &mut dyn Observer) {
         if self.plan.output.pictures {
-            let states = rows.iter().map(|row| self.directory.state(row.step));
-            let states: Result<Vec<SavedState>, StudyError> = states.collect();
-            match states {
-                Ok(states) => {
-                    let snapshot = |SavedState { load, u, .. }| Snapshot { load, u };
-                    self.snapshots = states.into_iter().map(snapshot).collect();
-                }
-                Err(error) => {
-                    self.draws = false;
-                    observer.noticed(&format!("there will be no pictures: {error}"));
-                }
+            let snapshot = |row: &Row| {
+                let SavedState { load, u, .. } = self.directory.state(row.step).ok()?;
+                Some(Snapshot { load, u })
+            };
+            self.snapshots = rows.iter().map(snapshot).collect();
+            let missing = self.snapshots.iter().filter(|one| one.is_none()).count();
+            if missing > 0 {
+                observer.noticed(&format!(
+                    "{missing} of {} states so far are not saved, and cannot be drawn",
+                    rows.len()
+                ));
             }
         }
         self.digest = Digest::of(&rows);

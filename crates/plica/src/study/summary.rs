@@ -63,7 +63,7 @@ pub struct Snapshot {
 #[derive(Clone, Debug)]
 pub struct Summary {
     rows: Vec<Row>,
-    snapshots: Vec<Snapshot>,
+    snapshots: Vec<Option<Snapshot>>,
     ending: Ending,
     scale: Scale,
     directory: PathBuf,
@@ -74,7 +74,7 @@ impl Summary {
     pub fn new(
         plan: &Plan,
         rows: Vec<Row>,
-        snapshots: Vec<Snapshot>,
+        snapshots: Vec<Option<Snapshot>>,
         ending: Ending,
         directory: &Path,
     ) -> Self {
@@ -103,8 +103,9 @@ impl Summary {
         &self.rows
     }
 
-    /// The accepted states in full, one per row; none if the case wants no pictures.
-    pub fn snapshots(&self) -> &[Snapshot] {
+    /// The accepted states in full, one per row, none of what a run that was taken up again could not read back; nothing at all if
+    /// the case wants no pictures.
+    pub fn snapshots(&self) -> &[Option<Snapshot>] {
         &self.snapshots
     }
 
