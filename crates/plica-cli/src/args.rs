@@ -112,7 +112,7 @@ pub struct StabilityArguments {
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=50))]
     pub modes: Option<u8>,
     /// Three-dimensional runs: number of a state to look at; may be given again [default: all saved]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_delimiter = ',')]
     pub state: Vec<usize>,
     /// Threads to use [default: all cores]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -152,7 +152,7 @@ pub struct PlotArguments {
     #[arg(long, value_name = "COLUMN")]
     pub along: Option<String>,
     /// For walls: number of a state; may be given again [default: the last]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_delimiter = ',')]
     pub state: Vec<usize>,
     /// Width of the PNG in pixels
     #[arg(long, value_name = "PX", default_value = "1800", value_parser = clap::value_parser!(u16).range(600..=8000))]
@@ -206,7 +206,7 @@ pub struct ExportArguments {
     #[arg(value_name = "RUN_DIR")]
     pub run: PathBuf,
     /// Number of a state whose volume is written; may be given again [default: the last saved]
-    #[arg(long, value_name = "N", conflicts_with = "all")]
+    #[arg(long, value_name = "N", value_delimiter = ',', conflicts_with = "all")]
     pub state: Vec<usize>,
     /// Write the volume of every saved state
     #[arg(long)]
@@ -229,7 +229,7 @@ pub struct RenderArguments {
     #[arg(value_name = "RUN_DIR")]
     pub run: PathBuf,
     /// Number of a state to draw; given again, they stand one below the other [default: the last saved]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_delimiter = ',')]
     pub state: Vec<usize>,
     /// How it is drawn
     #[command(flatten)]
@@ -464,7 +464,7 @@ Columns that can be plotted are those that the run has of: length_ratio, diamete
 colon_twist_deg, ileum_twist_deg, inner_pressure, outer_pressure, inner_dead_pressure, outer_dead_pressure, energy, potential, max_wall_angle_deg, overhang, outer_radius_min, flatness, gap, lumen,
 departure, min_det_fe, drag_work, residual, iterations; docs/run-directory.md tells what they are.
 
-Texts of an SVG stay texts, to be edited and set in a journal's font.";
+Texts of an SVG stay texts, to be found and edited.";
 
 const REPORT_EPILOGUE: &str = "\
 The page needs nothing else: it opens from disk, goes by mail, and keeps beside a paper. It holds the tube in three

@@ -81,10 +81,13 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
             arguments.run.join(collection_of(*what)).display()
         );
     }
-    if let Some(bytes) = film {
+    if let Some((states, bytes)) = film {
         let path = arguments.run.join(FILM);
         let size = bytes as f64 * 1e-6;
-        text += &format!("all states: {size:.1} MB; open {}\n", path.display());
+        text += &format!(
+            "{states} states in one file: {size:.1} MB; open {}\n",
+            path.display()
+        );
     }
     console::say(&text)?;
     let others = bad.len().saturating_sub(1);
@@ -107,13 +110,14 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
 /// The walls of all states in one file.
 const FILM: &str = "vtk/walls.vtkhdf";
 
-/// Writes the walls of all states as one file; its bytes, or none if it was not to go on.
+/// Writes the walls of all states as one file; its states and bytes, or none if there is no state or it was not to go on.
 fn film(
     run: &Finished,
     exporter: &Exporter,
     ticker: &mut Ticker,
-) -> Result<Option<usize>, Failure> {
+) -> Result<Option<(usize, usize)>, Failure> {
     let mut movie = exporter.movie();
+    let mut states = 0;
     for (done, &state) in run.saved.keys().enumerate() {
         if ticker.stop() {
             return Ok(None);
@@ -123,12 +127,16 @@ fn film(
         // A bad one is told of by its own file.
         if let Ok((state, _)) = run.state(state) {
             exporter.film(&mut movie, &state);
+            states += 1;
         }
+    }
+    if states == 0 {
+        return Ok(None);
     }
     let trouble = |what: String| Failure::Files(format!("{FILM}: {what}"));
     let bytes = movie.bytes().map_err(trouble)?;
     run.directory.write(FILM, &bytes).map_err(Failure::Study)?;
-    Ok(Some(bytes.len()))
+    Ok(Some((states, bytes.len())))
 }
 
 /// What it takes to write a file, and what is written.

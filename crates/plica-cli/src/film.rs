@@ -28,15 +28,15 @@ pub fn possible(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// An animated PNG as the bytes of a film; by way of two files beside the one that it is to be, as neither format can be read
+/// An animated PNG as the bytes of a film, whose last picture stays for so many seconds more; by way of two files beside the one that it is to be, as neither format can be read
 /// or written without going back.
-pub fn of(apng: &[u8], path: &Path) -> Result<Vec<u8>, Failure> {
+pub fn of(apng: &[u8], path: &Path, rest: f64) -> Result<Vec<u8>, Failure> {
     let aside = [
         path.with_extension("part.apng"),
         path.with_extension("part.mp4"),
     ];
-    let film =
-        made(apng, &aside).map_err(|what| Failure::Files(format!("{}: {what}", path.display())));
+    let film = made(apng, &aside, rest)
+        .map_err(|what| Failure::Files(format!("{}: {what}", path.display())));
     for file in &aside {
         // What was not made need not be removed.
         let _ = std::fs::remove_file(file);
@@ -44,13 +44,16 @@ pub fn of(apng: &[u8], path: &Path) -> Result<Vec<u8>, Failure> {
     film
 }
 
-fn made(apng: &[u8], [from, to]: &[PathBuf; 2]) -> Result<Vec<u8>, String> {
+fn made(apng: &[u8], [from, to]: &[PathBuf; 2], rest: f64) -> Result<Vec<u8>, String> {
     std::fs::write(from, apng).map_err(|error| error.to_string())?;
     let output = Command::new(FFMPEG)
         .args(["-loglevel", "error", "-y", "-i"])
         .arg(from)
         // Every player knows H.264 in this form, which takes even sides.
-        .args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white"])
+        .arg("-vf")
+        .arg(format!(
+            "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white,tpad=stop_mode=clone:stop_duration={rest:.3}"
+        ))
         .args(["-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p"])
         .arg(to)
         .stdin(Stdio::null())

@@ -9,8 +9,19 @@ use std::path::{Path, PathBuf};
 
 /// Refuses to write to a file that does not end as what is written does, lest something else is written over.
 pub fn endings(path: &Path, endings: &[&str]) -> Result<(), Failure> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        return Err(Failure::Files(format!(
+            "--out {}: there is no folder {}",
+            path.display(),
+            folder.display()
+        )));
+    }
     let ending = path.extension().and_then(|ending| ending.to_str());
-    if ending.is_some_and(|ending| endings.contains(&ending)) {
+    let is = |wanted: &&str| ending.is_some_and(|ending| ending.eq_ignore_ascii_case(wanted));
+    if endings.iter().any(|wanted| is(&wanted)) {
         return Ok(());
     }
     let named: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
@@ -39,7 +50,7 @@ impl Finished {
     /// Opens the directory of a run.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let directory = RunDirectory::open(path).map_err(Failure::Study)?;
-        let saved = directory
+        let mut saved = directory
             .numbered("states", "safetensors")
             .map_err(Failure::Study)?;
         let plan = case_file::of_run(&directory)?;
@@ -50,6 +61,9 @@ impl Finished {
                 path.display()
             )));
         }
+        // Of what has no row nothing could be said.
+        let last = rows[rows.len() - 1].step;
+        saved.retain(|&number, _| number <= last);
         let broken = broken.map(|why| {
             format!(
                 "{} beyond state {}: {why}",

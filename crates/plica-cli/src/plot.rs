@@ -3,12 +3,16 @@
 use crate::args::PlotArguments;
 use crate::failure::Failure;
 use crate::finished::{Finished, endings};
+use crate::render::trouble;
 use plica::draw::Chart;
 use plica::report::{self, Column, Shown};
 use plica::study::Scale;
 
 /// What is plotted of states themselves.
 const WALLS: &str = "walls";
+
+/// The most states whose walls have colours of their own.
+const MOST: usize = 6;
 
 /// Plots numbers or walls of a run.
 pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
@@ -22,15 +26,26 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
         Some(path) => {
             endings(path, &["svg", "png"])?;
             path.extension()
-                .map(|ending| ending.to_string_lossy().into_owned())
+                .map(|ending| ending.to_string_lossy().to_ascii_lowercase())
         }
     };
+    let walls = arguments.what.iter().any(|what| what == WALLS);
+    let columns = arguments.what.iter().any(|what| what != WALLS);
+    if arguments.along.is_some() && !columns {
+        return Err(Failure::Usage(
+            "--along goes with columns, and not with walls".into(),
+        ));
+    }
+    if !arguments.state.is_empty() && !walls {
+        return Err(Failure::Usage(
+            "--state goes with walls, and not with columns".into(),
+        ));
+    }
     let run = Finished::open(&arguments.run)?;
     run.has(&arguments.state)?;
     let charts: Result<Vec<(String, Chart)>, Failure> = (arguments.what.iter())
         .map(|what| chart(&run, arguments, what))
         .collect();
-    let trouble = |error: plica::draw::DrawError| Failure::Usage(error.to_string());
     for (name, chart) in charts? {
         if ending.as_deref() != Some("png") {
             let svg = chart.svg().map_err(trouble)?;
@@ -55,6 +70,12 @@ fn chart(
     what: &str,
 ) -> Result<(String, Chart), Failure> {
     if what == WALLS {
+        if arguments.state.len() > MOST {
+            return Err(Failure::Usage(format!(
+                "walls of {} states in one plot are too many to tell apart; {MOST} at most",
+                arguments.state.len()
+            )));
+        }
         let numbers = match arguments.state.as_slice() {
             [] => vec![run.last()?],
             states => states.to_vec(),

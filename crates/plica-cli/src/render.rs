@@ -5,9 +5,9 @@ use crate::failure::Failure;
 use crate::film;
 use crate::finished::{Finished, endings};
 use crate::interrupt::Interrupt;
-use crate::threads;
 use crate::ticker::Ticker;
-use plica::draw::DrawError;
+use crate::{console, threads};
+use plica::draw::{DrawError, REST};
 use plica::report::{self, Appearance, Field, Shown};
 use std::sync::Mutex;
 
@@ -69,8 +69,14 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     let numbers: Vec<usize> = run.saved.keys().copied().collect();
-    let states: Result<Vec<Shown>, Failure> = numbers.iter().map(|&n| run.state(n)).collect();
-    let states = states?;
+    // A bad one is no reason to keep back the others.
+    let mut states: Vec<Shown> = vec![];
+    for &number in &numbers {
+        match run.try_state(number) {
+            Ok(shown) => states.push(shown),
+            Err(why) => console::tell(&format!("warning: left out: {why}")),
+        }
+    }
     let ticker = Mutex::new(Ticker::new(interrupt));
     let told = |done: usize| {
         let mut ticker = ticker.lock().unwrap_or_else(|e| e.into_inner());
@@ -86,7 +92,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
     match drawn.map_err(trouble)? {
         Some(bytes) => {
             let bytes = match film {
-                Some(path) => film::of(&bytes, path)?,
+                Some(path) => film::of(&bytes, path, seconds * (REST - 1.0))?,
                 None => bytes,
             };
             let usual = format!("{}-path.apng", look.field.name());
@@ -112,6 +118,13 @@ fn appearance(arguments: &LookArguments) -> Appearance {
     }
 }
 
-fn trouble(error: DrawError) -> Failure {
-    Failure::Usage(error.to_string())
+/// Why a picture could not be drawn: by what was asked for, or by a fault of the program.
+pub fn trouble(error: DrawError) -> Failure {
+    match error {
+        DrawError::Backend(_) | DrawError::Grid { .. } => Failure::Fault(error.to_string()),
+        DrawError::Size { .. } => Failure::Usage(format!(
+            "{error}; ask for fewer states, or a smaller --width"
+        )),
+        _ => Failure::Usage(error.to_string()),
+    }
 }

@@ -3,34 +3,46 @@
 use super::{DrawError, Image};
 
 /// How much longer than the others the last picture stays.
-const REST: f64 = 8.0;
+pub const REST: f64 = 8.0;
 
-/// The bytes of an animated PNG that begins anew again and again, each picture shown for so many seconds.
+/// The bytes of an animated PNG of so many pictures that begins anew again and again, each shown for so many seconds. They are
+/// asked for one after the other, and not kept; where one is none the work ends, with nothing.
 ///
 /// # Errors
-/// [`DrawError::Empty`] without pictures, [`DrawError::Backend`] if they differ in size or the encoder refuses.
-pub fn animation(frames: &[Image], seconds: f64) -> Result<Vec<u8>, DrawError> {
-    let Some(first) = frames.first() else {
-        return Err(DrawError::Empty { what: "animation" });
+/// [`DrawError::Empty`] without pictures, [`DrawError::Backend`] if they differ in size or the encoder refuses; and theirs.
+pub fn animation(
+    count: usize,
+    frames: impl IntoIterator<Item = Result<Option<Image>, DrawError>>,
+    seconds: f64,
+) -> Result<Option<Vec<u8>>, DrawError> {
+    let mut frames = frames.into_iter();
+    let first = match frames.next() {
+        None => return Err(DrawError::Empty { what: "animation" }),
+        Some(first) => match first? {
+            None => return Ok(None),
+            Some(first) => first,
+        },
     };
+    let size = (first.width, first.height);
     let backend = |e: png::EncodingError| DrawError::Backend(e.to_string());
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, first.width as u32, first.height as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, size.0 as u32, size.1 as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
-    encoder
-        .set_animated(frames.len() as u32, 0)
-        .map_err(backend)?;
+    encoder.set_animated(count as u32, 0).map_err(backend)?;
     let mut writer = encoder.write_header().map_err(backend)?;
-    for (i, frame) in frames.iter().enumerate() {
-        if (frame.width, frame.height) != (first.width, first.height) {
+    for (i, frame) in std::iter::once(Ok(Some(first))).chain(frames).enumerate() {
+        let Some(frame) = frame? else {
+            return Ok(None);
+        };
+        if (frame.width, frame.height) != size {
             return Err(DrawError::Backend(format!(
                 "picture {i} is of {} x {} pixels, the first of {} x {}",
-                frame.width, frame.height, first.width, first.height
+                frame.width, frame.height, size.0, size.1
             )));
         }
-        let last = i + 1 == frames.len();
+        let last = i + 1 == count;
         let milliseconds = 1e3 * seconds * if last { REST } else { 1.0 };
         let milliseconds = milliseconds.round().clamp(1.0, 65_535.0) as u16;
         writer
@@ -41,7 +53,7 @@ pub fn animation(frames: &[Image], seconds: f64) -> Result<Vec<u8>, DrawError> {
             .map_err(backend)?;
     }
     writer.finish().map_err(backend)?;
-    Ok(bytes)
+    Ok(Some(bytes))
 }
 
 #[cfg(test)]
@@ -56,7 +68,8 @@ mod tests {
             image
         };
         let frames = [picture(10), picture(20), picture(30)];
-        let bytes = animation(&frames, 0.1).unwrap();
+        let given = |frames: &[Image]| frames.iter().cloned().map(Some).map(Ok).collect::<Vec<_>>();
+        let bytes = animation(3, given(&frames), 0.1).unwrap().unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
             .read_info()
             .unwrap();
@@ -73,14 +86,20 @@ mod tests {
 
     #[test]
     fn pictures_of_two_sizes_are_an_error() {
-        let frames = [
-            Image::white(20.0, 16.0).unwrap(),
-            Image::white(21.0, 16.0).unwrap(),
-        ];
+        let frames = [20.0, 21.0].map(|width| Image::white(width, 16.0).map(Some));
         assert!(matches!(
-            animation(&frames, 0.1),
+            animation(2, frames, 0.1),
             Err(DrawError::Backend(_))
         ));
-        assert!(matches!(animation(&[], 0.1), Err(DrawError::Empty { .. })));
+        assert!(matches!(
+            animation(0, [], 0.1),
+            Err(DrawError::Empty { .. })
+        ));
+    }
+
+    #[test]
+    fn work_that_is_broken_off_leaves_nothing() {
+        let frames = [Image::white(20.0, 16.0).map(Some), Ok(None)];
+        assert_eq!(animation(2, frames, 0.1).unwrap(), None);
     }
 }

@@ -391,7 +391,12 @@ fn rendered(scene: &Scene) -> Result<Image, DrawError> {
 }
 
 fn written(piece: &Piece, (x, y): Place, size: f64, colour: [u8; 3]) -> Primitive {
-    let text = piece.text.clone();
+    // In an SVG, spaces at the ends of a piece would not count.
+    let inner = piece.text.trim_matches(' ');
+    let before = piece.text.len() - piece.text.trim_start_matches(' ').len();
+    let after = (piece.text.len() - before).saturating_sub(inner.len());
+    let hard = |count: usize| "\u{a0}".repeat(count);
+    let text = hard(before) + inner + &hard(after);
     let span = TextSpan {
         text,
         bold: false,

@@ -2,12 +2,12 @@
 //!
 //! Curves are drawn in the order of their points, so a wall that folds over itself comes out as it is.
 
-use super::DrawError;
 use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen, Place};
 use super::colour::{line_colour, mix};
 use super::frame::Frame;
 use super::inset::Inset;
 use super::ticks::{Ticks, power_of_ten};
+use super::{DrawError, Image};
 
 /// Sizes of axis titles and of everything else, in points.
 pub(super) const TITLE: f64 = 9.0;
@@ -119,8 +119,15 @@ impl Chart {
     /// [`DrawError::Empty`] without a finite point, [`DrawError::Range`] for a given range that is none,
     /// [`DrawError::Size`] for an absurd size.
     pub fn png(&self, width_px: usize) -> Result<Vec<u8>, DrawError> {
-        let page = self.page(width_px)?;
-        page.finish()?.to_png(self.width_pt * 25.4 / 72.0)
+        self.image(width_px)?.to_png(self.width_pt * 25.4 / 72.0)
+    }
+
+    /// The chart as pixels.
+    ///
+    /// # Errors
+    /// As [`Chart::png`].
+    pub fn image(&self, width_px: usize) -> Result<Image, DrawError> {
+        self.page(width_px)?.finish()
     }
 
     /// The chart as an SVG file, its texts as texts.

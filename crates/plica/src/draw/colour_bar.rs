@@ -21,7 +21,16 @@ impl Cutaway {
             scale.least < scale.low - hair,
         );
         let exponent = ticks(scale.low, scale.high, INTERVALS).exponent;
-        let told = |value: f64| short(value / 10f64.powi(exponent), 2);
+        // With as many digits as it takes to lie beyond the bar.
+        let told = |value: f64| {
+            let end = if value > scale.high {
+                scale.high
+            } else {
+                scale.low
+            };
+            let digits = (2..8).find(|&digits| short(value, digits) != short(end, digits));
+            short(value, digits.unwrap_or(8))
+        };
         let note = match (below, above) {
             (false, false) => String::new(),
             (false, true) => format!("up to {}", told(scale.largest)),

@@ -16,6 +16,8 @@ pub(super) const TEXT: f64 = 8.0;
 pub(super) const SIDE: f64 = 36.0;
 /// The height of a panel, at most, in points.
 const TALLEST: f64 = 190.0;
+/// Of lengths along the tube, what must be left on the page for the bar to stand for all.
+const UPRIGHT: f64 = 0.98;
 /// How much of its colour glass has.
 const GLASS: f64 = 0.22;
 
@@ -71,6 +73,8 @@ pub struct Cutaway {
     pub room: Vec<[f64; 3]>,
     /// Samples along either side of a pixel, 1 to 4: 2 are smooth, 3 are finer and take twice the time.
     pub samples: usize,
+    /// Length of the bar that tells the scale, in units of D, and what stands beneath it.
+    pub bar: (f64, String),
     /// Printed width in points.
     pub width_pt: f64,
 }
@@ -86,6 +90,7 @@ impl Default for Cutaway {
             toward: [0.42, 1.0, -0.35],
             room: Vec::new(),
             samples: 2,
+            bar: (1.0, "*D*".into()),
             width_pt: 510.0,
         }
     }
@@ -98,6 +103,26 @@ impl Cutaway {
     /// [`DrawError::Empty`] without a finite point or value, [`DrawError::Grid`] for a surface whose lists do not fill
     /// it, [`DrawError::Range`] for a given range that is none, [`DrawError::Size`] for an absurd size.
     pub fn png(&self, width_px: usize) -> Result<Vec<u8>, DrawError> {
+        self.image(width_px)?.to_png(self.width_pt * 25.4 / 72.0)
+    }
+
+    /// Two points that make as much room as its panels take.
+    ///
+    /// # Errors
+    /// As [`Cutaway::png`].
+    pub fn room(&self) -> Result<[[f64; 3]; 2], DrawError> {
+        let [right, up, _] = View::axes(self.toward);
+        let (left, width) = self.extent(self.panels.iter(), right)?;
+        let (low, height) = self.extent(self.panels.iter(), up)?;
+        let corner = |x: f64, y: f64| std::array::from_fn(|i| x * right[i] + y * up[i]);
+        Ok([corner(left, low), corner(left + width, low + height)])
+    }
+
+    /// The picture as pixels.
+    ///
+    /// # Errors
+    /// As [`Cutaway::png`].
+    pub fn image(&self, width_px: usize) -> Result<Image, DrawError> {
         for surface in self.panels.iter().flat_map(|p| &p.surfaces) {
             surface.check()?;
         }
@@ -160,18 +185,24 @@ impl Cutaway {
                 INK,
             );
         }
-        let diameter = per_unit * right[2];
+        let (bar, name) = &self.bar;
+        let diameter = bar * per_unit * right[2];
         let (end, base) = (self.width_pt - SIDE, bottom + 13.0);
         canvas.line((end - diameter, base), (end, base), Pen::new(INK, 1.2));
         canvas.text(
             (end - diameter / 2.0, base + 10.5),
-            "*D*",
+            // Across the tube, and up, lengths come out otherwise where it is seen from an end.
+            &if right[2] > UPRIGHT {
+                name.clone()
+            } else {
+                format!("{name}, along")
+            },
             TEXT,
             Anchor::Middle,
             INK,
         );
         self.draw_colour_bar(&mut canvas, bottom + 6.0, end - diameter - 12.0, spanned);
-        canvas.finish()?.to_png(self.width_pt * 25.4 / 72.0)
+        canvas.finish()
     }
 
     /// The values at the two ends of the colour bar.

@@ -49,7 +49,7 @@ pub mod raster;
 pub mod section;
 mod ticks;
 
-pub use animation::animation;
+pub use animation::{REST, animation};
 pub use chart::{Chart, Curve, Marker, Rule, Stroke};
 pub use colour::Map;
 pub use cutaway::{Cutaway, Panel};
@@ -58,6 +58,7 @@ pub use inset::Inset;
 pub use range::{Range, Spanned};
 pub use raster::Surface;
 pub use section::Opening;
+pub use ticks::short;
 
 /// Why a picture could not be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -90,7 +91,7 @@ pub enum DrawError {
     },
     /// A picture too small or too large to draw.
     #[error(
-        "picture of {width} x {height} pixels: both sides must lie between 16 and {}",
+        "picture of {width:.0} x {height:.0} pixels: both sides must lie between 16 and {}",
         image::MAX_SIDE
     )]
     Size {

@@ -17,6 +17,8 @@ pub enum Range {
     /// field that goes below zero: fields peak at folds, and one peak must not darken all the rest. From zero where that is near.
     #[default]
     Automatic,
+    /// The same on both sides of zero, for fields of two signs.
+    Balanced,
     /// From the least to the largest value.
     Full,
     /// These two.
@@ -56,6 +58,10 @@ impl Range {
                 (low, high)
             }
             Self::Full => (least, largest),
+            Self::Balanced => {
+                let most = at(last - last / RARE).max(-at(last / RARE));
+                rounded(-most, most)
+            }
             Self::Automatic => {
                 let high = at(last - last / RARE);
                 let low = if least < 0.0 { at(last / RARE) } else { least };
@@ -63,11 +69,14 @@ impl Range {
                 rounded(if near { 0.0 } else { low }, high)
             }
         };
-        // A field of one value still needs a bar.
+        // A field of one value still needs a bar, and has its lowest colour.
         let (low, high) = if high - low > ALIKE * low.abs().max(high.abs()) {
             (low, high)
         } else {
-            (low - 0.5 * low.abs() - 0.5, low + 0.5 * low.abs() + 0.5)
+            match low.abs() {
+                0.0 => (0.0, 1.0),
+                size => (low, low + 0.1 * size),
+            }
         };
         Ok(Spanned {
             low,
@@ -120,9 +129,16 @@ mod tests {
     }
 
     #[test]
+    fn a_field_of_two_signs_has_zero_in_the_middle() {
+        let spanned = Range::Balanced.of([-0.3, 0.1, 1.0].into_iter()).unwrap();
+        assert_eq!([spanned.low, spanned.high], [-1.0, 1.0]);
+    }
+
+    #[test]
     fn one_value_has_colours_beside_it_and_none_has_none() {
         let [low, high] = automatic(&[3.0, 3.0 + 1e-15, f64::NAN]);
-        assert!(low < 3.0 && high > 3.0);
+        assert!(low == 3.0 && high > 3.0);
+        assert_eq!(automatic(&[0.0; 4]), [0.0, 1.0]);
         assert!(Range::Full.of([f64::NAN].into_iter()).is_err());
         assert!(Range::Given(1.0, 0.0).of([0.5].into_iter()).is_err());
     }

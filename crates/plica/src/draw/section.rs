@@ -24,12 +24,6 @@ impl Opening {
         points: [401, 121, 9],
     };
 
-    /// The upper front quarter removed.
-    pub const QUARTER: Opening = Opening {
-        kept: (PI / 2.0, TAU),
-        points: [401, 181, 9],
-    };
-
     /// Outer and inner wall, the two ends, and the two sections unless the wall is closed.
     ///
     /// `wall(zeta, eta, xi)` gives the place in units of D and the value of the field there.

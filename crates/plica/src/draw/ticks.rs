@@ -56,7 +56,7 @@ fn number(value: f64, decimals: usize) -> String {
 }
 
 /// `value` with about `digits` digits, as `0.031` or `3.1×10^{−5}`.
-pub(super) fn short(value: f64, digits: usize) -> String {
+pub fn short(value: f64, digits: usize) -> String {
     let power = if value == 0.0 {
         0
     } else {
@@ -75,7 +75,7 @@ pub(super) fn power_of_ten(exponent: i32) -> String {
 }
 
 fn is_whole(value: f64) -> bool {
-    (value - value.round()).abs() < 1e-6 * value.abs().max(1.0)
+    value.abs() > 0.5 && (value - value.round()).abs() < 1e-6 * value.abs()
 }
 
 #[cfg(test)]
@@ -97,6 +97,14 @@ mod tests {
         );
         let radius = ticks(-0.5, 0.5, 4);
         assert_eq!(radius.labels, ["−0.50", "−0.25", "0.00", "0.25", "0.50"]);
+    }
+
+    #[test]
+    fn ticks_that_differ_little_do_not_look_alike() {
+        let near_one = ticks(1.0 - 1e-7, 1.0, 5);
+        let mut labels = near_one.labels.clone();
+        labels.dedup();
+        assert_eq!(labels, near_one.labels);
     }
 
     #[test]

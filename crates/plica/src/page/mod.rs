@@ -25,7 +25,7 @@ mod words;
 
 use crate::draw::Map;
 use crate::draw::colour::line_colour;
-use crate::report::Column;
+use crate::report::{Column, upright};
 use crate::study::{Plan, Row, RunDirectory, SavedState, Scale};
 use known::Known;
 use minijinja::value::{Serde, Value};
@@ -33,12 +33,11 @@ use minijinja::{Environment, context};
 use sheet::Sheet;
 use stops::Parts;
 
-/// Departure from axisymmetry, in D, that is worth a word, and above which its crest is turned up.
-const VISIBLE: f64 = 2e-3;
 /// Colours of the map that the page has.
 const COLOURS: usize = 256;
-/// Bytes of the states of all runs before they are packed, at most; packed and as text they are a fifth of that, or less.
-const LARGEST: usize = 60_000_000;
+/// Bytes of the states of all runs before they are packed, at most; packed and as text they are between a sixth and two fifths
+/// of that.
+const LARGEST: usize = 28_000_000;
 
 /// A run to be shown.
 #[derive(Clone, Debug)]
@@ -73,11 +72,9 @@ pub enum PageError {
 }
 
 impl Run<'_> {
-    /// The angle of the crest of its last visible wave around, in radians: its plane is shown upright.
+    /// The angle around it that points up, in radians.
     fn upwards(&self) -> f64 {
-        let visible = VISIBLE * Scale::of(self.plan.units.as_ref()).length;
-        let leans = self.rows.iter().rev().find(|row| row.departure > visible);
-        leans.map_or(0.0, |row| row.departure_angle_deg.to_radians())
+        upright(self.rows, &Scale::of(self.plan.units.as_ref()))
     }
 
     /// Its states by their loads.
@@ -133,14 +130,18 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
     }
     let loads: Vec<Vec<Parts>> = runs.iter().map(Run::loads).collect();
     let (leader, stops) = stops::stops(&loads);
-    let colour = |i: usize| Map::default().colour(i as f64 / (COLOURS - 1) as f64);
+    let colours = |map: Map| {
+        let colour = |i: usize| map.colour(i as f64 / (COLOURS - 1) as f64);
+        (0..COLOURS).map(colour).collect::<Vec<_>>()
+    };
     let lines = [1, 2, 3, 4].map(line_colour);
     let data = serde_json::json!({
         "runs": known,
         "leader": leader,
         "stops": stops,
         "steps": scene::STEPS,
-        "colours": (0..COLOURS).map(colour).collect::<Vec<_>>(),
+        "colours": colours(Map::default()),
+        "signed": colours(Map::Signed),
         "lines": lines,
     });
     let mut templates = Environment::new();

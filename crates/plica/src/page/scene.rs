@@ -1,7 +1,7 @@
 //! The walls of a path as numbers that a browser draws: sampled, quantised, packed.
 
 use crate::assembly::{Point, Sample, SplineTube};
-use crate::draw::Range;
+use crate::draw::Map;
 use crate::report::Field;
 use crate::study::{Plan, SavedState};
 use base64::Engine;
@@ -65,6 +65,8 @@ pub struct Colouring {
     pub name: &'static str,
     /// Its name beside a colour bar, as plain text.
     pub label: String,
+    /// Whether its colours are those of two signs, with zero in the middle.
+    pub signed: bool,
     /// What its colours span over the whole path.
     pub range: [f64; 2],
     /// Its least value.
@@ -147,10 +149,11 @@ impl Scene {
         let fields = Field::ALL.iter().zip(labels).enumerate();
         let colouring = fields.map(|(i, (field, (label, _)))| {
             let values = walls.iter().flat_map(|wall| &wall.values[i]).copied();
-            let spanned = Range::Automatic.of(values).ok();
+            let spanned = field.range().of(values).ok();
             Colouring {
                 name: field.name(),
                 label: crate::draw::label::plain(&label),
+                signed: field.map() == Map::Signed,
                 range: spanned.map_or([0.0, 1.0], |field| [field.low, field.high]),
                 least: spanned.map_or(0.0, |field| field.least),
                 largest: spanned.map_or(1.0, |field| field.largest),

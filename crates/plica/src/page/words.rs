@@ -1,13 +1,22 @@
 //! What a run came to, and what to beware of, in sentences.
 
+use super::Run;
 use super::scene::Scene;
-use super::{Run, VISIBLE};
+use crate::report::VISIBLE;
 use crate::study::{Findings, Row, named};
 use crate::tube::Symmetry;
 use std::collections::BTreeMap;
 
 /// How the run ended and what the tube did.
 pub fn headline(run: &Run<'_>, findings: &Findings<'_>) -> String {
+    let told = run.directory.states_told().unwrap_or(0);
+    let missing = told.saturating_sub(run.rows.len());
+    if missing > 0 {
+        return format!(
+            "Only {} of the run's {told} states could be read, and this page tells of no more.",
+            run.rows.len()
+        );
+    }
     let ended = match run.directory.verdict().as_str() {
         "complete" => "Every stage was done.",
         "lost" => "The tube could not be followed to the end.",
@@ -179,7 +188,7 @@ fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
         "the lumen is closed; nothing holds opposite walls apart, and what they do there is not physical.",
     );
     those(
-        &|row| row.method == "relaxation",
+        &|row| row.method == "relaxation" && row.step > 0,
         "found by relaxation after Newton's way along the path had failed: on another branch, it may be, than the state before.",
     );
     let lost = |row: &Row, to_own: bool| {

@@ -42,7 +42,7 @@ impl Column {
         }
     }
 
-    /// All of a path, those first that a reader asks for first; those that a run has not are left out.
+    /// Those of a path that are plotted, those first that a reader asks for first; those that a run has not are left out.
     pub fn of(rows: &[Row], scale: &Scale) -> Vec<Self> {
         let length = |what: &str| format!("{what} ({})", unit(&scale.length_name));
         let energy = |what: &str| format!("{what} ({})", unit(&scale.energy_name));
@@ -54,8 +54,8 @@ impl Column {
                 columns.push(Self::new(name, &label, role, values));
             }
         };
-        let length_ratio = Abscissa::LengthRatio.label().into();
-        let diameter_ratio = Abscissa::DiameterRatio.label().into();
+        let length_ratio = Abscissa::LengthRatio.label(scale);
+        let diameter_ratio = Abscissa::DiameterRatio.label(scale);
         add("length_ratio", length_ratio, Role::Load, &|row| {
             Some(row.length_ratio)
         });
@@ -187,8 +187,25 @@ impl Column {
     }
 }
 
+/// A length that tells the scale of a picture: in D, and in words.
+pub(super) fn bar(scale: &Scale) -> (f64, String) {
+    if scale.length_name == "D" {
+        return (1.0, "*D*".into());
+    }
+    // The round length that is next below a diameter.
+    let ten = 10f64.powf(scale.length.log10().floor());
+    let round = [5.0, 2.0, 1.0]
+        .into_iter()
+        .find(|n| n * ten <= scale.length * (1.0 + 1e-9));
+    let length = round.unwrap_or(1.0) * ten;
+    (
+        length / scale.length,
+        format!("{length} {}", unit(&scale.length_name)),
+    )
+}
+
 /// A unit as it is set, with markup.
-fn unit(name: &str) -> String {
+pub(super) fn unit(name: &str) -> String {
     match name {
         "E D^3" => "*E* *D*^{3}".into(),
         "E" | "D" => format!("*{name}*"),

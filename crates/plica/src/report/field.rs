@@ -1,6 +1,7 @@
 //! Fields that a picture may be coloured by.
 
 use crate::assembly::Sample;
+use crate::draw::{Map, Range};
 use crate::study::{Plan, Scale};
 
 /// A number at every point of the wall.
@@ -56,6 +57,22 @@ impl Field {
             Self::GrownAlong => "theta-zeta",
             Self::GrownAround => "theta-eta",
             Self::Displacement => "displacement",
+        }
+    }
+
+    /// Its colours: those of two signs where the sign says what it is.
+    pub fn map(self) -> Map {
+        match self {
+            Self::Pressure => Map::Signed,
+            _ => Map::default(),
+        }
+    }
+
+    /// What its colours span where nothing else is asked for.
+    pub fn range(self) -> Range {
+        match self.map() {
+            Map::Signed => Range::Balanced,
+            _ => Range::Automatic,
         }
     }
 

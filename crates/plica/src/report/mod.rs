@@ -10,6 +10,7 @@ mod plots;
 mod stability;
 mod states;
 mod story;
+mod upright;
 mod walls;
 
 pub use columns::{Column, Role};
@@ -21,3 +22,4 @@ pub use plots::{plot, plot_walls};
 pub use stability::stability_pictures;
 pub use states::{Appearance, Shown, animate, render};
 pub use story::{Abscissa, Story};
+pub use upright::{VISIBLE, upright};

@@ -1,8 +1,10 @@
 //! The pictures of a run.
 
+use super::columns::{bar, unit};
 use super::opened::{Look, looked_at};
-use super::walls::{Wall, departure, walls};
-use super::{Abscissa, Field, Story};
+use super::upright::upright;
+use super::walls::{Wall, walls};
+use super::{Field, Story};
 use crate::assembly::SplineTube;
 use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Panel, Rule};
 use crate::study::{Plan, Row, Scale, Snapshot, Summary};
@@ -30,13 +32,14 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     let rings = plan.mesh.rings(plan.symmetry);
     let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
     let story = Story::of(summary);
+    let scale = Scale::of(plan.units.as_ref());
     let state = |row: &&Row| {
         let Snapshot { load, u } = summary.snapshots()[row.step].as_ref()?;
-        let label = label(&story, row);
+        let label = label(&story, &scale, row);
         Some(Wall { label, load, u })
     };
     let chosen: Vec<Wall<'_>> = story.chosen.iter().filter_map(state).collect();
-    let upwards = departure(&tube, &chosen).crest;
+    let upwards = upright(story.chosen.iter().copied(), &scale);
     let drawings: [(&str, &Drawing<'_>); 3] = [
         ("energy.png", &|| energy(plan, summary, &story).png(WIDTH)),
         ("walls.png", &|| walls(plan, &tube, &chosen).png(WIDTH)),
@@ -53,13 +56,7 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
 /// What the axis of energies is called.
 pub(super) fn energy_label(plan: &Plan) -> String {
     let scale = Scale::of(plan.units.as_ref());
-    match &plan.units {
-        None => "strain energy *W*/(*E* *D*^{3})".into(),
-        Some(_) => format!(
-            "strain energy *W* ({})",
-            scale.energy_name.replace('u', "µ")
-        ),
-    }
+    format!("strain energy *W* ({})", unit(&scale.energy_name))
 }
 
 /// Strain energy against what changes along the path.
@@ -75,7 +72,7 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
         })
     };
     Chart {
-        x_label: story.abscissa.label().to_owned(),
+        x_label: story.abscissa.label(&Scale::of(plan.units.as_ref())),
         y_label: energy_label(plan),
         curves: vec![Curve {
             points: story.rows.iter().map(|row| (x(row), row.energy)).collect(),
@@ -86,7 +83,7 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
         markers: minimum
             .map(|row| Marker {
                 at: (x(row), row.energy),
-                label: format!("minimum at {:.2}", x(row)),
+                label: format!("minimum at {}", story.abscissa.told(row)),
                 colour: 2,
             })
             .into_iter()
@@ -118,19 +115,21 @@ fn cutaway(plan: &Plan, tube: &SplineTube, chosen: &[Wall<'_>], upwards: f64) ->
         title: plan.title.clone(),
         panels: chosen.par_iter().map(panel).collect(),
         value_label,
+        bar: bar(&Scale::of(plan.units.as_ref())),
         ..Cutaway::default()
     }
 }
 
 /// What a state is called in a legend.
-fn label(story: &Story<'_>, row: &Row) -> String {
-    let (label, value) = (story.abscissa.label(), story.abscissa.of(row));
-    let value = match story.abscissa {
-        Abscissa::InnerPressure | Abscissa::OuterPressure if value != 0.0 => {
-            format!("{value:.2e}")
-        }
-        Abscissa::InnerPressure | Abscissa::OuterPressure => "0".into(),
-        _ => format!("{value:.2}"),
-    };
-    format!("{label} = {value} ({})", row.shape)
+fn label(story: &Story<'_>, scale: &Scale, row: &Row) -> String {
+    let (label, value) = (story.abscissa.label(scale), story.abscissa.told(row));
+    // The unit stands behind the number here.
+    match label.rsplit_once(" (") {
+        Some((name, unit)) => format!(
+            "{name} = {value} {} ({})",
+            unit.trim_end_matches(')'),
+            row.shape
+        ),
+        None => format!("{label} = {value} ({})", row.shape),
+    }
 }

@@ -24,7 +24,7 @@ pub fn plot(plan: &Plan, rows: &[Row], name: &str, along: Option<&str>) -> Optio
     // Where a stage begins, if that has a place on the abscissa.
     let stages = rows
         .windows(2)
-        .filter(|pair| pair[0].stage != pair[1].stage);
+        .filter(|pair| pair[0].stage != pair[1].stage && pair[0].step > 0);
     let rules = stages.map(|pair| Rule {
         at: pair[0].step as f64,
         label: pair[1].stage.clone(),

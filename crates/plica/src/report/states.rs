@@ -1,11 +1,13 @@
 //! Pictures of single states, and the whole path as one that moves.
 
 use super::Field;
+use super::columns::bar;
 use super::opened::{Look, looked_at};
 use super::pictures::energy_label;
+use super::upright::upright;
 use crate::assembly::SplineTube;
 use crate::draw::{Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, animation};
-use crate::study::{Plan, Row, SavedState};
+use crate::study::{Plan, Row, SavedState, Scale};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -52,9 +54,10 @@ pub type Shown = (SavedState, Row);
 pub fn render(plan: &Plan, states: &[Shown], look: &Appearance) -> Result<Vec<u8>, DrawError> {
     let tube = spline_tube(plan);
     let finest = look_of(&tube, plan, look);
+    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
     let panels = states
         .par_iter()
-        .map(|shown| panel(&tube, shown, &finest, look));
+        .map(|shown| panel(&tube, shown, upwards, &finest, look));
     let picture = Cutaway {
         samples: FINEST,
         ..picture(plan, panels.collect(), look)
@@ -77,45 +80,52 @@ pub fn animate(
 ) -> Result<Option<Vec<u8>>, DrawError> {
     let tube = spline_tube(plan);
     let finest = look_of(&tube, plan, look);
+    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
     // A coarse look at all states for the frame and the colours that they share.
     let mut coarse = finest;
     coarse.opening.points = [tube.axial.elements() + 1, 33, 5];
-    let all: Vec<Panel> = states
+    let looked: Result<Vec<([[f64; 3]; 2], Vec<f64>)>, DrawError> = states
         .par_iter()
-        .map(|shown| panel(&tube, shown, &coarse, look))
+        .map(|shown| {
+            let panel = panel(&tube, shown, upwards, &coarse, look);
+            let values = panel.surfaces.iter().flat_map(|s| &s.values).copied();
+            let values = values.collect();
+            Ok((picture(plan, vec![panel], look).room()?, values))
+        })
         .collect();
-    let points = || {
-        all.iter()
-            .flat_map(|panel| &panel.surfaces)
-            .flat_map(|s| &s.points)
-    };
-    let whole = picture(plan, all.clone(), look);
-    let (low, high) = whole.ends()?;
-    let room: Vec<[f64; 3]> = points().copied().collect();
+    let (rooms, values): (Vec<[[f64; 3]; 2]>, Vec<Vec<f64>>) = looked?.into_iter().unzip();
+    let room = rooms.concat();
+    let spanned = range(look).of(values.into_iter().flatten())?;
     let frame_look = Appearance {
-        range: Some([low, high]),
+        range: Some([spanned.low, spanned.high]),
         ..*look
     };
     let done = AtomicUsize::new(0);
-    let frames: Result<Vec<Option<Image>>, DrawError> = states
-        .par_iter()
-        .map(|shown| {
-            if !told(done.load(Ordering::Relaxed)) {
-                return Ok(None);
-            }
-            let panel = panel(&tube, shown, &finest, look);
-            let tube = Cutaway {
-                room: room.clone(),
-                ..picture(plan, vec![panel], &frame_look)
-            };
-            let tube = Image::from_png(&tube.png(look.width)?)?;
-            let energy = Image::from_png(&energy(plan, rows, &shown.1).png(look.width)?)?;
-            done.fetch_add(1, Ordering::Relaxed);
-            Image::stacked(&[tube, energy]).map(Some)
-        })
-        .collect();
-    let frames: Option<Vec<Image>> = frames?.into_iter().collect();
-    frames.map(|frames| animation(&frames, seconds)).transpose()
+    let frame = |shown: &Shown| -> Result<Option<Image>, DrawError> {
+        if !told(done.load(Ordering::Relaxed)) {
+            return Ok(None);
+        }
+        let panel = panel(&tube, shown, upwards, &finest, look);
+        let tube = Cutaway {
+            room: room.clone(),
+            ..picture(plan, vec![panel], &frame_look)
+        };
+        let tube = tube.image(look.width)?;
+        let energy = energy(plan, rows, &shown.1).image(look.width)?;
+        done.fetch_add(1, Ordering::Relaxed);
+        Image::stacked(&[tube, energy]).map(Some)
+    };
+    // As many at a time as there are threads: a picture that moves is large before it is packed.
+    let batch = rayon::current_num_threads();
+    let frames = states.chunks(batch).flat_map(|some| {
+        let frames: Vec<_> = some.par_iter().map(frame).collect();
+        frames
+    });
+    animation(states.len(), frames, seconds)
+}
+
+fn scale(plan: &Plan) -> Scale {
+    Scale::of(plan.units.as_ref())
 }
 
 fn spline_tube(plan: &Plan) -> SplineTube {
@@ -130,8 +140,13 @@ fn look_of(tube: &SplineTube, plan: &Plan, look: &Appearance) -> Look {
     }
 }
 
-fn panel(tube: &SplineTube, (state, row): &Shown, look: &Look, shown: &Appearance) -> Panel {
-    let upwards = row.departure_angle_deg.to_radians();
+fn panel(
+    tube: &SplineTube,
+    (state, row): &Shown,
+    upwards: f64,
+    look: &Look,
+    shown: &Appearance,
+) -> Panel {
     let surfaces = |look: &Look| looked_at(tube, &state.load, &state.u, upwards, look);
     let glass = look.taken_away().filter(|_| shown.see_through);
     Panel {
@@ -146,20 +161,26 @@ fn picture(plan: &Plan, panels: Vec<Panel>, look: &Appearance) -> Cutaway {
         title: plan.title.clone(),
         panels,
         value_label: look.field.label(plan).0,
+        bar: bar(&scale(plan)),
         toward: look.toward,
-        range: match look.range {
-            Some([low, high]) => Range::Given(low, high),
-            None => Range::Automatic,
-        },
+        range: range(look),
+        map: look.field.map(),
         ..Cutaway::default()
+    }
+}
+
+fn range(look: &Appearance) -> Range {
+    match look.range {
+        Some([low, high]) => Range::Given(low, high),
+        None => look.field.range(),
     }
 }
 
 /// What a state is called.
 fn label(row: &Row) -> String {
     format!(
-        "state {}: *D*_{{min}}/*D* = {:.2}, *L*_{{max}}/*L* = {:.2} ({})",
-        row.step, row.diameter_ratio, row.length_ratio, row.shape
+        "state {}: *L*_{{max}}/*L* = {:.2}, *D*_{{min}}/*D* = {:.2} ({})",
+        row.step, row.length_ratio, row.diameter_ratio, row.shape
     )
 }
 

@@ -1,6 +1,8 @@
 //! Which states tell the story of a path, and against what it is plotted.
 
-use crate::study::{Row, Summary};
+use super::columns::unit;
+use crate::draw::short;
+use crate::study::{Row, Scale, Summary};
 
 /// What changes along a path: the abscissa of its charts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,15 +34,28 @@ impl Abscissa {
         }
     }
 
-    /// Its label on an axis.
-    pub fn label(self) -> &'static str {
+    /// Its label on an axis, with its unit.
+    pub fn label(self, scale: &Scale) -> String {
+        let length = unit(&scale.length_name);
+        let stress = unit(&scale.stress_name);
         match self {
-            Self::LengthRatio => "*L*_{max}/*L*",
-            Self::DiameterRatio => "*D*_{min}/*D*",
-            Self::Stretch => "displacement of the ends, apart",
-            Self::InnerPressure => "pressure on the inner wall",
-            Self::OuterPressure => "pressure on the outer wall",
-            Self::Step => "state",
+            Self::LengthRatio => "*L*_{max}/*L*".into(),
+            Self::DiameterRatio => "*D*_{min}/*D*".into(),
+            Self::Stretch => format!("displacement of the ends, apart ({length})"),
+            Self::InnerPressure => format!("pressure on the inner wall ({stress})"),
+            Self::OuterPressure => format!("pressure on the outer wall ({stress})"),
+            Self::Step => "state".into(),
+        }
+    }
+
+    /// Its value at a state as a text.
+    pub fn told(self, row: &Row) -> String {
+        let value = self.of(row);
+        match self {
+            Self::LengthRatio | Self::DiameterRatio => format!("{value:.2}"),
+            Self::Step => row.step.to_string(),
+            _ if value == 0.0 => "0".into(),
+            _ => short(value, 3),
         }
     }
 }
@@ -52,13 +67,13 @@ pub struct Story<'a> {
     pub abscissa: Abscissa,
     /// The states of that part.
     pub rows: Vec<&'a Row>,
-    /// Up to four states to look at closely: where it begins, the least energy, the first square
+    /// Up to four states to look at closely: where it begins, the least energy, the last square
     /// wall, the end.
     pub chosen: Vec<&'a Row>,
 }
 
 impl<'a> Story<'a> {
-    /// The story of a run: its last stages, as far back as one quantity alone changes.
+    /// The story of a run: its last stages, as far back as one quantity alone changes (twists and dead pressures, which are not plotted against, aside).
     pub fn of(summary: &'a Summary) -> Self {
         let all = summary.rows();
         let quantities = [

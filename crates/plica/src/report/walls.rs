@@ -1,15 +1,15 @@
 //! Outer and inner wall at several states.
 
+use super::VISIBLE;
+use super::columns::unit;
 use crate::assembly::SplineTube;
 use crate::draw::{Chart, Curve, Stroke};
 use crate::measure::{Departure, Face, Meridians};
-use crate::study::Plan;
+use crate::study::{Plan, Scale};
 use crate::tube::Load;
 
 /// Points per element along a drawn wall.
 const POINTS_PER_ELEMENT: usize = 4;
-/// Departure from axisymmetry, in D, below which both sides of a tube are drawn as one line.
-const VISIBLE: f64 = 2e-3;
 
 /// A state, and what it is called in a legend.
 #[derive(Clone, Debug)]
@@ -33,6 +33,8 @@ pub(super) fn departure(tube: &SplineTube, states: &[Wall<'_>]) -> Departure {
 /// Outer and inner wall of states; of a tube that is visibly not axisymmetric two meridians, that at the crest above
 /// the axis and that at the trough below it.
 pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Chart {
+    let scale = Scale::of(plan.units.as_ref());
+    let length = scale.length;
     let departure = departure(tube, states);
     let both = departure.crest_and_trough();
     let one_line = departure.amplitude < VISIBLE;
@@ -51,7 +53,11 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
             };
             let mut points = vec![];
             for (wall, side) in (meridians.walls(face, angles, &z).iter()).zip([1.0, -1.0]) {
-                points.extend(wall.points.iter().map(|&(z, r)| (z, side * r)));
+                points.extend(
+                    wall.points
+                        .iter()
+                        .map(|&(z, r)| (length * z, length * side * r)),
+                );
                 points.push((f64::NAN, f64::NAN));
             }
             curves.push(Curve {
@@ -70,13 +76,13 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
     });
     let finite = |p: &&(f64, f64)| p.0.is_finite();
     let points = || curves.iter().flat_map(|curve| &curve.points).filter(finite);
-    let highest = points().map(|p| p.1).fold(0.55, f64::max);
+    let highest = points().map(|p| p.1).fold(0.55 * length, f64::max);
     let lowest = if one_line {
         0.0
     } else {
-        points().map(|p| p.1).fold(-0.55, f64::min) - 0.05
+        points().map(|p| p.1).fold(-0.55 * length, f64::min) - 0.05 * length
     };
-    let (low, high) = points().fold((0.0_f64, plan.tube.length), |(low, high), p| {
+    let (low, high) = points().fold((0.0_f64, length * plan.tube.length), |(low, high), p| {
         (low.min(p.0), high.max(p.0))
     });
     if !one_line {
@@ -87,18 +93,18 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
         };
         curves.push(axis);
     }
-    let [crest, trough] = both.map(|angle| angle.to_degrees().round().rem_euclid(360.0));
+    let [crest, trough] = both.map(|angle| (angle.to_degrees().round() + 0.0).rem_euclid(360.0));
     Chart {
         title: if one_line {
             String::new()
         } else {
             format!("above *r* = 0 the meridian at {crest}°, below it that at {trough}°")
         },
-        x_label: "*z*/*D*".into(),
-        y_label: "*r*/*D*".into(),
+        x_label: format!("*z* ({})", unit(&scale.length_name)),
+        y_label: format!("*r* ({})", unit(&scale.length_name)),
         equal_aspect: true,
         x_range: Some((low, high)),
-        y_range: Some((lowest, 0.05 + highest)),
+        y_range: Some((lowest, 0.05 * length + highest)),
         width_pt: 510.0,
         curves,
         ..Chart::default()

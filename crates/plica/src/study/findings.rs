@@ -106,7 +106,10 @@ impl<'a> Findings<'a> {
         );
         let departs = self.rows.iter().filter(|row| row.departure_harmonic > 0);
         if let Some(row) = departs.max_by(|a, b| a.departure.total_cmp(&b.departure)) {
-            let far = format!("{:.1e} {}", row.departure, self.scale.length_name);
+            let far = match row.departure {
+                x if x < 1e-2 => format!("{x:.1e} {}", self.scale.length_name),
+                x => format!("{x:.3} {}", self.scale.length_name),
+            };
             let harmonic = named(&row.departure_harmonic.to_string());
             let most = format!("by at most {far}, in {harmonic}, at {}", place(row));
             line("leaves axisymmetry", most);
@@ -121,7 +124,7 @@ impl<'a> Findings<'a> {
         let states = self.rows.len();
         line(
             "states",
-            format!("{states}, {balance} (largest residual {worst:.0e})"),
+            format!("{states}, {balance} (largest residual after rest {worst:.0e})"),
         );
         let lost = self.lost_harmonics();
         if lost.is_empty() {

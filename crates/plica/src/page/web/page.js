@@ -26,7 +26,7 @@ class Page {
       }
       if (this.drawn.length > 0) {
         const runs = this.drawn.map(({ run }) => run);
-        this.view = new View($("stage"), $("canvas"), runs, this.data.colours);
+        this.view = new View($("stage"), $("canvas"), runs, [this.data.colours, this.data.signed]);
         this.view.onTurned = () => ($("view").selectedIndex = -1);
         this.show();
       }
@@ -73,7 +73,6 @@ class Page {
     $("view").addEventListener("change", () => this.view.look($("view").value));
     $("play").addEventListener("click", () => this.play());
     $("keep").addEventListener("click", () => this.keep());
-    this.colourBar();
     document.querySelectorAll("tr[data-step]").forEach((line) => {
       const button = line.querySelector("button");
       // One stop of the tabulator for the table; arrows go on from there.
@@ -219,7 +218,9 @@ class Page {
       const one = run.scene.fields[field];
       return $("range").value === "path" ? one.range : one.ends[this.state(i)];
     });
-    const [low, high] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
+    let [low, high] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
+    // Of a field of two signs zero is in the middle.
+    if (this.signed(field)) [low, high] = [-1, 1].map((sign) => sign * Math.max(-low, high));
     return high > low ? [low, high] : [low - 0.5, low + 0.5];
   }
 
@@ -247,19 +248,26 @@ class Page {
     this.runs.forEach((_, i) => document.querySelector(`tr[data-run="${i}"][data-step="${this.row(i)}"]`)?.classList.add("here"));
   }
 
-  colourBar() {
-    const stops = this.data.colours.filter((_, i) => i % 15 === 0).map((rgb) => `rgb(${rgb})`);
-    $("bar").style.background = `linear-gradient(to right, ${stops})`;
+  /** Whether a field has the colours of two signs. */
+  signed(field) {
+    return this.drawn[0].run.scene.fields[field].signed;
   }
 
-  /** Round numbers beneath the colour bar; and how far values go beyond it. */
+  /** The colours of a field. */
+  colours(field) {
+    return this.signed(field) ? this.data.signed : this.data.colours;
+  }
+
+  /** The colour bar, with round numbers beneath; and how far values go beyond it. */
   labelBar(field, [low, high]) {
     const fields = this.drawn.map(({ run }) => run.scene.fields[field]);
     const ends = fields.map((one, i) => ($("range").value === "path" ? [one.least, one.largest] : one.ends[this.state(i)]));
     const [least, largest] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
     const hair = 1e-6 * (high - low);
     const outside = [least < low - hair && `down to ${told(least, 3)}`, largest > high + hair && `up to ${told(largest, 3)}`].filter(Boolean);
-    const beyond = outside.length > 0 ? ` (beyond the bar: ${outside.join(", ")})` : "";
+    const beyond = outside.length > 0 ? ` (${$("range").value === "path" ? "on the path" : "here"} ${outside.join(", ")})` : "";
+    const stops = this.colours(field).filter((_, i) => i % 15 === 0).map((rgb) => `rgb(${rgb})`);
+    $("bar").style.background = `linear-gradient(to right, ${stops})`;
     $("bar-label").textContent = fields[0].label + beyond;
     const rough = (high - low) / 4;
     const power = 10 ** Math.floor(Math.log10(rough));
@@ -307,7 +315,7 @@ class Page {
     pen.scale(zoom, zoom);
     const [width, top] = [tube.clientWidth, tube.clientHeight];
     const shade = pen.createLinearGradient(20, 0, width - 20, 0);
-    this.data.colours.forEach((rgb, i, all) => shade.addColorStop(i / (all.length - 1), `rgb(${rgb})`));
+    this.colours($("field").selectedIndex).forEach((rgb, i, all) => shade.addColorStop(i / (all.length - 1), `rgb(${rgb})`));
     pen.fillStyle = shade;
     pen.fillRect(20, top + 8, width - 40, 11);
     pen.fillStyle = "#222222";

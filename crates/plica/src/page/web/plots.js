@@ -70,7 +70,8 @@ class Plot {
       grid: { stroke: ink("--rule"), width: 1 },
       ticks: { stroke: ink("--rule"), width: 1 },
       font: "12px system-ui, sans-serif",
-      labelFont: "11.5px system-ui, sans-serif",
+      // A long one has no more room than the plot is high.
+      labelFont: `${label.length > 34 ? 9.5 : 11.5}px system-ui, sans-serif`,
       values: ticks,
       ...more,
     });

@@ -128,6 +128,7 @@ class Tube {
     const [z, x, y] = walls.coordinates(state);
     const values = walls.values(state, field);
     const middle = 0.5 * (walls.scene.low[0] + walls.scene.high[0]);
+    const { signed } = walls.scene.fields[field];
     const colour = (value) => (0.5 + 255 * Math.min(Math.max((value - low) / (high - low), 0), 1)) / 256;
     const turns = Array.from({ length: walls.scene.turns }, (_, t) => {
       const angle = (2 * Math.PI * t) / walls.scene.turns;
@@ -142,8 +143,8 @@ class Tube {
       position[3 * vertex + 2] = x[point] * sin + y[point] * cos;
       const uv = geometry.attributes.uv.array;
       const value = values[point];
-      // The texture's second row is the colour of what has no value.
-      [uv[2 * vertex], uv[2 * vertex + 1]] = Number.isNaN(value) ? [0, 0.75] : [colour(value), 0.25];
+      // The texture's second row is the colour of what has no value, the third are those of two signs.
+      [uv[2 * vertex], uv[2 * vertex + 1]] = Number.isNaN(value) ? [0, 0.5] : [colour(value), signed ? 5 / 6 : 1 / 6];
     };
     const point = (meridian, level, i) => ((meridian % around) * through + level) * along + i;
     for (let j = 0; j <= meridians; j++) {

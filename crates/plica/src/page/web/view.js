@@ -26,9 +26,11 @@ class View {
     sun.target.position.set(0, 0, -1);
     this.scene.add(new THREE.AmbientLight(0xffffff, 1.45), this.camera);
 
-    const rows = [...colours, ...colours.map(() => [150, 150, 150])];
+    const [plain, signed] = colours;
+    // Rows of the texture: see Tube.show.
+    const rows = [...plain, ...plain.map(() => [150, 150, 150]), ...signed];
     const flat = new Uint8Array(rows.flatMap(([r, g, b]) => [r, g, b, 255]));
-    const map = new THREE.DataTexture(flat, colours.length, 2, THREE.RGBAFormat);
+    const map = new THREE.DataTexture(flat, plain.length, 3, THREE.RGBAFormat);
     map.colorSpace = THREE.SRGBColorSpace;
     [map.minFilter, map.magFilter] = [THREE.LinearFilter, THREE.LinearFilter];
     map.needsUpdate = true;

@@ -56,7 +56,9 @@ pub enum SavedStateError {
     #[error("this is not a saved state ({0})")]
     Foreign(String),
     /// It ends early, or late.
-    #[error("the file is cut short or has something added (it holds {bytes} bytes); save it again")]
+    #[error(
+        "the file is cut short or has something added (it holds {bytes} bytes); take another, or run its case again"
+    )]
     Cut {
         /// Bytes of the file.
         bytes: usize,
@@ -71,7 +73,8 @@ pub enum SavedStateError {
     },
     /// It is not what was written.
     #[error(
-        "the file is damaged: its checksum is {found}, and should be {expected}; save it again"
+        "the file is damaged: its checksum is {found}, and should be {expected}; \
+         take another, or run its case again"
     )]
     Damaged {
         /// The checksum it carries.
