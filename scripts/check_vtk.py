@@ -2,7 +2,7 @@
 
     python scripts/check_vtk.py RUN_DIR
 
-The run is axisymmetric or not, in units of D and E, and `plica export RUN_DIR --linear` (with or without --state) was done.
+The run is axisymmetric or not, in units of D and E, and `plica export RUN_DIR --linear --hdf` (with or without --state) was done.
 """
 
 import csv
