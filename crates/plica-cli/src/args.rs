@@ -57,6 +57,8 @@ pub enum Command {
         #[arg(default_value = "case.toml")]
         file: PathBuf,
     },
+    /// Print the JSON schema of the case file, with which editors complete and check a case
+    Schema,
     /// Print a completion script for a shell
     Completions {
         /// The shell

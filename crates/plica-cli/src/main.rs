@@ -50,6 +50,7 @@ fn main() -> ExitCode {
         Command::Report(arguments) => report::report(&arguments),
         Command::Check { case } => check::check(&case),
         Command::New { file } => new::new(&file),
+        Command::Schema => new::schema(),
         Command::Completions { shell } => new::completions(shell),
     };
     match done {

@@ -1,11 +1,11 @@
-//! `plica new` and `plica completions`.
+//! `plica new`, `plica schema` and `plica completions`.
 
 use crate::args::Arguments;
 use crate::console;
 use crate::failure::Failure;
 use clap::CommandFactory;
 use clap_complete::Shell;
-use plica::case::STARTER;
+use plica::case::{self, STARTER};
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
@@ -33,4 +33,9 @@ pub fn completions(shell: Shell) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "plica", &mut script);
     console::say(&String::from_utf8_lossy(&script))
+}
+
+/// Prints the JSON schema of the case file.
+pub fn schema() -> Result<(), Failure> {
+    console::say(&format!("{:#}\n", case::schema()))
 }

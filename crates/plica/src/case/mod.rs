@@ -35,6 +35,7 @@ mod keys;
 mod locate;
 mod problem;
 mod reference;
+mod schema;
 mod shape;
 mod spec;
 mod spelling;
@@ -47,6 +48,7 @@ pub use edit::{EditError, edited};
 pub use keys::{Given, Key, Kind, Limit, Range};
 pub use problem::{CaseError, Problem};
 pub use reference::reference;
+pub use schema::schema;
 pub use starter::STARTER;
 pub use table::KEYS;
 

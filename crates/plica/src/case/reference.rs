@@ -12,6 +12,9 @@ A case is a [TOML](https://toml.io) file. `plica new` writes one to start from, 
 what is wrong with one, `plica run` runs it. Only `stages` must be there; a key that is left out has
 the default given here. A misspelt key is an error.
 
+`plica schema > case.schema.json` writes the same as a JSON schema; with `#:schema ./case.schema.json` on a case's first
+line, editors that know TOML (taplo, Even Better TOML) complete keys, show what they mean and mark what is wrong.
+
 Without `[units]` a case is in ratios: lengths in the unit of `tube.diameter`, results in diameters D
 and Young's moduli E. With it, lengths and stresses are in these units, in the file and in the results.
 
