@@ -20,8 +20,8 @@ pub fn endings(path: &Path, endings: &[&str]) -> Result<(), Failure> {
         )));
     }
     let ending = path.extension().and_then(|ending| ending.to_str());
-    let is = |wanted: &&str| ending.is_some_and(|ending| ending.eq_ignore_ascii_case(wanted));
-    if endings.iter().any(|wanted| is(&wanted)) {
+    let is = |wanted: &str| ending.is_some_and(|ending| ending.eq_ignore_ascii_case(wanted));
+    if endings.iter().any(|wanted| is(wanted)) {
         return Ok(());
     }
     let named: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{plica, scratch, text};
+use common::{plica, scratch, text, timeless};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -83,26 +83,6 @@ fn left(run: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
         }
     }
     files
-}
-
-fn timeless(history: &str) -> String {
-    let mut table = csv::Reader::from_reader(history.as_bytes());
-    let seconds = table
-        .headers()
-        .unwrap()
-        .iter()
-        .position(|head| head == "seconds");
-    let row = |row: csv::StringRecord| {
-        let cells = row.iter().enumerate().filter(|(i, _)| Some(*i) != seconds);
-        cells
-            .map(|(_, cell)| cell.to_owned())
-            .collect::<Vec<String>>()
-            .join(",")
-    };
-    table
-        .records()
-        .map(|record| row(record.unwrap()) + "\n")
-        .collect()
 }
 
 fn assert_same(whole: &BTreeMap<PathBuf, Vec<u8>>, run: &Path) {

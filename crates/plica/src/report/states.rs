@@ -47,6 +47,9 @@ impl Default for Appearance {
 /// A state with its row of the history.
 pub type Shown = (SavedState, Row);
 
+/// The room that a state takes, and the values of its field.
+type Seen = ([[f64; 3]; 2], Vec<f64>);
+
 /// States, one below the other, under one colour bar.
 ///
 /// # Errors
@@ -84,7 +87,7 @@ pub fn animate(
     // A coarse look at all states for the frame and the colours that they share.
     let mut coarse = finest;
     coarse.opening.points = [tube.axial.elements() + 1, 33, 5];
-    let looked: Result<Vec<([[f64; 3]; 2], Vec<f64>)>, DrawError> = states
+    let looked: Result<Vec<Seen>, DrawError> = states
         .par_iter()
         .map(|shown| {
             let panel = panel(&tube, shown, upwards, &coarse, look);
@@ -93,7 +96,7 @@ pub fn animate(
             Ok((picture(plan, vec![panel], look).room()?, values))
         })
         .collect();
-    let (rooms, values): (Vec<[[f64; 3]; 2]>, Vec<Vec<f64>>) = looked?.into_iter().unzip();
+    let (rooms, values): (Vec<_>, Vec<_>) = looked?.into_iter().unzip();
     let room = rooms.concat();
     let spanned = range(look).of(values.into_iter().flatten())?;
     let frame_look = Appearance {
