@@ -52,11 +52,14 @@ pub fn open_with(path: &Path, named: &Open<'_>) -> Result<(String, Plan), Failur
     }
 }
 
-/// The plan of a run that is there. Where it began is its own first state; the modes of its imperfections it has kept.
+/// The plan of a run that is there. The state it began from it has kept, and the modes of its imperfections.
 pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
     let own = |wanted: Wanted<'_>| match wanted {
         Wanted::State(_) => {
-            SavedState::read(&directory.path().join(RunDirectory::name_of_state(0)))
+            let kept = directory.start();
+            // A run of before that was kept has its own first state.
+            let first = directory.path().join(RunDirectory::name_of_state(0));
+            SavedState::read(if kept.exists() { &kept } else { &first })
         }
         Wanted::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
     };

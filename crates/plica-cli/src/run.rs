@@ -8,7 +8,7 @@ use crate::{case_file, console, threads};
 use plica::case::{advice, differences};
 use plica::report::pictures;
 use plica::study::{self, Observer, Plan, RunDirectory, StudyError, Summary};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Draws the pictures of a run; says which. A picture that cannot be drawn does not undo a run.
 fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<String, Failure> {
@@ -40,14 +40,29 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     };
     let interrupt = listen()?;
     study::fits(&plan).map_err(Failure::Study)?;
-    if arguments.resume && !is_blank(&out) {
+    if arguments.resume && RunDirectory::is_there(&out) {
         let mut directory = RunDirectory::open(&out).map_err(Failure::Study)?;
         directory.own().map_err(Failure::Study)?;
         let before = directory.read("case.toml").unwrap_or_default();
-        if before != text.as_bytes() {
-            let old = case_file::of_run(&directory)?;
-            let before = String::from_utf8_lossy(&before);
-            may_go_on(&directory, [(&before, &old), (&text, &plan)])?;
+        let same = before == text.as_bytes();
+        let plan = match (directory.has_hardly_begun(), same) {
+            (true, _) => plan,
+            // What it names may have changed since, and what it was is kept.
+            (false, true) => case_file::of_run(&directory)?,
+            (false, false) => {
+                let old = case_file::of_run(&directory)?;
+                let before = String::from_utf8_lossy(&before);
+                may_go_on(&directory, [(&before, &old), (&text, &plan)])?;
+                Plan {
+                    start: old.start,
+                    ..plan
+                }
+            }
+        };
+        if same && is_complete(&directory, &plan) {
+            return nothing_to_do(&directory);
+        }
+        if !same {
             directory.write_case(&text).map_err(Failure::Study)?;
         }
         return lead(&plan, directory, interrupt, study::resume);
@@ -63,6 +78,9 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
     let mut directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
     directory.own().map_err(Failure::Study)?;
     let plan = case_file::of_run(&directory)?;
+    if is_complete(&directory, &plan) {
+        return nothing_to_do(&directory);
+    }
     lead(&plan, directory, listen()?, study::resume)
 }
 
@@ -71,12 +89,18 @@ fn listen() -> Result<Interrupt, Failure> {
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))
 }
 
-/// Whether there is nothing at a path, or an empty folder.
-fn is_blank(path: &Path) -> bool {
-    match std::fs::read_dir(path) {
-        Ok(mut entries) => entries.next().is_none(),
-        Err(error) => error.kind() == std::io::ErrorKind::NotFound,
-    }
+/// Whether a run is at its end, with its pictures.
+fn is_complete(directory: &RunDirectory, plan: &Plan) -> bool {
+    let drawn = directory.path().join("energy.png").exists();
+    directory.verdict() == "complete" && (drawn || !plan.output.pictures)
+}
+
+fn nothing_to_do(directory: &RunDirectory) -> Result<(), Failure> {
+    directory.tidy().map_err(Failure::Study)?;
+    console::say(&format!(
+        "{} is complete; there is nothing to go on with\n",
+        directory.path().display()
+    ))
 }
 
 /// Refuses another case than the one that was begun, but for what may change.
@@ -85,12 +109,9 @@ fn may_go_on(
     [(before, old), (text, new)]: [(&str, &Plan); 2],
 ) -> Result<(), Failure> {
     let (rows, _) = directory.history_so_far().map_err(Failure::Study)?;
-    let stage = match directory.checkpoint(old, &rows) {
-        Ok((checkpoint, _)) => checkpoint.stage,
-        // It will be told of.
-        Err(_) => None,
-    };
-    let kept = study::kept(old, new, stage);
+    let (checkpoint, _) = directory.checkpoint(old, &rows).map_err(Failure::Study)?;
+    let reached = checkpoint.memory.reached;
+    let kept = study::kept(old, new, checkpoint.stage.map(|stage| (stage, reached)));
     if kept.is_empty() {
         return Ok(());
     }

@@ -348,6 +348,104 @@ fn what_is_no_run_is_not_taken_up_and_what_is_not_there_begins() {
 }
 
 #[test]
+fn a_run_that_is_complete_stays_as_it_is() {
+    let directory = scratch("resume-complete");
+    let (whole, _) = undisturbed(&directory, ROUND);
+    for arguments in [
+        &["resume", "whole"][..],
+        &["run", "case.toml", "--out", "whole", "--resume"],
+    ] {
+        let said = plica(&directory, arguments);
+        assert!(said.status.success(), "{}", text(&said.stderr));
+        assert!(text(&said.stdout).contains("nothing to go on with"));
+        assert_same(&whole, &directory.join("whole"));
+    }
+    // Its steps are behind it.
+    fs::write(
+        directory.join("case.toml"),
+        ROUND.replace("steps = 4", "steps = 5"),
+    )
+    .unwrap();
+    let said = plica(
+        &directory,
+        &["run", "case.toml", "--out", "whole", "--resume"],
+    );
+    assert_eq!(said.status.code(), Some(2), "{}", text(&said.stderr));
+    assert_same(&whole, &directory.join("whole"));
+    // One of another version has no checkpoint that fits, and maybe another history; neither is a reason to begin again.
+    let run = directory.join("whole");
+    fs::remove_file(run.join("checkpoint.safetensors")).unwrap();
+    let history = fs::read_to_string(run.join("history.csv")).unwrap();
+    fs::write(
+        run.join("history.csv"),
+        history.replacen(",lumen,", ",width,", 1),
+    )
+    .unwrap();
+    fs::write(run.join("manifest.json"), "{\"program\": \"plica\"}").unwrap();
+    let said = plica(&directory, &["resume", "whole"]);
+    assert_eq!(said.status.code(), Some(3), "{}", text(&said.stderr));
+    assert!(run.join("states/state-0010.safetensors").exists());
+}
+
+#[test]
+fn a_run_that_was_killed_while_it_began_begins() {
+    let directory = scratch("resume-begun");
+    let (whole, _) = undisturbed(&directory, TILTED);
+    let run = directory.join("cut");
+    let begun: [&[(&str, &str)]; 4] = [
+        &[("lock", "process 1\n")],
+        &[("lock", ""), ("manifest.part", "{")],
+        &[("manifest.json", "{\"program\": \"plica\"}")],
+        &[
+            ("manifest.json", "{\"program\": \"plica\"}"),
+            ("case.toml", TILTED),
+            ("history.csv", "step,sta"),
+        ],
+    ];
+    for files in begun {
+        let _ = fs::remove_dir_all(&run);
+        fs::create_dir(&run).unwrap();
+        for (name, content) in files {
+            fs::write(run.join(name), content).unwrap();
+        }
+        let said = plica(
+            &directory,
+            &["run", "case.toml", "--out", "cut", "--resume"],
+        );
+        assert!(said.status.success(), "{files:?}: {}", text(&said.stderr));
+        assert_same(&whole, &run);
+    }
+}
+
+/// What a case names may have changed by the time that it is taken up again; what it was then is kept.
+#[test]
+fn a_run_goes_on_with_the_state_that_it_began_from() {
+    let directory = scratch("resume-start");
+    fs::write(directory.join("first.toml"), ROUND).unwrap();
+    let said = plica(&directory, &["run", "first.toml", "--out", "first"]);
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    let start = directory.join("start.safetensors");
+    fs::copy(first_state(&directory, 6), &start).unwrap();
+    let head = ROUND.split("[[stages]]").next().unwrap();
+    let case = format!(
+        "{head}\n[start]\nstate = \"start.safetensors\"\n[[stages]]\nsteps = 8\ndrive.circular.diameter_ratio = 0.5\n[output]\nstates_every = 0\n"
+    );
+    let (whole, _) = undisturbed(&directory, &case);
+    let run = stopped(&directory);
+    fs::copy(first_state(&directory, 3), &start).unwrap();
+    let said = plica(
+        &directory,
+        &["run", "case.toml", "--out", "cut", "--resume"],
+    );
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    assert_same(&whole, &run);
+}
+
+fn first_state(directory: &Path, number: usize) -> PathBuf {
+    directory.join(format!("first/states/state-{number:04}.safetensors"))
+}
+
+#[test]
 fn a_directory_has_one_owner() {
     let directory = scratch("resume-owner");
     fs::write(

@@ -125,7 +125,7 @@ impl Chance {
 }
 
 /// Reads mutations of what there is, a few or for as long as is asked for.
-fn survives(name: &str, corpus: &[Vec<u8>], finish: fn(&mut Vec<u8>), read: impl Fn(&[u8])) {
+fn survives(name: &str, corpus: &[Vec<u8>], finish: fn(&mut [u8]), read: impl Fn(&[u8])) {
     let seconds = std::env::var("PLICA_FUZZ_SECONDS").ok();
     let seconds: Option<u64> = seconds.and_then(|text| text.parse().ok());
     let begin = Instant::now();
@@ -203,7 +203,7 @@ impl plica::study::Observer for Nobody {
 }
 
 /// Gives a mutation the checksum that it would have, so that what lies behind it is reached.
-fn checksummed(bytes: &mut Vec<u8>) {
+fn checksummed(bytes: &mut [u8]) {
     let name = b"blake3\\\":\\\"";
     let Some(at) = bytes.windows(name.len()).position(|window| window == name) else {
         return;

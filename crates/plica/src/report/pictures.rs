@@ -47,7 +47,8 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
             cutaway(plan, &tube, &chosen, upwards).png(WIDTH)
         }),
     ];
-    drawings
+    let count = if chosen.is_empty() { 1 } else { drawings.len() };
+    drawings[..count]
         .par_iter()
         .map(|(name, draw)| Ok(((*name).to_owned(), draw()?)))
         .collect()

@@ -5,6 +5,7 @@
 
 use super::{Array, Plan, Row, SavedState, SavedStateError};
 use crate::solve::{Behind, Memory};
+use crate::tube::Load;
 use std::collections::BTreeMap;
 
 /// A state to go on from.
@@ -142,10 +143,27 @@ impl Checkpoint {
         if Digest::of(own).finish() != self.history {
             return Err("history.csv is not the one that it was written beside".into());
         }
-        if self.stage.is_some_and(|stage| stage >= plan.stages.len()) {
+        let Some([from, to]) = self.leg(plan) else {
             return Err("its stage is none of the case's".into());
+        };
+        if self.state.load != from.towards(&to, self.memory.reached) {
+            return Err("its load is not on the way of the case".into());
         }
         Ok(())
+    }
+
+    /// The loads between which it is on its way by a plan; none if the plan has no such stage.
+    pub fn leg(&self, plan: &Plan) -> Option<[Load; 2]> {
+        let first = match &plan.start {
+            Some(start) => start.load.clone(),
+            None => plan.tube.rest(),
+        };
+        let end = |stage: usize| Some(plan.stages.get(stage)?.load.clone());
+        match self.stage {
+            None => Some([first.clone(), first]),
+            Some(0) => Some([first, end(0)?]),
+            Some(stage) => Some([end(stage - 1)?, end(stage)?]),
+        }
     }
 }
 

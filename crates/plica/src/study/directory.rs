@@ -24,6 +24,7 @@ use std::path::{Path, PathBuf};
 /// | `pictures/` | states and paths drawn on request |
 /// | `report.html` | the run as a page, on request |
 /// | `vtk/` | states as files of VTK, in a folder and a collection for each kind |
+/// | `start.safetensors` | the state that the run began from, if not from rest |
 /// | `imperfections/mode-NN.safetensors` | a mode that imperfection NN has the shape of |
 /// | `stability.csv`, `eigenvalues.csv`, `eigenpairs.csv`, `modes/` | what a test of stability found |
 #[derive(Debug)]
@@ -55,6 +56,9 @@ const SPARE: &str = "spare";
 /// The newest checkpoint, and the one before it.
 const CHECKPOINTS: [&str; 2] = ["checkpoint.safetensors", "checkpoint-before.safetensors"];
 
+/// The state that a run began from.
+const START: &str = "start.safetensors";
+
 /// Ending of the files of saved states.
 const STATE_ENDING: &str = "safetensors";
 
@@ -72,7 +76,7 @@ impl RunDirectory {
                     if !is_a_run(path) {
                         return Err(StudyError::NotARun(path.to_owned()));
                     }
-                    if !overwrite {
+                    if !overwrite && !is_unborn(path) {
                         return Err(StudyError::Occupied(path.to_owned()));
                     }
                 }
@@ -83,20 +87,22 @@ impl RunDirectory {
             Err(e) => return Err(trouble(e)),
         }
         let lock = Some(Lock::take(path)?);
-        clear(path)?;
         let mut directory = Self {
             path: path.to_owned(),
             case_hash: String::new(),
             history: None,
             lock,
         };
+        // First of all, so that whatever becomes of the rest it is known as a run.
+        directory.write_manifest(&serde_json::json!({ "program": PROGRAM }))?;
+        clear(path)?;
         directory.write_case(case_text)?;
         Ok(directory)
     }
 
     /// Writes the case, in the place of another if there is one.
     pub fn write_case(&mut self, case_text: &str) -> Result<(), StudyError> {
-        // First of all the manifest, so that whatever becomes of the rest it is known as a run; and it holds no case to be another.
+        // The manifest first: so it holds no case to be another.
         let mut about = match self.manifest() {
             serde_json::Value::Object(about) => about,
             _ => serde_json::Map::new(),
@@ -325,6 +331,9 @@ impl RunDirectory {
                     .filter_map(beyond),
             );
         }
+        later.extend(
+            ["case.part", "manifest.part", "history.part"].map(|name| self.path.join(name)),
+        );
         remove(later)?;
         if rows.is_empty() {
             return remove(vec![path]);
@@ -396,9 +405,26 @@ impl RunDirectory {
         })
     }
 
-    /// Whether it has left any checkpoint, sound or not.
-    pub fn has_checkpoint(&self) -> bool {
-        CHECKPOINTS.iter().any(|name| self.path.join(name).exists())
+    /// Whether there is a run at a path: a case, at least, that is to be run.
+    pub fn is_there(path: &Path) -> bool {
+        is_a_run(path) && !is_unborn(path)
+    }
+
+    /// Whether the run has not come to its first checkpoint: to no more than one state, and to nothing that would be lost.
+    pub fn has_hardly_begun(&self) -> bool {
+        let checkpoint = CHECKPOINTS.iter().any(|name| self.path.join(name).exists());
+        let history = fs::read(self.path.join(HISTORY)).unwrap_or_default();
+        let rows = history.iter().filter(|byte| **byte == b'\n').count();
+        let later = [
+            (PROFILES, "csv"),
+            (STATES, STATE_ENDING),
+            (SPARE, STATE_ENDING),
+        ];
+        let later = later.iter().any(|(folder, ending)| {
+            let states = self.numbered(folder, ending).unwrap_or_default();
+            states.keys().any(|state| *state > 0)
+        });
+        !checkpoint && rows <= 2 && !later && self.verdict() != "complete"
     }
 
     /// Takes out a newest checkpoint that is broken, lest it push out the one before it.
@@ -485,6 +511,20 @@ impl RunDirectory {
         self.path.join(imperfection(number))
     }
 
+    /// Where the state is kept that the run began from, if not from rest.
+    pub fn start(&self) -> PathBuf {
+        self.path.join(START)
+    }
+
+    /// Keeps the state that the run begins from.
+    pub fn write_start(&self, state: &SavedState) -> Result<(), StudyError> {
+        let bytes = state.to_bytes().map_err(|source| StudyError::State {
+            path: self.start(),
+            source,
+        })?;
+        self.write(START, &bytes)
+    }
+
     /// Keeps the mode that an imperfection has the shape of.
     pub fn write_imperfection(&self, mode: &NamedMode) -> Result<(), StudyError> {
         let name = imperfection(mode.imperfection);
@@ -533,6 +573,10 @@ impl RunDirectory {
             .write_all(bytes)
             .and_then(|()| file.sync_all())
             .and_then(|()| fs::rename(&aside, &path));
+        if let (Ok(()), Some(parent)) = (&written, path.parent()) {
+            // The new name, too; where folders cannot be flushed, the system does it in time.
+            let _ = File::open(parent).and_then(|folder| folder.sync_all());
+        }
         if written.is_err() {
             // On a full disk it would only stand in the way.
             let _ = fs::remove_file(&aside);
@@ -552,6 +596,11 @@ fn is_a_run(path: &Path) -> bool {
     manifest(path)["program"] == PROGRAM
 }
 
+/// Whether a directory is that of a run that was killed before its case was there.
+fn is_unborn(path: &Path) -> bool {
+    is_a_run(path) && ![CASE, HISTORY].iter().any(|name| path.join(name).exists())
+}
+
 /// Whether a file is what is left of a run that could not even begin.
 fn is_left_over(file: &Path) -> bool {
     let name = file.file_name().and_then(|name| name.to_str());
@@ -560,13 +609,13 @@ fn is_left_over(file: &Path) -> bool {
         .contains(&name)
 }
 
-/// Takes what a former run wrote out of its directory, known by name; every other file stays. The
-/// manifest goes last, so that what is left of a broken attempt is still known as a run.
+/// Takes what a former run wrote out of its directory, known by name; every other file stays, and so does the manifest, so
+/// that what is left of a broken attempt is still known as a run.
 fn clear(path: &Path) -> Result<(), StudyError> {
     let mut old = stability_files(path);
     let pictures = ["energy.png", "walls.png", "tube.png", "report.html"];
     old.extend(
-        [CASE, HISTORY, "history.part", "checkpoint.part"]
+        [CASE, START, HISTORY, "history.part", "checkpoint.part"]
             .iter()
             .chain(&CHECKPOINTS)
             .chain(&pictures)
@@ -595,7 +644,6 @@ fn clear(path: &Path) -> Result<(), StudyError> {
     }));
     old.extend(["walls", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))));
     old.push(path.join("vtk/walls.vtkhdf"));
-    old.push(path.join(MANIFEST));
     remove(old)
 }
 

@@ -2,9 +2,9 @@
 
 use super::{Plan, Start};
 
-/// What keeps a run that was begun by one plan, and has come into a stage, from going on by another, in words; nothing if it can
+/// What keeps a run that was begun by one plan, and has come so far into a stage, from going on by another, in words; nothing if it can
 /// go on. The title, the solver, the outputs, the number of steps of the stage it is in and all later stages may change.
-pub fn kept(old: &Plan, new: &Plan, stage: Option<usize>) -> Vec<String> {
+pub fn kept(old: &Plan, new: &Plan, within: Option<(usize, f64)>) -> Vec<String> {
     let mut other = vec![];
     let mut hold = |same: bool, what: String| {
         if !same {
@@ -20,18 +20,23 @@ pub fn kept(old: &Plan, new: &Plan, stage: Option<usize>) -> Vec<String> {
         start.map(|Start { load, .. }| load.clone())
     };
     hold(start(old) == start(new), "the start".into());
-    let begun = stage.map_or(0, |stage| stage + 1);
+    let begun = within.map_or(0, |(stage, _)| stage + 1);
     for k in 0..begun {
+        let is_done = within.is_some_and(|(stage, reached)| k < stage || reached == 1.0);
+        let steps = |plan: &Plan| {
+            plan.stages
+                .get(k)
+                .map(|stage| stage.steps)
+                .filter(|_| is_done)
+        };
         let of = |plan: &Plan| {
             plan.stages
                 .get(k)
                 .map(|stage| (stage.name.clone(), stage.load.clone()))
         };
         let name = &old.stages[k].name;
-        hold(
-            of(old) == of(new),
-            format!("stage `{name}`, which has begun"),
-        );
+        let same = of(old) == of(new) && steps(old) == steps(new);
+        hold(same, format!("stage `{name}`, which has begun"));
     }
     other
 }
@@ -55,7 +60,7 @@ mod tests {
         let change = |change: fn(&mut Plan)| {
             let mut new = old.clone();
             change(&mut new);
-            kept(&old, &new, Some(1))
+            kept(&old, &new, Some((1, 0.5)))
         };
         assert!(change(|_| {}).is_empty());
         assert!(change(|plan| plan.title = "another".into()).is_empty());
@@ -73,5 +78,6 @@ mod tests {
         let ended = change(|plan| plan.stages[1].load.ends[0].twist = 1.0);
         assert_eq!(ended, ["stage `b`, which has begun"]);
         assert_eq!(change(|plan| plan.stages.truncate(1)).len(), 1);
+        assert_eq!(change(|plan| plan.stages[0].steps = 9).len(), 1);
     }
 }

@@ -8,6 +8,9 @@ use std::path::Path;
 /// Name of the file that is locked.
 pub(super) const LOCK: &str = "lock";
 
+/// What Linux says (ENOLCK) of a file system whose locks are not served.
+const NO_LOCKS: i32 = 37;
+
 /// A run directory as one's own. The system lets go of it when the process ends, however that ends, so that none is ever stale.
 #[derive(Debug)]
 pub(super) struct Lock(File);
@@ -23,6 +26,10 @@ impl Lock {
             path: path.clone(),
             source,
         };
+        if path.is_symlink() {
+            let why = "is a link, and a run keeps its own; remove it";
+            return Err(trouble(std::io::Error::other(why)));
+        }
         let options = OpenOptions::new()
             .read(true)
             .write(true)
@@ -39,7 +46,10 @@ impl Lock {
                     owner: owner.trim().to_owned(),
                 });
             }
-            Err(TryLockError::Error(error)) if error.kind() != std::io::ErrorKind::Unsupported => {
+            Err(TryLockError::Error(error))
+                if error.kind() != std::io::ErrorKind::Unsupported
+                    && error.raw_os_error() != Some(NO_LOCKS) =>
+            {
                 return Err(trouble(error));
             }
             _ => {}

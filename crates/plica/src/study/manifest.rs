@@ -12,7 +12,7 @@ pub struct Manifest {
     /// Always `plica`.
     pub program: &'static str,
     /// Version of the program.
-    pub version: &'static str,
+    pub version: String,
     /// Title of the case.
     pub title: String,
     /// BLAKE3 of `case.toml`.
@@ -33,9 +33,9 @@ pub struct Manifest {
     pub stress_unit: String,
     /// Seconds since 1970 at the start.
     pub started_unix: u64,
-    /// Seconds since 1970 at which it was taken up again, each time.
+    /// When and by what it was taken up again, each time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub resumed_unix: Vec<u64>,
+    pub resumed: Vec<serde_json::Value>,
     /// Seconds since 1970 at the end; none while it runs.
     pub ended_unix: Option<u64>,
     /// running, complete, stopped or lost.
@@ -56,7 +56,7 @@ impl Manifest {
         let scale = Scale::of(plan.units.as_ref());
         Self {
             program: super::directory::PROGRAM,
-            version: env!("CARGO_PKG_VERSION"),
+            version: env!("CARGO_PKG_VERSION").into(),
             title: plan.title.clone(),
             case_hash: directory.case_hash().to_owned(),
             start_state: plan.start.as_ref().map(|start| start.file.clone()),
@@ -67,7 +67,7 @@ impl Manifest {
             energy_unit: scale.energy_name,
             stress_unit: scale.stress_name,
             started_unix: now(),
-            resumed_unix: vec![],
+            resumed: vec![],
             ended_unix: None,
             verdict: "running".into(),
             verdict_text: "the run has not ended (or was killed)".into(),
@@ -77,19 +77,26 @@ impl Manifest {
         }
     }
 
-    /// Where a run is taken up again.
+    /// Where a run is taken up again: by what it was begun stays.
     pub fn again(plan: &Plan, directory: &RunDirectory) -> Self {
-        let begun = Self::begin(plan, directory);
+        let now = Self::begin(plan, directory);
         let before = directory.manifest();
-        let times = before["resumed_unix"].as_array().into_iter().flatten();
-        let mut resumed_unix: Vec<u64> = times.filter_map(serde_json::Value::as_u64).collect();
-        resumed_unix.push(begun.started_unix);
+        let mut resumed = before["resumed"].as_array().cloned().unwrap_or_default();
+        resumed.push(serde_json::json!({
+            "unix": now.started_unix,
+            "version": now.version,
+            "machine": now.machine,
+            "threads": now.threads,
+        }));
+        let text = |name: &str, now: String| before[name].as_str().map_or(now, String::from);
+        let number = |name: &str, now: u64| before[name].as_u64().unwrap_or(now);
         Self {
-            started_unix: before["started_unix"]
-                .as_u64()
-                .unwrap_or(begun.started_unix),
-            resumed_unix,
-            ..begun
+            version: text("version", now.version),
+            machine: text("machine", now.machine),
+            threads: number("threads", now.threads as u64) as usize,
+            started_unix: number("started_unix", now.started_unix),
+            resumed,
+            ..now
         }
     }
 

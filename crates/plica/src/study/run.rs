@@ -27,11 +27,15 @@ pub fn run(
 ) -> Result<Summary, StudyError> {
     fits(plan)?;
     directory.own()?;
-    let manifest = Manifest::begin(plan, directory);
-    directory.write_manifest(&manifest)?;
+    // Before the first state, so that whatever has one has what it began with.
     for mode in &plan.modes {
         directory.write_imperfection(mode)?;
     }
+    if let Some(start) = &plan.start {
+        directory.write_start(&start.state)?;
+    }
+    let manifest = Manifest::begin(plan, directory);
+    directory.write_manifest(&manifest)?;
     lead(plan, directory, observer, manifest, None)
 }
 
@@ -49,18 +53,12 @@ pub fn resume(
 ) -> Result<Summary, StudyError> {
     fits(plan)?;
     directory.own()?;
-    let rows = match directory.history_so_far() {
-        Ok((rows, _)) => rows,
-        // Killed before its first state was written down.
-        Err(_) if !directory.has_checkpoint() => vec![],
-        Err(error) => return Err(error),
-    };
-    // A run that ended before its first checkpoint has one state at most.
-    if rows.len() <= 1 && !directory.has_checkpoint() {
+    if directory.has_hardly_begun() {
         observer.noticed("the run had hardly begun; it begins again");
         directory.go_on_after(&[])?;
         return run(plan, directory, observer);
     }
+    let (rows, _) = directory.history_so_far()?;
     let (checkpoint, broken) = directory.checkpoint(plan, &rows)?;
     for why in &broken {
         observer.noticed(&format!(
@@ -70,7 +68,12 @@ pub fn resume(
     if !broken.is_empty() {
         directory.drop_newest_checkpoint()?;
     }
+    let recorded = rows.len();
     let mut rows = rows[..=checkpoint.state.row].to_vec();
+    if rows.len() < recorded {
+        // It tells of states that are to be found again.
+        directory.clear_stability()?;
+    }
     if plan.is_pressed() {
         rows = rows.into_iter().map(Row::pressed).collect();
     }
@@ -103,7 +106,12 @@ fn lead(
         Some((checkpoint, rows)) => {
             record.restore(rows, observer);
             let stage = checkpoint.stage;
-            Ok((take_up(plan, &problem, checkpoint), stage))
+            let path = take_up(plan, &problem, checkpoint);
+            let path = path.map_err(|why| StudyError::NoCheckpoint {
+                path: record.directory.path().to_owned(),
+                reasons: vec![why],
+            })?;
+            Ok((path, stage))
         }
     };
     let ending = match begun {
@@ -125,40 +133,25 @@ fn lead(
     ))
 }
 
-/// The path at a checkpoint of a plan.
+/// The path at a checkpoint that fits a plan.
 fn take_up<'a>(
     plan: &Plan,
     problem: &'a TubeProblem,
     checkpoint: Checkpoint,
-) -> Path<'a, TubeProblem> {
-    let Checkpoint {
-        state,
-        stage,
-        memory,
-        ..
-    } = checkpoint;
-    let first = || {
-        plan.start
-            .as_ref()
-            .map_or(plan.tube.rest(), |start| start.load.clone())
-    };
-    let end = |stage: usize| plan.stages[stage].load.clone();
-    let leg = match stage {
-        None => [first(), first()],
-        Some(0) => [first(), end(0)],
-        Some(stage) => [end(stage - 1), end(stage)],
-    };
-    match Path::go_on(
+) -> Result<Path<'a, TubeProblem>, String> {
+    let leg = checkpoint
+        .leg(plan)
+        .ok_or("its stage is none of the case's")?;
+    let Checkpoint { state, memory, .. } = checkpoint;
+    Path::go_on(
         problem,
         leg,
         state.load,
         state.u,
         memory,
         plan.solver.clone(),
-    ) {
-        Ok(path) => path,
-        Err(broken) => unreachable!("a state that was accepted is not inverted: {broken}"),
-    }
+    )
+    .map_err(|broken| format!("its state is none of a wall: {broken}"))
 }
 
 /// Stage after stage, step after step; the path may be on its way through one already.
@@ -192,7 +185,9 @@ fn follow(
             match path.advance(n as f64 / stage.steps as f64, &mut watch) {
                 Ok(step) => {
                     record.accept(&stage.name, &mut path, &step, n == stage.steps, observer)?;
-                    record.leave_checkpoint(Some(k), &path, observer)?;
+                    if !record.leave_checkpoint(Some(k), &path, observer)? {
+                        return Ok(Ending::Stopped);
+                    }
                 }
                 Err(error) => {
                     // What was reached on the way is a good state too.
@@ -502,7 +497,9 @@ impl<'a> Record<'a> {
     fn restore(&mut self, rows: Vec<Row>, observer: &mut dyn Observer) {
         if self.plan.output.pictures {
             let snapshot = |row: &Row| {
-                let SavedState { load, u, .. } = self.directory.state(row.step).ok()?;
+                let state = self.directory.state(row.step).ok()?;
+                state.belongs_to(self.plan).ok()?;
+                let SavedState { load, u, .. } = state;
                 Some(Snapshot { load, u })
             };
             self.snapshots = rows.iter().map(snapshot).collect();
@@ -518,23 +515,24 @@ impl<'a> Record<'a> {
         self.rows = rows;
     }
 
-    /// Leaves what it takes to go on from the last accepted state, in a stage or before the first. Not where someone has asked
-    /// to stop: what was to be found out about the state may have been cut short.
+    /// Leaves what it takes to go on from the last accepted state, in a stage or before the first; says whether. Not where someone
+    /// has asked to stop: what was to be found out about the state may have been cut short, so that it is to be found again.
     fn leave_checkpoint(
         &self,
         stage: Option<usize>,
         path: &Path<'_, TubeProblem>,
         observer: &mut dyn Observer,
-    ) -> Result<(), StudyError> {
+    ) -> Result<bool, StudyError> {
         let Some(row) = self.rows.last().filter(|_| !observer.stop()) else {
-            return Ok(());
+            return Ok(false);
         };
         self.directory.write_checkpoint(Checkpoint {
             state: self.saved(row, path),
             stage,
             memory: path.memory(),
             history: self.digest.finish(),
-        })
+        })?;
+        Ok(true)
     }
 
     fn saved(&self, row: &Row, path: &Path<'_, TubeProblem>) -> SavedState {

@@ -1,5 +1,7 @@
 //! What the tests of pages share.
 
+#![allow(dead_code)] // every file of tests uses a part
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
