@@ -59,7 +59,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
                 }
             }
         };
-        if same && is_complete(&directory, &plan) {
+        if same && directory.is_complete() {
             return nothing_to_do(&directory);
         }
         if !same {
@@ -78,7 +78,7 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
     let mut directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
     directory.own().map_err(Failure::Study)?;
     let plan = case_file::of_run(&directory)?;
-    if is_complete(&directory, &plan) {
+    if directory.is_complete() {
         return nothing_to_do(&directory);
     }
     lead(&plan, directory, listen()?, study::resume)
@@ -87,12 +87,6 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
 fn listen() -> Result<Interrupt, Failure> {
     Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))
-}
-
-/// Whether a run is at its end, with its pictures.
-fn is_complete(directory: &RunDirectory, plan: &Plan) -> bool {
-    let drawn = directory.path().join("energy.png").exists();
-    directory.verdict() == "complete" && (drawn || !plan.output.pictures)
 }
 
 fn nothing_to_do(directory: &RunDirectory) -> Result<(), Failure> {

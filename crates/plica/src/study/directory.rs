@@ -452,12 +452,19 @@ impl RunDirectory {
         SavedState::read(&path).map_err(|source| StudyError::State { path, source })
     }
 
-    /// Takes out what only a run that goes on needs.
+    /// Takes out what only a run that goes on needs, once its pictures are drawn.
     pub fn tidy(&self) -> Result<(), StudyError> {
+        // First of all, so that pictures are not drawn again while states that they need are going.
+        remove(vec![self.path.join(CHECKPOINTS[1])])?;
         remove(self.numbered(SPARE, STATE_ENDING)?.into_values().collect())?;
         // Empty by now; if not, it holds something that is not a run's.
         let _ = fs::remove_dir(self.path.join(SPARE));
-        remove(vec![self.path.join(CHECKPOINTS[1])])
+        Ok(())
+    }
+
+    /// Whether the run is at its end, its pictures drawn.
+    pub fn is_complete(&self) -> bool {
+        self.verdict() == "complete" && !self.path.join(CHECKPOINTS[1]).exists()
     }
 
     /// Writes `manifest.json`.
