@@ -62,6 +62,13 @@ const START: &str = "start.safetensors";
 /// Ending of the files of saved states.
 const STATE_ENDING: &str = "safetensors";
 
+/// The folders that hold a file of every state, or of some, and the ending of those.
+const OF_STATES: [(&str, &str); 3] = [
+    (PROFILES, "csv"),
+    (STATES, STATE_ENDING),
+    (SPARE, STATE_ENDING),
+];
+
 impl RunDirectory {
     /// Makes the directory and writes the case into it. A directory that holds anything is left
     /// alone, unless it is that of a former run and `overwrite` is given.
@@ -319,11 +326,7 @@ impl RunDirectory {
             source,
         };
         let mut later = vec![];
-        for (folder, ending) in [
-            (PROFILES, "csv"),
-            (STATES, STATE_ENDING),
-            (SPARE, STATE_ENDING),
-        ] {
+        for (folder, ending) in OF_STATES {
             let beyond = |(number, file): (usize, PathBuf)| (number >= rows.len()).then_some(file);
             later.extend(
                 self.numbered(folder, ending)?
@@ -360,16 +363,11 @@ impl RunDirectory {
             path: now.clone(),
             source,
         };
-        let state = checkpoint.into_state();
-        let bytes = state.to_bytes().map_err(|source| StudyError::State {
-            path: now.clone(),
-            source,
-        })?;
         match fs::rename(&now, &before) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(trouble(e)),
             _ => {}
         }
-        self.write(CHECKPOINTS[0], &bytes)
+        self.write_saved(CHECKPOINTS[0], &checkpoint.into_state())
     }
 
     /// The checkpoint to go on from, and what is wrong with a newer one.
@@ -415,12 +413,7 @@ impl RunDirectory {
         let checkpoint = CHECKPOINTS.iter().any(|name| self.path.join(name).exists());
         let history = fs::read(self.path.join(HISTORY)).unwrap_or_default();
         let rows = history.iter().filter(|byte| **byte == b'\n').count();
-        let later = [
-            (PROFILES, "csv"),
-            (STATES, STATE_ENDING),
-            (SPARE, STATE_ENDING),
-        ];
-        let later = later.iter().any(|(folder, ending)| {
+        let later = OF_STATES.iter().any(|(folder, ending)| {
             let states = self.numbered(folder, ending).unwrap_or_default();
             states.keys().any(|state| *state > 0)
         });
@@ -434,20 +427,13 @@ impl RunDirectory {
 
     /// Keeps a state that pictures may need and that is not among the saved ones.
     pub fn write_spare(&self, state: &SavedState) -> Result<(), StudyError> {
-        let name = format!("{SPARE}/state-{:04}.{STATE_ENDING}", state.row);
-        let bytes = state.to_bytes().map_err(|source| StudyError::State {
-            path: self.path.join(&name),
-            source,
-        })?;
-        self.write(&name, &bytes)
+        self.write_saved(&name_of_spare(state.row), state)
     }
 
     /// A state by the number of its row, among the saved ones or else among the spare.
     pub fn state(&self, row: usize) -> Result<SavedState, StudyError> {
         let saved = self.path.join(Self::name_of_state(row));
-        let spare = self
-            .path
-            .join(format!("{SPARE}/state-{row:04}.{STATE_ENDING}"));
+        let spare = self.path.join(name_of_spare(row));
         let path = if saved.exists() { saved } else { spare };
         SavedState::read(&path).map_err(|source| StudyError::State { path, source })
     }
@@ -494,22 +480,13 @@ impl RunDirectory {
 
     /// Saves a state in full, under the number of its row.
     pub fn write_state(&self, state: &SavedState) -> Result<(), StudyError> {
-        let name = Self::name_of_state(state.row);
-        let bytes = state.to_bytes().map_err(|source| StudyError::State {
-            path: self.path.join(&name),
-            source,
-        })?;
-        self.write(&name, &bytes)
+        self.write_saved(&Self::name_of_state(state.row), state)
     }
 
     /// Saves a mode, under a name without an ending; gives its relative path.
     pub fn write_mode(&self, name: &str, mode: &SavedState) -> Result<String, StudyError> {
         let name = format!("modes/{name}.{STATE_ENDING}");
-        let bytes = mode.to_bytes().map_err(|source| StudyError::State {
-            path: self.path.join(&name),
-            source,
-        })?;
-        self.write(&name, &bytes)?;
+        self.write_saved(&name, mode)?;
         Ok(name)
     }
 
@@ -525,21 +502,21 @@ impl RunDirectory {
 
     /// Keeps the state that the run begins from.
     pub fn write_start(&self, state: &SavedState) -> Result<(), StudyError> {
-        let bytes = state.to_bytes().map_err(|source| StudyError::State {
-            path: self.start(),
-            source,
-        })?;
-        self.write(START, &bytes)
+        self.write_saved(START, state)
     }
 
     /// Keeps the mode that an imperfection has the shape of.
     pub fn write_imperfection(&self, mode: &NamedMode) -> Result<(), StudyError> {
-        let name = imperfection(mode.imperfection);
-        let bytes = mode.state.to_bytes().map_err(|source| StudyError::State {
-            path: self.path.join(&name),
+        self.write_saved(&imperfection(mode.imperfection), &mode.state)
+    }
+
+    /// Writes a state, or what has the form of one, under a relative path.
+    fn write_saved(&self, name: &str, state: &SavedState) -> Result<(), StudyError> {
+        let bytes = state.to_bytes().map_err(|source| StudyError::State {
+            path: self.path.join(name),
             source,
         })?;
-        self.write(&name, &bytes)
+        self.write(name, &bytes)
     }
 
     /// Writes a table of texts under a relative path, its first row the names of the columns.
@@ -629,14 +606,12 @@ fn clear(path: &Path) -> Result<(), StudyError> {
             .map(|name| path.join(name)),
     );
     old.extend(modes(&path.join("imperfections")));
-    for (folder, ending) in [
-        (PROFILES, "csv"),
-        (STATES, STATE_ENDING),
-        (SPARE, STATE_ENDING),
+    let drawn = [
         ("vtk/walls", "vtp"),
         ("vtk/volume", "vtu"),
         ("vtk/linear", "vtu"),
-    ] {
+    ];
+    for (folder, ending) in OF_STATES.into_iter().chain(drawn) {
         let mine = |file: &Path, ending| number_of_state(file, ending).is_some();
         old.extend(files(&path.join(folder)).filter(|f| mine(f, ending) || mine(f, "part")));
     }
@@ -680,6 +655,11 @@ fn modes(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
             .unwrap_or_default();
         name.starts_with("mode-") && name.ends_with(STATE_ENDING)
     })
+}
+
+/// The relative path of a state that is kept for pictures.
+fn name_of_spare(row: usize) -> String {
+    format!("{SPARE}/state-{row:04}.{STATE_ENDING}")
 }
 
 /// The relative path of the mode that an imperfection has the shape of.
