@@ -1,0 +1,92 @@
+//! What a former run wrote, known by name: it alone is ever taken out of a directory.
+
+use super::{CASE, CHECKPOINTS, HISTORY, OF_STATES, START, STATE_ENDING, number_of_state};
+use crate::study::StudyError;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Takes what a former run wrote out of its directory, known by name; every other file stays, and so does the manifest, so
+/// that what is left of a broken attempt is still known as a run.
+pub(super) fn clear(path: &Path) -> Result<(), StudyError> {
+    let mut old = stability_files(path);
+    let pictures = ["energy.png", "walls.png", "tube.png", "report.html"];
+    old.extend(
+        [CASE, START, HISTORY, "history.part", "checkpoint.part"]
+            .iter()
+            .chain(&CHECKPOINTS)
+            .chain(&pictures)
+            .map(|name| path.join(name)),
+    );
+    old.extend(modes(&path.join("imperfections")));
+    let drawn = [
+        ("vtk/walls", "vtp"),
+        ("vtk/volume", "vtu"),
+        ("vtk/linear", "vtu"),
+    ];
+    for (folder, ending) in OF_STATES.into_iter().chain(drawn) {
+        let mine = |file: &Path, ending| number_of_state(file, ending).is_some();
+        old.extend(files(&path.join(folder)).filter(|f| mine(f, ending) || mine(f, "part")));
+    }
+    old.extend(files(&path.join("pictures")).filter(|file| {
+        let name = file
+            .file_name()
+            .and_then(|name| name.to_str())
+            .unwrap_or_default();
+        let (stem, ending) = name.rsplit_once('.').unwrap_or_default();
+        (stem.contains("-state-") || stem.ends_with("-path"))
+            && ["png", "svg", "apng", "mp4"].contains(&ending)
+    }));
+    old.extend(["walls", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))));
+    old.push(path.join("vtk/walls.vtkhdf"));
+    remove(old)
+}
+
+/// What a test of stability writes.
+pub(super) fn stability_files(path: &Path) -> Vec<PathBuf> {
+    let names = [
+        "stability.csv",
+        "eigenvalues.csv",
+        "eigenpairs.csv",
+        "stability.png",
+        "mode.png",
+    ];
+    let modes = modes(&path.join("modes"));
+    names
+        .iter()
+        .map(|name| path.join(name))
+        .chain(modes)
+        .collect()
+}
+
+/// The files of modes in a folder.
+fn modes(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+    files(folder).filter(|file| {
+        let name = file
+            .file_name()
+            .and_then(|name| name.to_str())
+            .unwrap_or_default();
+        name.starts_with("mode-") && name.ends_with(STATE_ENDING)
+    })
+}
+
+/// The files in a folder, if it is there.
+pub(super) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+    let entries = fs::read_dir(folder).into_iter().flatten();
+    entries.flatten().map(|entry| entry.path())
+}
+
+/// Removes files that may be there.
+pub(super) fn remove(files: Vec<PathBuf>) -> Result<(), StudyError> {
+    for file in files {
+        match fs::remove_file(&file) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                return Err(StudyError::File {
+                    path: file,
+                    source: e,
+                });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
