@@ -1,7 +1,7 @@
 //! What a study will take, without running it.
 
 use super::harmonic_tangent::HarmonicTangent;
-use super::{Plan, TubeProblem};
+use super::{Plan, StudyError, TubeProblem};
 use crate::assembly::SplineTube;
 use crate::solve::{Equilibrium, Scheme, Solver, Tangent};
 use crate::tube::{Imperfection, Integration, Mesh, Part};
@@ -126,4 +126,33 @@ fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
         seconds = seconds.min(tangent + more * solve);
     }
     seconds * whole as f64 / piece as f64
+}
+
+/// Refuses a study that the free memory of the machine does not hold, where the system tells
+/// (Linux). [`super::run`] asks this too; ask first if something would be lost by then.
+pub fn fits(plan: &Plan) -> Result<(), StudyError> {
+    let (needed, Some(available)) = (memory_bytes(plan), available_memory()) else {
+        return Ok(());
+    };
+    if needed > available {
+        let gib = |bytes: u64| bytes as f64 / (1_u64 << 30) as f64;
+        return Err(StudyError::Memory {
+            needed_gib: gib(needed),
+            available_gib: gib(available),
+        });
+    }
+    Ok(())
+}
+
+/// Free memory in bytes, where the system tells (Linux).
+fn available_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("MemAvailable:"))?;
+    line.split_whitespace()
+        .nth(1)?
+        .parse::<u64>()
+        .ok()
+        .map(|kib| kib * 1024)
 }
