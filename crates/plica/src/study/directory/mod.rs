@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 /// | `history.csv` | one row per accepted state, see [`Row`] |
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
 /// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
-/// | `checkpoint.safetensors`, `checkpoint-before.safetensors` | the last accepted state and the one before, with what it takes to go on, see [`Checkpoint`] |
+/// | `checkpoint.safetensors`, `checkpoint-before.safetensors` | the last accepted state and the one before, with what it takes to go on, see [`super::Checkpoint`] |
 /// | `spare/` | states that are not saved, until pictures are drawn |
 /// | `lock` | held by the process that runs it |
 /// | `*.png` | pictures |
