@@ -58,6 +58,9 @@ impl Image {
                 continue;
             }
             for (column, ink) in line.iter().enumerate() {
+                if *ink == [255; 3] {
+                    continue;
+                }
                 let across = x + column as i64;
                 if across < 0 || across >= self.width as i64 {
                     continue;

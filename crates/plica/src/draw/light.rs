@@ -1,6 +1,6 @@
 //! The light that leaves a point of a surface, and the little vector algebra that needs.
 
-use super::colour::{MISSING, Map, to_light};
+use super::colour::{MISSING, Map, to_byte, to_light};
 
 /// The light that leaves a point of the surface.
 pub(super) struct Shader {
@@ -9,12 +9,15 @@ pub(super) struct Shader {
     /// The colour map as light.
     map: Vec<[f32; 3]>,
     missing: [f32; 3],
+    /// Bytes of light from 0 to 1, in even steps.
+    bytes: Vec<u8>,
     lamp: [f64; 3],
     halfway: [f64; 3],
 }
 
 impl Shader {
     const SHADES: usize = 1024;
+    const BYTES: usize = 4096;
 
     pub fn new((low, high): (f64, f64), map: Map) -> Self {
         let light = |c: [u8; 3]| c.map(|byte| to_light(byte) as f32);
@@ -29,6 +32,9 @@ impl Shader {
             per_value,
             map,
             missing: light(MISSING),
+            bytes: (0..Self::BYTES)
+                .map(|i| to_byte(i as f64 / (Self::BYTES - 1) as f64))
+                .collect(),
             lamp,
             halfway,
         }
@@ -53,6 +59,12 @@ impl Shader {
             self.map[(place.max(0.0) as usize).min(Self::SHADES)]
         };
         shade.map(|c| c * body + shine)
+    }
+
+    /// The sRGB byte of light.
+    #[inline]
+    pub fn byte(&self, light: f32) -> u8 {
+        self.bytes[(light.clamp(0.0, 1.0) * (Self::BYTES - 1) as f32) as usize]
     }
 }
 

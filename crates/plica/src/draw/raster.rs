@@ -3,7 +3,7 @@
 //! Parallel projection, so that lengths compare across the picture. A light from above the viewer's left shoulder falls
 //! on both sides of a surface; light, not sRGB bytes, is averaged over the samples of a pixel.
 
-use super::colour::{Map, to_byte};
+use super::colour::Map;
 use super::light::{Shader, cross, dot, minus, unit};
 use super::{DrawError, Image};
 use rayon::prelude::*;
@@ -327,7 +327,7 @@ impl Samples {
     }
 
     /// Means over the samples of each pixel from a row of samples on, with a fine dark line where a surface ends or another
-    /// begins.
+    /// begins. Where one surface fills a pixel, light changes little across it, and the sample in the middle does for all.
     fn resolve(
         &self,
         pixels: &mut [[u8; 3]],
@@ -336,28 +336,51 @@ impl Samples {
         scene: &Scene,
         shader: &Shader,
     ) {
-        let bytes: Vec<u8> = (0..4096).map(|i| to_byte(f64::from(i) / 4095.0)).collect();
-        let share = 1.0 / (samples * samples) as f32;
         let across = self.width / samples;
         for (pixel, out) in pixels.iter_mut().enumerate() {
             let row = from - self.rows.start + pixel / across * samples;
             let column = pixel % across * samples;
+            let filled = self.fills(column, row, samples);
+            if filled == Some(0) {
+                continue; // the paper is white
+            }
             let mut sum = [0.0f32; 3];
-            for y in row..row + samples {
-                for x in column..column + samples {
-                    let sample = y * self.width + x;
-                    let dim = if self.is_edge(x, y, samples) {
-                        0.12
-                    } else {
-                        1.0
-                    };
-                    for (s, l) in sum.iter_mut().zip(self.light(sample, scene, shader)) {
-                        *s += l * dim;
+            let mut add = |x: usize, y: usize, dim: f32| {
+                let light = self.light(y * self.width + x, scene, shader);
+                for (s, l) in sum.iter_mut().zip(light) {
+                    *s += l * dim;
+                }
+            };
+            let count = if filled.is_some() {
+                add(column + samples / 2, row + samples / 2, 1.0);
+                1
+            } else {
+                for y in row..row + samples {
+                    for x in column..column + samples {
+                        let dim = if self.is_edge(x, y, samples) {
+                            0.12
+                        } else {
+                            1.0
+                        };
+                        add(x, y, dim);
                     }
                 }
-            }
-            *out = sum.map(|s| bytes[((s * share).clamp(0.0, 1.0) * 4095.0) as usize]);
+                samples * samples
+            };
+            *out = sum.map(|s| shader.byte(s / count as f32));
         }
+    }
+
+    /// The surface that all samples of a pixel show, 0 for none, if no edge runs through it.
+    fn fills(&self, column: usize, row: usize, samples: usize) -> Option<u16> {
+        let surface = self.surface[row * self.width + column];
+        let whole = (row..row + samples).all(|y| {
+            let start = y * self.width + column;
+            let line = &self.surface[start..start + samples];
+            line.iter().all(|&one| one == surface)
+                && (column..column + samples).all(|x| !self.is_edge(x, y, samples))
+        });
+        whole.then_some(surface)
     }
 
     /// Whether another surface, nothing, or a step in depth begins `reach` samples to the right or below; rows are counted in
