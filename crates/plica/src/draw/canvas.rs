@@ -3,6 +3,9 @@
 //! kuva draws at twice the size asked for and the mean of each square is kept, since its thick strokes are smoothed
 //! across but not down. Its own axes are not used: they know neither equal aspect nor slanted letters.
 
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use kuva::RasterBackend;
@@ -10,7 +13,7 @@ use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan};
 
-use super::label::{Piece, pieces};
+use super::label::{Level, Piece, pieces};
 use super::{DrawError, Image};
 
 /// How much finer than asked kuva draws.
@@ -19,6 +22,8 @@ const FINER: usize = 2;
 const AROUND: f64 = 3.0;
 /// Farther from the corner, in points, nothing is drawn.
 const FAR: f64 = 1e5;
+/// So many widths of texts are remembered.
+const MOST_KNOWN: usize = 4_000;
 /// Fonts of texts that stay texts; they are measured in the first.
 const FONTS: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
 /// Page height of a capital letter, in text sizes.
@@ -405,7 +410,7 @@ fn written(piece: &Piece, (x, y): Place, size: f64, colour: [u8; 3]) -> Primitiv
         code: false,
         math: false,
     };
-    let size = (size * piece.level.size()).round() as u32;
+    let size = text_size(piece, size) as u32;
     Primitive::RichText {
         x,
         y,
@@ -416,32 +421,51 @@ fn written(piece: &Piece, (x, y): Place, size: f64, colour: [u8; 3]) -> Primitiv
     }
 }
 
-/// Advance of a run in kuva's pixels: what it adds between two bars, because kuva keeps its measures to itself.
+/// Whole pixels, as kuva has it.
+fn text_size(piece: &Piece, size: f64) -> f64 {
+    (size * piece.level.size()).round()
+}
+
+/// Advance of a run in kuva's pixels: what it adds between two bars, because kuva keeps its measures to itself. Letters grow
+/// with their size, so a run is measured once.
 fn piece_width(piece: &Piece, size: f64) -> f64 {
-    let between = |text: &str| {
-        let bars = Piece {
-            text: format!("|{text}|"),
-            ..piece.clone()
-        };
-        let width = size * (piece.text.chars().count() as f64 + 4.0);
-        let mut scene = Scene::new(width.ceil(), (size * 2.0).ceil());
-        scene.add(written(&bars, (size / 2.0, size * 1.5), size, [0; 3]));
-        let image = rendered(&scene).ok()?;
-        let dark = image
-            .pixels
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| p[0] < 128)
-            .map(|(i, _)| i % image.width);
-        let (first, last) = dark.fold((usize::MAX, 0), |(a, b), column| {
+    static KNOWN: Mutex<BTreeMap<(String, bool), Option<f64>>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if known.len() > MOST_KNOWN {
+        known.clear();
+    }
+    let mut between = |text: &str| {
+        let key = (text.to_string(), piece.italic);
+        *known.entry(key).or_insert_with(|| {
+            between_bars(&Piece {
+                text: format!("|{text}|"),
+                level: Level::Line,
+                ..piece.clone()
+            })
+        })
+    };
+    let ems = match (between(&piece.text), between("")) {
+        (Some(with), Some(without)) => (with - without).max(0.0),
+        _ => 0.6 * piece.text.chars().count() as f64,
+    };
+    ems * text_size(piece, size)
+}
+
+/// From the first to the last dark column of a run, in text sizes.
+fn between_bars(piece: &Piece) -> Option<f64> {
+    const LARGE: f64 = 96.0;
+    let width = LARGE * (piece.text.chars().count() as f64 + 2.0);
+    let mut scene = Scene::new(width, LARGE);
+    scene.add(written(piece, (LARGE / 2.0, LARGE * 0.7), LARGE, [0; 3]));
+    let image = rendered(&scene).ok()?;
+    let pixels = image.pixels.iter().enumerate();
+    let (first, last) = pixels
+        .filter(|(_, p)| p[0] < 128)
+        .map(|(i, _)| i % image.width)
+        .fold((usize::MAX, 0), |(a, b), column| {
             (a.min(column), b.max(column))
         });
-        last.checked_sub(first)
-    };
-    match (between(&piece.text), between("")) {
-        (Some(with), Some(without)) => with.saturating_sub(without) as f64,
-        _ => 0.6 * size * piece.text.chars().count() as f64,
-    }
+    Some(last.checked_sub(first)? as f64 / LARGE)
 }
 
 /// Cuts a run of places into strokes of `on`, `off` points apart, measured along the run.
