@@ -50,6 +50,9 @@ pub enum Command {
     Check {
         /// The case file
         case: PathBuf,
+        /// Files that the case names may lie anywhere in this folder; else only in that of the case, or where plica runs
+        #[arg(long, value_name = "DIR")]
+        within: Option<PathBuf>,
     },
     /// Write a commented case file to start from
     New {
@@ -81,6 +84,9 @@ pub struct RunArguments {
     /// title, [solver], [output], the steps of the stage it is in and all later stages may have changed
     #[arg(long, conflicts_with = "overwrite")]
     pub resume: bool,
+    /// Files that the case names may lie anywhere in this folder; else only in that of the case, or where plica runs
+    #[arg(long, value_name = "DIR")]
+    pub within: Option<PathBuf>,
     /// Threads to use [default: all cores]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

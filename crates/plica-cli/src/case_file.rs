@@ -3,19 +3,43 @@
 use crate::failure::Failure;
 use plica::case::{self, Open, Wanted};
 use plica::study::{Plan, RunDirectory, SavedState};
-use std::io::Read;
+use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
 /// Larger than any case; smaller than the memory of any machine.
 const LARGEST: u64 = 1 << 20;
 
-/// The text of a case file and what it means; files that it names are looked for from the folder of
-/// the file on.
-pub fn open(path: &Path) -> Result<(String, Plan), Failure> {
-    let folder = path.parent().unwrap_or(Path::new(""));
+/// The text of a case file and what it means; files that it names are looked for from the folder of the file on. They lie in
+/// that folder, in the one that the program runs in, or in one that the user has given.
+pub fn open(path: &Path, within: Option<&Path>) -> Result<(String, Plan), Failure> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    if let Some(within) = within.filter(|within| !within.is_dir()) {
+        let what = format!("--within {}: there is no such folder", within.display());
+        return Err(Failure::Usage(what));
+    }
     open_with(path, &|wanted| {
-        SavedState::read(&folder.join(wanted.path()))
+        let file = folder.join(wanted.path());
+        let roots = [Some(folder), Some(Path::new(".")), within];
+        if !lies_in(&file, roots.into_iter().flatten())? {
+            let why = "it lies neither in the folder of the case nor in the one that plica runs in, and a case does not reach further by \
+                itself; if it may, name a folder that holds it with --within DIR";
+            return Err(Error::new(ErrorKind::PermissionDenied, why).into());
+        }
+        SavedState::read(&file)
     })
+}
+
+/// Whether a file lies in one of some folders, links followed.
+fn lies_in<'a>(file: &Path, mut folders: impl Iterator<Item = &'a Path>) -> Result<bool, Error> {
+    let file = file.canonicalize()?;
+    Ok(folders.any(|folder| {
+        folder
+            .canonicalize()
+            .is_ok_and(|folder| file.starts_with(folder))
+    }))
 }
 
 /// The same, with another way to the files that it names.

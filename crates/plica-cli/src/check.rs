@@ -10,8 +10,8 @@ use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube};
 use std::path::Path;
 
 /// Says that a case is sound, and what it takes.
-pub fn check(path: &Path) -> Result<(), Failure> {
-    let (_, plan) = case_file::open(path)?;
+pub fn check(path: &Path, within: Option<&Path>) -> Result<(), Failure> {
+    let (_, plan) = case_file::open(path, within)?;
     let mut page = format!("{} is sound: {}\n\n", path.display(), plan.title);
     for (name, value) in rows(&plan) {
         page += &format!("  {name:<10} {value}\n");

@@ -33,7 +33,7 @@ fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<Stri
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     // Before anything computes, which checking a case may do already.
     threads::limit(arguments.threads)?;
-    let (text, plan) = case_file::open(&arguments.case)?;
+    let (text, plan) = case_file::open(&arguments.case, arguments.within.as_deref())?;
     let out = match &arguments.out {
         Some(out) => out.clone(),
         None => PathBuf::from("runs").join(case_file::stem(&arguments.case)),

@@ -181,3 +181,45 @@ fn a_state_that_is_none_of_this_tube_is_explained() {
     }
     compare("start.txt", &page);
 }
+
+#[test]
+fn a_case_does_not_reach_out_of_its_folder_by_itself() {
+    let directory = scratch("start-reach");
+    assert_eq!(run(&directory, "first", FIRST).0, Some(0));
+    let folder = directory.join("cases");
+    fs::write(folder.join("next.toml"), next(STATE)).unwrap();
+    // From where the program runs it is within; from the folder of the case it is not.
+    assert!(
+        plica(&directory, &["check", "cases/next.toml"])
+            .status
+            .success()
+    );
+    for command in [&["check", "next.toml"][..], &["run", "next.toml"]] {
+        let said = plica(&folder, command);
+        let told = text(&said.stderr);
+        assert_eq!(said.status.code(), Some(2), "{told}");
+        assert!(
+            told.contains("next.toml:") && told.contains("--within DIR"),
+            "{told}"
+        );
+        assert!(!folder.join("runs").exists());
+        let asked = [command, &["--within", ".."]].concat();
+        assert!(plica(&folder, &asked).status.success());
+    }
+    // Nor through a link.
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(
+            directory.join(STATE.trim_start_matches("../")),
+            folder.join("link"),
+        )
+        .unwrap();
+        fs::write(folder.join("next.toml"), next("link")).unwrap();
+        assert_eq!(
+            plica(&folder, &["check", "next.toml"]).status.code(),
+            Some(2)
+        );
+    }
+    let said = plica(&folder, &["check", "next.toml", "--within", "nowhere"]);
+    assert_eq!(said.status.code(), Some(2));
+}

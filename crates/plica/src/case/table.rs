@@ -73,7 +73,8 @@ pub const KEYS: &[Key] = &[
         "How many times as dense as elsewhere."),
 
     key("start.state", Text, "", Always("\"runs/tube/states/state-0015.safetensors\""), ANY,
-        "Path of a saved state, from the folder of the case file on: the run begins there, and the first stage at its load."),
+        "Path of a saved state, from the folder of the case file on, in which it lies, or where plica runs, or in the folder that `--within` names: \
+         the run begins there, and the first stage at its load."),
 
     key("stages", Tables, "", Always("[{ drive.circular.diameter_ratio = 0.5 }]"), ANY,
         "What happens, one stage after the other; each begins where the one before ends, the first at rest or at `start`."),
