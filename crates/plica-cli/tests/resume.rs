@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{plica, scratch, text, timeless};
+use common::{assert_same, left, plica, scratch, text};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -60,38 +60,6 @@ drive.ileum.twist_degrees = 10
 /// Through pseudo-time, whose velocity is carried on.
 fn dragged() -> String {
     ROUND.replace("[output]", "[solver]\nscheme = \"newmark\"\n[solver.pseudo_time]\nsettle = false\n[output]\nprofiles_every = 2")
-}
-
-/// What a run has left, by relative paths: of the history all but the wall times, of the manifest and the lock nothing.
-fn left(run: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut files = BTreeMap::new();
-    let mut folders = vec![run.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap().flatten() {
-            let path = entry.path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let name = path.strip_prefix(run).unwrap().to_owned();
-            let bytes = match name.to_str().unwrap() {
-                "manifest.json" | "lock" => continue,
-                "history.csv" => timeless(&fs::read_to_string(&path).unwrap()).into_bytes(),
-                _ => fs::read(&path).unwrap(),
-            };
-            files.insert(name, bytes);
-        }
-    }
-    files
-}
-
-fn assert_same(whole: &BTreeMap<PathBuf, Vec<u8>>, run: &Path) {
-    let got = left(run);
-    let names: Vec<_> = got.keys().collect();
-    assert_eq!(names, whole.keys().collect::<Vec<_>>());
-    for (name, bytes) in whole {
-        assert!(got[name] == *bytes, "{} differs", name.display());
-    }
 }
 
 /// A case, and what its run leaves that is let alone; how long that takes.

@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // every file of tests uses a part
 
+use std::collections::BTreeMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -80,9 +82,11 @@ pub fn short_run(directory: &Path) -> PathBuf {
     directory.join("run")
 }
 
-/// A table of states without its wall times.
+/// A table of states without its wall times; the last row may be torn.
 pub fn timeless(history: &str) -> String {
-    let mut table = csv::Reader::from_reader(history.as_bytes());
+    let mut table = csv::ReaderBuilder::new()
+        .flexible(true)
+        .from_reader(history.as_bytes());
     let seconds = table
         .headers()
         .unwrap()
@@ -99,4 +103,37 @@ pub fn timeless(history: &str) -> String {
         .records()
         .map(|record| row(record.unwrap()) + "\n")
         .collect()
+}
+
+/// What a run has left, by relative paths: of the history all but the wall times, of the manifest and the lock nothing.
+pub fn left(run: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![run.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap().flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let name = path.strip_prefix(run).unwrap().to_owned();
+            let bytes = match name.to_str().unwrap() {
+                "manifest.json" | "lock" => continue,
+                "history.csv" => timeless(&fs::read_to_string(&path).unwrap()).into_bytes(),
+                _ => fs::read(&path).unwrap(),
+            };
+            files.insert(name, bytes);
+        }
+    }
+    files
+}
+
+/// That a run has left the same.
+pub fn assert_same(whole: &BTreeMap<PathBuf, Vec<u8>>, run: &Path) {
+    let got = left(run);
+    let names: Vec<_> = got.keys().collect();
+    assert_eq!(names, whole.keys().collect::<Vec<_>>());
+    for (name, bytes) in whole {
+        assert!(got[name] == *bytes, "{} differs", name.display());
+    }
 }

@@ -97,14 +97,20 @@ impl Node {
             displacement: [0, 1, 2].map(|i| (position[i] - reference[i]) as f32),
             jacobian: sample.jacobian as f32,
             grown: sample.grown.map(|x| x as f32),
-            energy_density: sample.energy_density as f32,
-            stress: tensor(&sample.stress),
-            von_mises: sample.von_mises() as f32,
+            energy_density: existing(sample.energy_density) as f32,
+            stress: tensor(&Tensor2(sample.stress.0.map(|row| row.map(existing)))),
+            von_mises: existing(sample.von_mises()) as f32,
             stretches: stretches.map(|(stretch, _)| stretch as f32),
             directions: stretches.map(|(_, v)| vector(pointed(v)).map(|x| x as f32)),
             strain: [(0, 0), (2, 2), (1, 1), (0, 2), (2, 1), (0, 1)].map(|(i, j)| E(i, j) as f32),
         }
     }
+}
+
+/// A number, or 0 where there is none. Between the points that are integrated at a spline may be turned over; where it is, det
+/// Fe tells (it is not positive), and neither energy nor stress exists.
+fn existing(x: f64) -> f64 {
+    if x.is_finite() { x } else { 0.0 }
 }
 
 /// Of a direction and its opposite, the one whose largest component is positive: neighbours then point alike.
@@ -113,4 +119,31 @@ fn pointed(v: [f64; 3]) -> [f64; 3] {
         .iter()
         .fold(0.0_f64, |m, x| if x.abs() > m.abs() { *x } else { m });
     if largest < 0.0 { v.map(|x| -x) } else { v }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_the_wall_is_turned_over_there_is_no_stress_and_no_nan() {
+        let mut elastic = Tensor2::IDENTITY;
+        elastic.0[0][0] = -0.1;
+        let sample = Sample {
+            reference: [0.0, 0.5, 0.0],
+            position: [0.0, 0.5, 0.0],
+            elastic,
+            jacobian: -0.1,
+            energy_density: f64::NAN,
+            stress: Tensor2([[f64::NAN; 3]; 3]),
+            grown: [1.0; 2],
+            element_angle: 0.3,
+        };
+        let node = Node::of(&sample);
+        assert!(node.jacobian < 0.0);
+        assert_eq!((node.energy_density, node.von_mises), (0.0, 0.0));
+        assert_eq!(node.stress, [0.0; 6]);
+        let rest = [node.stretches, node.directions[0], node.displacement];
+        assert!(rest.as_flattened().iter().all(|x| x.is_finite()));
+    }
 }

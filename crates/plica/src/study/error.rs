@@ -49,6 +49,20 @@ pub enum StudyError {
         /// What is wrong with its checkpoints.
         reasons: Vec<String>,
     },
+    /// A number came out that is none. It is not written.
+    #[error(
+        "{}: {what} came out as {number}, so that nothing more is written; what was accepted before is kept. This is a fault \
+         of plica: please report it with the case",
+        path.display()
+    )]
+    NoNumber {
+        /// The file that it was for.
+        path: PathBuf,
+        /// Column and row.
+        what: String,
+        /// What stood there.
+        number: String,
+    },
     /// The directory holds something that is not a run.
     #[error(
         "{} is not empty and holds no former run, so nothing in it is touched (not even with \
@@ -82,6 +96,6 @@ pub enum StudyError {
 impl StudyError {
     /// Whether it is trouble with files rather than with the case.
     pub fn is_file_trouble(&self) -> bool {
-        !matches!(self, Self::Memory { .. })
+        !matches!(self, Self::Memory { .. } | Self::NoNumber { .. })
     }
 }

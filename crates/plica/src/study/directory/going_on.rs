@@ -39,11 +39,8 @@ impl RunDirectory {
         }
         let bytes = table.into_inner().map_err(|e| trouble(e.into_error()))?;
         self.write(HISTORY, &bytes)?;
-        let file = File::options().append(true).open(&path).map_err(trouble)?;
-        let headless = csv::WriterBuilder::new()
-            .has_headers(false)
-            .from_writer(file);
-        self.history = Some(headless);
+        let file = File::options().append(true).open(&path);
+        self.history = Some(file.map_err(trouble)?);
         Ok(())
     }
 

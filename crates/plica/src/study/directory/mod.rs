@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 pub struct RunDirectory {
     path: PathBuf,
     case_hash: String,
-    history: Option<csv::Writer<File>>,
+    history: Option<File>,
     /// Held by whoever writes a run.
     lock: Option<Lock>,
 }
@@ -113,12 +113,13 @@ impl RunDirectory {
 
     /// Writes the case, in the place of another if there is one.
     pub fn write_case(&mut self, case_text: &str) -> Result<(), StudyError> {
-        // The manifest first: so it holds no case to be another.
+        // The manifest first: so it holds no case to be another, and no run of it to be complete.
         let mut about = match self.manifest() {
             serde_json::Value::Object(about) => about,
             _ => serde_json::Map::new(),
         };
         about.remove("case_hash");
+        about.remove("verdict");
         about.insert("program".into(), PROGRAM.into());
         self.write_manifest(&about)?;
         self.write(CASE, case_text.as_bytes())?;
@@ -307,18 +308,40 @@ impl RunDirectory {
             path: path.clone(),
             source,
         };
-        let history = match &mut self.history {
-            Some(history) => history,
-            none => none.insert(csv::Writer::from_writer(
-                File::create(&path).map_err(trouble)?,
-            )),
+        let mut table = csv::Writer::from_writer(vec![]);
+        let written = table.serialize(row);
+        written.map_err(|e| trouble(std::io::Error::other(e)))?;
+        let table = table.into_inner().map_err(|e| trouble(e.into_error()))?;
+        self.only_numbers(HISTORY, &table)?;
+        let header = table.iter().position(|byte| *byte == b'\n').unwrap_or(0) + 1;
+        let (history, begin) = match &mut self.history {
+            Some(history) => (history, header),
+            none => (none.insert(File::create(&path).map_err(trouble)?), 0),
         };
-        history
-            .serialize(row)
-            .map_err(|e| trouble(std::io::Error::other(e)))?;
-        history.flush().map_err(trouble)?;
+        history.write_all(&table[begin..]).map_err(trouble)?;
         // A checkpoint, which comes to the disk for certain, is of no use without its row.
-        history.get_ref().sync_data().map_err(trouble)
+        history.sync_data().map_err(trouble)
+    }
+
+    /// Refuses a table in which a number is none.
+    fn only_numbers(&self, name: &str, table: &[u8]) -> Result<(), StudyError> {
+        let mut table = csv::Reader::from_reader(table);
+        let header = table.headers().cloned().unwrap_or_default();
+        for row in table.records().flatten() {
+            let mut cells = header.iter().zip(&row);
+            // A stage may have any name.
+            let none = |(column, cell): &(&str, &str)| {
+                *column != "stage" && ["NaN", "inf", "-inf"].contains(cell)
+            };
+            if let Some((column, number)) = cells.find(none) {
+                return Err(StudyError::NoNumber {
+                    path: self.path.join(name),
+                    what: format!("`{column}` of row {}", &row[0]),
+                    number: number.to_owned(),
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Whether there is a run at a path: a case, at least, that is to be run.
@@ -348,6 +371,7 @@ impl RunDirectory {
             let numbers: Vec<String> = row.iter().map(|x| format!("{x:.9e}")).collect();
             text += &(numbers.join(",") + "\n");
         }
+        self.only_numbers(name, text.as_bytes())?;
         self.write(name, text.as_bytes())
     }
 
@@ -405,6 +429,7 @@ impl RunDirectory {
                 .map_err(|e| trouble(std::io::Error::other(e)))?;
         }
         let bytes = table.into_inner().map_err(|e| trouble(e.into_error()))?;
+        self.only_numbers(name, &bytes)?;
         self.write(name, &bytes)
     }
 
@@ -495,6 +520,34 @@ mod tests {
         let _ = fs::remove_dir_all(&path);
         fs::create_dir_all(&path).unwrap();
         path
+    }
+
+    #[test]
+    fn a_number_that_is_none_is_not_written() {
+        let path = scratch("no-number");
+        let directory = RunDirectory::create(&path, "case", false).unwrap();
+        let refused = directory.write_table(
+            "profiles/state-0001.csv",
+            &["z", "r"],
+            [vec![0.0, 1.0], vec![0.5, f64::NAN]].into_iter(),
+        );
+        let told = refused.unwrap_err().to_string();
+        assert!(told.contains("`r` of row 5.000000000e-1"), "{told}");
+        assert!(!path.join("profiles/state-0001.csv").exists());
+        let cells =
+            ["state,critical", "3,inf"].map(|row| row.split(',').map(String::from).collect());
+        let refused = directory.write_records("stability.csv", cells.to_vec());
+        assert!(matches!(refused, Err(StudyError::NoNumber { .. })));
+        let mut state = crate::study::fixture::state(
+            &crate::study::fixture::plan(crate::tube::Symmetry::Axisymmetric),
+            2,
+        );
+        state.u[5] = f64::INFINITY;
+        assert!(matches!(
+            directory.write_state(&state),
+            Err(StudyError::State { .. })
+        ));
+        fs::remove_dir_all(path).unwrap();
     }
 
     #[test]

@@ -24,9 +24,13 @@ impl SavedState {
     /// The content of its file.
     ///
     /// # Errors
-    /// [`SavedStateError::Array`] if an array does not have the length that its shape says.
+    /// [`SavedStateError::Array`] if an array does not have the length that its shape says, or a number in it is none.
     pub fn to_bytes(&self) -> Result<Vec<u8>, SavedStateError> {
         let header = serde_json::to_string(&self.header()).map_err(Error::other)?;
+        only_numbers("u", &self.u)?;
+        for (name, array) in &self.arrays {
+            only_numbers(name, &array.values)?;
+        }
         let u = Array {
             shape: self.layout.shape().to_vec(),
             values: vec![],
@@ -123,13 +127,22 @@ fn array(name: &str, view: &TensorView<'_>) -> Result<Array, SavedStateError> {
     }
     let (words, _) = view.data().as_chunks::<8>();
     let values: Vec<f64> = words.iter().map(|&word| f64::from_le_bytes(word)).collect();
-    if let Some(at) = values.iter().position(|x| !x.is_finite()) {
-        return Err(wrong(format!("is {} at {at}, and not finite", values[at])));
-    }
+    only_numbers(name, &values)?;
     Ok(Array {
         shape: view.shape().to_vec(),
         values,
     })
+}
+
+/// Refuses an array in which a number is none.
+fn only_numbers(name: &str, values: &[f64]) -> Result<(), SavedStateError> {
+    match values.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(at) => Err(SavedStateError::Array {
+            name: name.to_owned(),
+            what: format!("is {} at {at}, and not finite", values[at]),
+        }),
+    }
 }
 
 /// Holds the checksum that a file carries against its content.
