@@ -30,6 +30,7 @@ mod imperfection;
 mod kinematics;
 mod linearised;
 mod pencil;
+mod place;
 #[cfg(test)]
 mod plain;
 mod pressure;
@@ -46,6 +47,7 @@ mod tests;
 
 pub use coupling::LowHarmonics;
 pub use linearised::Linearised;
+pub use place::Place;
 pub use ring_drag::RingDrag;
 pub use sample::{Point, Sample};
 pub use spline_tube::{Forces, Inverted, SplineTube};

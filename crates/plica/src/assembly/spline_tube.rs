@@ -4,6 +4,7 @@ use super::drag::drag;
 use super::forces::{SlabForces, Worst, slab_forces};
 use super::imperfection::geometry;
 use super::pencil::RingLanes;
+use super::place::Place;
 use super::ring_drag::RingDrag;
 use super::slab::SlabInput;
 use super::stress_free::StressFree;
@@ -81,16 +82,13 @@ pub struct Forces {
 /// An element is turned inside out: det Fe is not positive (or not a number).
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the wall is turned inside out near z = {z:.4} D, radius {radius:.4} D (det Fe = {jacobian:.3e}, \
-     element {element:?})"
+    "the wall is turned inside out near {place} (det Fe = {jacobian:.3e}, element {element:?})"
 )]
 pub struct Inverted {
     /// Element along the tube, through the wall and around the sector.
     pub element: [usize; 3],
-    /// Reference position along the tube of the worst point's element.
-    pub z: f64,
-    /// Reference radius of the worst point.
-    pub radius: f64,
+    /// The worst point: the middle of its element along and around, its own depth.
+    pub place: Place,
     /// det Fe there.
     pub jacobian: f64,
 }
@@ -319,10 +317,14 @@ impl SplineTube {
             } = part.worst;
             if jacobian.is_nan() || jacobian <= 0.0 {
                 let along = slab.first + slab.row(lane);
+                let (from, to) = self.axial.element(along);
                 return Err(Inverted {
                     element: [along, layer, around],
-                    z: self.axial.element(along).0,
-                    radius: self.layers[layer].radius[qr],
+                    place: self.place(
+                        f64::midpoint(from, to),
+                        self.layers[layer].radius[qr],
+                        around,
+                    ),
                     jacobian,
                 });
             }

@@ -3,6 +3,7 @@
 use super::forcing::Forcing;
 use super::newton::{EQUILIBRIUM, free_part};
 use super::operator::dot;
+use super::state::worst;
 use super::{Balance, Equilibrium, Failure, Found, Method, Settings, Solver, Tangent, Watch};
 
 /// Drag after a step along which the energy did not fall, over the drag before.
@@ -70,12 +71,14 @@ pub fn relaxation<P: Equilibrium>(
             return Err(refused.unwrap_or(Failure::NoDescent {
                 iterations,
                 imbalance,
+                worst: worst(&forces.residual, given),
             }));
         }
         if iterations == settings.relaxation_steps {
             return Err(Failure::NotConverged {
                 iterations,
                 imbalance,
+                worst: worst(&forces.residual, given),
             });
         }
         let K = tangent.take().unwrap_or_else(|| {

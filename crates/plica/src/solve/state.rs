@@ -55,6 +55,16 @@ impl Balance {
     }
 }
 
+/// Where the entries of a vector are largest among the free ones.
+pub(super) fn worst(vector: &[f64], given: &[bool]) -> usize {
+    let free = vector.iter().zip(given).enumerate();
+    let sizes = free.filter(|(_, (_, given))| !**given);
+    let sizes = sizes.map(|(i, (x, _))| (i, x.abs()));
+    sizes
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map_or(0, |(i, _)| i)
+}
+
 /// An accepted state.
 #[derive(Clone, Debug)]
 pub struct State<L> {
@@ -129,6 +139,8 @@ pub enum Failure<B: std::error::Error> {
         iterations: usize,
         /// Residual reached.
         imbalance: f64,
+        /// The free unknown that was farthest from balance.
+        worst: usize,
     },
     /// The linear systems were not solved as exactly as was asked for.
     #[error(
@@ -139,6 +151,8 @@ pub enum Failure<B: std::error::Error> {
         iterations: usize,
         /// Residual reached.
         imbalance: f64,
+        /// The free unknown that was farthest from balance.
+        worst: usize,
     },
     /// The iterations ran out.
     #[error("not in equilibrium after {iterations} solves (residual {imbalance:.1e})")]
@@ -147,6 +161,8 @@ pub enum Failure<B: std::error::Error> {
         iterations: usize,
         /// Residual reached.
         imbalance: f64,
+        /// The free unknown that was farthest from balance.
+        worst: usize,
     },
     /// Pseudo-time went on and the tube still moved.
     #[error("still moving by {moved:.1e} D per pseudo-time step after {steps} steps")]
@@ -155,6 +171,8 @@ pub enum Failure<B: std::error::Error> {
         steps: usize,
         /// Largest motion of a control point in the last of them, in D.
         moved: f64,
+        /// The unknown that moved so far.
+        worst: usize,
     },
     /// The tangent is singular.
     #[error(transparent)]
@@ -162,6 +180,19 @@ pub enum Failure<B: std::error::Error> {
     /// Someone asked to stop.
     #[error("stopped on request")]
     Stopped,
+}
+
+impl<B: std::error::Error> Failure<B> {
+    /// The unknown at which it is to be looked for, if there is one.
+    pub fn worst(&self) -> Option<usize> {
+        match self {
+            Self::NoDescent { worst, .. }
+            | Self::Unsolved { worst, .. }
+            | Self::NotConverged { worst, .. }
+            | Self::StillMoving { worst, .. } => Some(*worst),
+            Self::Indefinite { .. } | Self::Broken(_) | Self::Singular(_) | Self::Stopped => None,
+        }
+    }
 }
 
 /// Someone who watches a solver at work.

@@ -7,6 +7,7 @@ use super::{
     Checkpoint, Layout, Observer, Plan, Row, RunDirectory, SavedState, Snapshot, StudyError,
     TubeProblem,
 };
+use crate::assembly::SplineTube;
 use crate::measure::{Departure, Face, Measures, Meridians};
 use crate::solve::{Method, Path, Step};
 use std::collections::BTreeMap;
@@ -129,6 +130,11 @@ impl<'a> Record<'a> {
         self.rows.push(row);
         self.since = Instant::now();
         Ok(())
+    }
+
+    /// The tube that is followed.
+    pub fn tube(&self) -> &SplineTube {
+        &self.problem.tube
     }
 
     /// An energy, or zero where it is only what rounding leaves of a tube without stress.

@@ -2,7 +2,7 @@
 
 use super::manifest::Manifest;
 use super::record::Record;
-use super::summary::{Ending, Summary};
+use super::summary::{Ending, Summary, whereabouts};
 use super::{
     Checkpoint, Layout, Observer, Plan, Row, RunDirectory, Start, StudyError, TubeProblem, fits,
     prolong,
@@ -192,8 +192,14 @@ fn follow(
                     return Ok(if error.stopped() {
                         Ending::Stopped
                     } else {
+                        let state = path.state();
                         Ending::Lost {
                             stage: stage.name.clone(),
+                            whereabouts: whereabouts(
+                                record.tube(),
+                                &error,
+                                Some((&state.load, &state.u)),
+                            ),
                             error,
                         }
                     });
@@ -224,6 +230,7 @@ fn begin<'a>(
     let path = |load, u| Path::begin(problem, load, u, plan.solver.clone());
     let lost = |stage: &str, error| Ending::Lost {
         stage: stage.to_owned(),
+        whereabouts: whereabouts(&problem.tube, &error, None),
         error,
     };
     let Some(start) = &plan.start else {

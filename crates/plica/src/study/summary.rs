@@ -2,8 +2,8 @@
 
 use super::units::Scale;
 use super::{Findings, Plan, Row};
-use crate::assembly::Inverted;
-use crate::solve::PathError;
+use crate::assembly::{Inverted, Place, SplineTube};
+use crate::solve::{Failure, PathError};
 use crate::tube::Load;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -21,6 +21,8 @@ pub enum Ending {
         stage: String,
         /// What was tried.
         error: PathError<Inverted>,
+        /// Where in the tube it is to be looked for.
+        whereabouts: Vec<Whereabouts>,
     },
 }
 
@@ -40,12 +42,77 @@ impl fmt::Display for Ending {
         match self {
             Self::Complete => f.write_str("every stage was done"),
             Self::Stopped => f.write_str("stopped on request; every state so far is kept"),
-            Self::Lost { stage, error } => write!(
+            Self::Lost {
+                stage,
+                error,
+                whereabouts,
+            } => {
+                write!(
+                    f,
+                    "the tube could not be followed further in stage `{stage}` ({error}); the last good state is kept. "
+                )?;
+                for there in whereabouts {
+                    write!(f, "{there}. ")?;
+                }
+                f.write_str(advice(error))
+            }
+        }
+    }
+}
+
+/// A place at which to look for why a tube was lost.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Whereabouts {
+    /// What was tried last was farthest from balance there, or moved most.
+    Unbalanced(Place),
+    /// The last good state has its highest strain energy density there, in E.
+    Strained(Place, f64),
+}
+
+/// Where to look for why a tube was lost: by what was tried last, and by the last good state.
+pub(super) fn whereabouts(
+    tube: &SplineTube,
+    error: &PathError<Inverted>,
+    last: Option<(&Load, &[f64])>,
+) -> Vec<Whereabouts> {
+    let worst = error.tried.last().and_then(|(_, failure)| failure.worst());
+    let unbalanced = worst.map(|unknown| Whereabouts::Unbalanced(tube.place_of(unknown)));
+    let strained = last.and_then(|(load, u)| tube.hardest_strained(load, u));
+    let strained = strained
+        .filter(|(_, density)| *density > ROUNDING)
+        .map(|(place, density)| Whereabouts::Strained(place, density));
+    unbalanced.into_iter().chain(strained).collect()
+}
+
+/// A strain energy density, in E, that is none.
+const ROUNDING: f64 = 1e-12;
+
+impl fmt::Display for Whereabouts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unbalanced(place) => write!(f, "What was tried last was farthest off at {place}"),
+            Self::Strained(place, density) => write!(
                 f,
-                "the tube could not be followed further in stage `{stage}` ({error}); the last good \
-                 state is kept. Try more steps in this stage, more solver.halvings or \
-                 solver.relaxation_steps, or a finer mesh in the zone"
+                "The last good state is strained hardest at {place} (energy density {density:.1e} E)"
             ),
+        }
+    }
+}
+
+/// What may help, by how the last method failed.
+fn advice(error: &PathError<Inverted>) -> &'static str {
+    match error.tried.last().map(|(_, failure)| failure) {
+        Some(Failure::StillMoving { .. }) => {
+            "Try more pseudo-time (solver.pseudo_time.hold), less drag, or more steps in this stage"
+        }
+        Some(Failure::Unsolved { .. }) => {
+            "Try more steps in this stage, fewer or more even elements (mesh.refine), or a smaller Poisson's ratio"
+        }
+        Some(Failure::Broken(_)) => {
+            "Try more steps in this stage, more solver.halvings, or a finer mesh there (mesh.refine)"
+        }
+        _ => {
+            "Try more steps in this stage, more solver.halvings or solver.relaxation_steps, or a finer mesh in the zone"
         }
     }
 }

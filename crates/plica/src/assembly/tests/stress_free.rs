@@ -336,10 +336,10 @@ fn a_shape_that_is_folded_is_refused_with_its_place() {
     assert_eq!(tube.can_have(&shape(0.03)), Ok(()));
     let folded = tube.can_have(&shape(3.0)).unwrap_err();
     assert!(
-        folded.jacobian <= 0.0 && (0.0..=1.5).contains(&folded.z),
+        folded.jacobian <= 0.0 && (0.0..=1.5).contains(&folded.place.z),
         "{folded:?}"
     );
-    assert!((0.35..=0.5).contains(&folded.radius));
+    assert!((0.0..=1.0).contains(&folded.place.depth));
     // A tube that has it all the same is inverted.
     let tube = Tube {
         imperfections: shape(3.0).to_vec(),

@@ -356,10 +356,9 @@ pub(super) fn check_wall(
         return;
     }
     if let Some(at) = folded(tube, mesh, symmetry) {
-        let [z, radius] = [at.z, at.radius].map(|x| tidy(x * spec.tube.diameter));
-        let rule = format!(
-            "with it the stress-free wall is folded over, near z = {z} and radius {radius}"
-        );
+        let z = tidy(at.place.z * spec.tube.diameter);
+        let near = at.place.beside_z();
+        let rule = format!("with it the stress-free wall is folded over, near z = {z}, {near}");
         let key = format!("imperfections[{}].amplitude", last + 1);
         problems.value(&key, rule, Some("make it smaller".into()));
     }

@@ -287,14 +287,32 @@ mod tests {
             let bytes = state.to_bytes().unwrap();
             SavedState::from_bytes(&bytes).unwrap_err().to_string()
         };
-        let told = refused(&|state| state.u[5] = f64::NAN);
-        assert!(told.contains("`u` is NaN at 5"), "{told}");
         let told = refused(&|state| state.layout.mesh.around = 11);
         assert!(told.contains("do not repeat"), "{told}");
         let told = refused(&|state| state.layout.mesh.degree = 0);
         assert!(told.contains("degree"), "{told}");
         let told = refused(&|state| state.layout.length = -1.0);
         assert!(told.contains("no length"), "{told}");
+    }
+
+    #[test]
+    fn a_number_that_is_none_is_neither_written_nor_read() {
+        let mut state = state();
+        state.u[5] = 123.25;
+        let mut bytes = state.to_bytes().unwrap();
+        let at = position(&bytes, &123.25_f64.to_le_bytes()).unwrap();
+        bytes[at..at + 8].copy_from_slice(&f64::NAN.to_le_bytes());
+        // With the checksum that it would have.
+        let name = br#"blake3\":\""#;
+        let at = position(&bytes, name).unwrap() + name.len();
+        bytes[at..at + BLANK.len()].copy_from_slice(BLANK.as_bytes());
+        let checksum = blake3::hash(&bytes).to_string();
+        bytes[at..at + BLANK.len()].copy_from_slice(checksum.as_bytes());
+        let told = SavedState::from_bytes(&bytes).unwrap_err().to_string();
+        assert!(told.contains("`u` is NaN at 5"), "{told}");
+        state.u[5] = f64::NAN;
+        let told = state.to_bytes().unwrap_err().to_string();
+        assert!(told.contains("`u` is NaN at 5"), "{told}");
     }
 
     #[test]

@@ -1,0 +1,74 @@
+//! A run that cannot be followed to its end: what it leaves, what it says, and how it goes on.
+
+mod common;
+
+use common::{plica, scratch, text};
+use std::fs;
+
+const CASE: &str = r#"
+symmetry = { fold = 2 }
+[tube]
+length = 2.0
+thickness = 0.1
+[muscles.circular]
+direction = "circular"
+zone = [0.5, 1.0]
+[mesh]
+control_points = { axial = 24, around = 16, thickness = 4 }
+[[stages]]
+name = "contract"
+steps = 2
+drive.circular.diameter_ratio = 0.9
+[[stages]]
+name = "strangle"
+steps = 1
+drive.circular.diameter_ratio = 0.3
+[solver]
+newton_iterations = 4
+relaxation_steps = 4
+halvings = 0
+[output]
+pictures = false
+"#;
+
+#[test]
+fn a_lost_run_says_where_and_what_may_help_and_goes_on_with_that() {
+    let directory = scratch("lost");
+    fs::write(directory.join("case.toml"), CASE).unwrap();
+    let said = plica(&directory, &["run", "case.toml", "--out", "run"]);
+    let told = text(&said.stderr);
+    assert_eq!(said.status.code(), Some(1), "{told}");
+    let last = told.lines().last().unwrap();
+    for word in [
+        "in stage `strangle`",
+        "newton:",
+        "relaxation: not in equilibrium after 4 solves",
+        "the last good state is kept",
+        "farthest off at z = ",
+        "strained hardest at z = ",
+        "θ = ",
+        "wall",
+        "solver.halvings",
+    ] {
+        assert!(last.contains(word), "{word}: {last}");
+    }
+    // Where the muscle pulls.
+    let z = last.split("farthest off at z = ").nth(1).unwrap();
+    let z: f64 = z.split(' ').next().unwrap().parse().unwrap();
+    assert!((0.4..1.1).contains(&z), "{last}");
+    let manifest = fs::read_to_string(directory.join("run/manifest.json")).unwrap();
+    assert!(manifest.contains(r#""verdict": "lost""#) && manifest.contains("farthest off at z = "));
+    assert!(directory.join("run/states/state-0002.safetensors").exists());
+    // As it advises.
+    fs::write(
+        directory.join("case.toml"),
+        CASE.replace("halvings = 0", "halvings = 8"),
+    )
+    .unwrap();
+    let said = plica(
+        &directory,
+        &["run", "case.toml", "--out", "run", "--resume"],
+    );
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    assert!(directory.join("run/states/state-0003.safetensors").exists());
+}

@@ -1,0 +1,118 @@
+//! A place in the wall, as one tells it.
+
+use super::SplineTube;
+use crate::tube::Load;
+use rayon::prelude::*;
+use std::fmt;
+
+/// A place in the wall at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Along the tube, in D.
+    pub z: f64,
+    /// Angle around the tube, in radians; none where the tube is axisymmetric, or repeats at every element.
+    pub angle: Option<f64>,
+    /// How deep in the wall, from 0 at its outside to 1 at its inside.
+    pub depth: f64,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "z = {:.4} D, {}", self.z, self.beside_z())
+    }
+}
+
+impl Place {
+    /// Angle and depth in words.
+    pub fn beside_z(&self) -> String {
+        let degrees = |angle: f64| angle.to_degrees().round().rem_euclid(360.0);
+        let angle =
+            (self.angle).map_or(String::new(), |angle| format!("θ = {}°, ", degrees(angle)));
+        angle
+            + &match 100.0 * self.depth {
+                depth if depth < 0.5 => "on the outer wall".into(),
+                depth if depth >= 99.5 => "on the inner wall".into(),
+                depth => format!("{depth:.0} % of the wall deep"),
+            }
+    }
+}
+
+impl SplineTube {
+    /// A place by its reference coordinates; the angle is that of the middle of an element around the sector.
+    pub(super) fn place(&self, z: f64, radius: f64, around: usize) -> Place {
+        let angle = self.sector.angle() * around as f64;
+        let tube = &self.tube;
+        let depth = (tube.inner_radius() + tube.thickness - radius) / tube.thickness;
+        Place {
+            z,
+            angle: (self.sector.rings > 1).then_some(angle),
+            depth: depth.clamp(0.0, 1.0),
+        }
+    }
+
+    /// Where the control point of an unknown lies at rest.
+    pub fn place_of(&self, unknown: usize) -> Place {
+        let (row, within) = (unknown / self.row_size(), unknown % self.row_size());
+        let (through, ring) = (within / (3 * self.sector.rings), within % self.sector.rings);
+        let place = self.place(self.axial.greville()[row], self.wall.greville()[through], 0);
+        Place {
+            angle: place.angle.map(|_| self.sector.ring_angle(ring)),
+            ..place
+        }
+    }
+
+    /// Where a state's strain energy density is highest, looked for in the middle of every element and above and below it on both
+    /// walls; and how high it is, in E.
+    pub fn hardest_strained(&self, load: &Load, u: &[f64]) -> Option<(Place, f64)> {
+        let tube = &self.tube;
+        let (inner, thickness) = (tube.inner_radius(), tube.thickness);
+        let radii = [inner, inner + 0.5 * thickness, inner + thickness];
+        let of_element = |element: usize| {
+            let (from, to) = self.axial.element(element);
+            let z = f64::midpoint(from, to);
+            let places =
+                (0..self.sector.rings).flat_map(|around| radii.map(|radius| (radius, around)));
+            let density = |(radius, around): (f64, usize)| {
+                let angle = self.sector.angle() * around as f64;
+                let at = super::Point { z, radius, angle };
+                (
+                    self.place(z, radius, around),
+                    self.sample(load, u, at).energy_density,
+                )
+            };
+            places
+                .map(density)
+                .filter(|(_, density)| density.is_finite())
+                .max_by(|a, b| a.1.total_cmp(&b.1))
+        };
+        let highest: Vec<_> = (0..self.axial.elements())
+            .into_par_iter()
+            .filter_map(of_element)
+            .collect();
+        highest.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_is_told_in_words() {
+        let place = |angle: Option<f64>, depth| {
+            Place {
+                z: 0.75,
+                angle,
+                depth,
+            }
+            .to_string()
+        };
+        assert_eq!(place(None, 0.0), "z = 0.7500 D, on the outer wall");
+        assert_eq!(place(None, 0.25), "z = 0.7500 D, 25 % of the wall deep");
+        let angle = Some(-0.5 * std::f64::consts::PI);
+        assert_eq!(
+            place(angle, 1.0),
+            "z = 0.7500 D, θ = 270°, on the inner wall"
+        );
+    }
+}

@@ -1,0 +1,242 @@
+//! Random cases that are sound: they run to their end, or end with a reason that has a name, and nothing that they leave is odd.
+//!
+//! Cases come from a seed. Among the other tests they are few; `PLICA_SOUND_CASES=2000 cargo test --release -p plica --test sound`
+//! runs more.
+
+use plica::case;
+use plica::export::{Exporter, What};
+use plica::study::{self, Ending, Observer, Plan, Row, RunDirectory, SavedState};
+use std::fmt::Write;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Cases among the other tests.
+const FEW: usize = 25;
+/// After so long a run is asked to stop, and does.
+const LONG: Duration = Duration::from_secs(3);
+/// Nothing takes so long to stop, not even on a busy machine.
+const PROMPT: Duration = Duration::from_secs(30);
+
+/// Numbers that look random, the same from the same seed.
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % n as u64) as usize
+    }
+
+    fn one_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+
+    fn of<'a>(&mut self, words: &[&'a str]) -> &'a str {
+        words[self.below(words.len())]
+    }
+
+    /// Between two numbers, with three digits.
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        let x = low + (high - low) * self.below(1001) as f64 / 1000.0;
+        (1000.0 * x).round() / 1000.0
+    }
+}
+
+/// A case whose values are each within their range; now and then they do not go together.
+fn random(chance: &mut Chance) -> String {
+    let mut case = String::new();
+    let around = 4 * (2 + chance.below(3));
+    let fold = chance.of(&["1", "1", "2", "none"]);
+    match fold {
+        "none" => case += "symmetry = \"none\"\n",
+        "2" => case += "symmetry = { fold = 2 }\n",
+        _ => {}
+    }
+    let degree = 1 + chance.below(3);
+    let (length, thickness) = (chance.between(0.5, 4.0), chance.between(0.01, 0.3));
+    let mut add = |text: std::fmt::Arguments<'_>| case.write_fmt(text).unwrap();
+    if chance.one_in(4) {
+        add(format_args!("[units]\nlength = \"mm\"\nstress = \"kPa\"\n"));
+    }
+    add(format_args!(
+        "[tube]\nlength = {length}\nthickness = {thickness}\n"
+    ));
+    add(format_args!(
+        "[material.neo-hookean]\npoisson_ratio = {}\nvolumetric = \"{}\"\n",
+        chance.of(&["0.0", "0.3", "0.45", "0.495", "0.4999"]),
+        chance.of(&["logarithmic", "quadratic"])
+    ));
+    let mut muscles = vec![];
+    for (name, direction) in [("ring", "circular"), ("band", "longitudinal")] {
+        if chance.one_in(3) && (name == "band" || !muscles.is_empty()) {
+            continue;
+        }
+        let from = chance.between(0.0, 0.6 * length);
+        let to = chance.between(from + 0.1 * length, length);
+        add(format_args!(
+            "[muscles.{name}]\ndirection = \"{direction}\"\nzone = [{from}, {to}]\nprofile = {}\n",
+            chance.of(&[
+                "\"raised-cosine\"",
+                "\"half-sine\"",
+                "{ smooth-box = { edge = 0.3 } }",
+                "{ table = [[0.0, 0.0], [0.3, 1.0], [1.0, 0.2]] }"
+            ])
+        ));
+        muscles.push(name);
+    }
+    let ends = [0, 1].map(|_| chance.of(&["fixed", "fixed", "sliding", "free"]));
+    add(format_args!(
+        "[ends]\ncolon = \"{}\"\nileum = \"{}\"\n",
+        ends[0], ends[1]
+    ));
+    add(format_args!(
+        "[mesh]\ndegree = {degree}\ncontrol_points = {{ axial = {}, around = {around}, thickness = {} }}\nvolumetric_integration = \"{}\"\n",
+        degree + 4 + chance.below(12),
+        degree + 1 + chance.below(2),
+        chance.of(&["full", "full", "reduced"]),
+    ));
+    if chance.one_in(3) {
+        add(format_args!("refine = []\n"));
+    }
+    for _ in 0..chance.below(3) {
+        let of = chance.of(&["\"geometry\"", "\"colon-end\"", "{ muscle = \"ring\" }"]);
+        let shape = match (of, fold) {
+            ("\"geometry\"", _) => "{ random = { seed = 7 } }",
+            (_, "none") => "{ wave = { harmonic = 1 } }",
+            (_, "2") => "{ wave = { harmonic = 2 } }",
+            _ => "{ wave = { harmonic = 0 } }",
+        };
+        let amplitude =
+            chance.between(0.0, 0.2) * if of.starts_with('{') { 1.0 } else { thickness };
+        add(format_args!(
+            "[[imperfections]]\nof = {of}\namplitude = {amplitude}\nshape = {shape}\n"
+        ));
+    }
+    for _ in 0..1 + chance.below(2) {
+        add(format_args!(
+            "[[stages]]\nsteps = {}\n",
+            1 + chance.below(3)
+        ));
+        for muscle in &muscles {
+            let (key, from, to) = match *muscle {
+                "ring" => ("diameter_ratio", 0.2, 1.3),
+                _ => ("length_ratio", 0.9, 1.5),
+            };
+            add(format_args!(
+                "drive.{muscle}.{key} = {}\n",
+                chance.between(from, to)
+            ));
+        }
+        if chance.one_in(3) && ends[1] != "free" {
+            add(format_args!(
+                "drive.ileum.displacement = {}\n",
+                chance.between(-0.2, 0.2) * length
+            ));
+        }
+        if chance.one_in(4) && ends[0] == "fixed" {
+            add(format_args!(
+                "drive.colon.twist_degrees = {}\n",
+                chance.between(-90.0, 90.0)
+            ));
+        }
+        if chance.one_in(3) {
+            let (wall, kind) = (
+                chance.of(&["inner-wall", "outer-wall"]),
+                chance.of(&["pressure", "dead_pressure"]),
+            );
+            add(format_args!(
+                "drive.{wall}.{kind} = {}e-3\n",
+                chance.between(0.0, 5.0)
+            ));
+        }
+    }
+    add(format_args!(
+        "[solver]\nscheme = \"{}\"\nhalvings = {}\n[output]\npictures = false\nwall_points = 51\n",
+        chance.of(&["static", "static", "static", "dragged", "newmark"]),
+        chance.below(6)
+    ));
+    case
+}
+
+struct Patience(Instant);
+
+impl Observer for Patience {
+    fn accepted(&mut self, row: &Row) {
+        assert!(row.min_det_fe > 0.0);
+        assert!(row.energy >= -1e-12, "{}", row.energy);
+        assert!(row.equilibrium == "no" || row.residual <= 1e-6 || row.method == "rest");
+    }
+    fn working(&mut self, _: &str, _: f64) {}
+    fn stop(&mut self) -> bool {
+        self.0.elapsed() > LONG
+    }
+}
+
+/// Runs a case and looks at what it leaves; how it ended.
+fn run(plan: &Plan, text: &str, path: &Path) -> Ending {
+    let mut directory = RunDirectory::create(path, text, true).unwrap();
+    let begin = Instant::now();
+    let summary = study::run(plan, &mut directory, &mut Patience(begin)).unwrap();
+    assert!(begin.elapsed() < PROMPT, "{:?}", begin.elapsed());
+    let rows = directory.history().unwrap_or_default();
+    let states = directory.states().unwrap();
+    assert_eq!(rows.len(), states.len());
+    for name in ["history.csv", "manifest.json"] {
+        let bytes = directory.read(name).unwrap_or_default();
+        let text = String::from_utf8(bytes).unwrap().to_ascii_lowercase();
+        let odd = text
+            .split([',', '\n', ' ', ':'])
+            .any(|word| ["nan", "inf", "-inf"].contains(&word));
+        assert!(!odd, "{name}: {text}");
+    }
+    if let (Some(row), Some(state)) = (rows.last(), states.last()) {
+        let state = SavedState::read(state).unwrap();
+        state.belongs_to(plan).unwrap();
+        let bytes = Exporter::new(plan).bytes(What::Walls, &state, row);
+        assert!(!bytes.is_empty());
+    }
+    summary.ending().clone()
+}
+
+#[test]
+fn sound_cases_run_or_end_with_a_reason() {
+    let count = std::env::var("PLICA_SOUND_CASES").ok();
+    let count = count.and_then(|text| text.parse().ok()).unwrap_or(FEW);
+    let path = std::env::temp_dir().join(format!("plica-sound-{}", std::process::id()));
+    let mut ended = [0; 3];
+    let (mut seed, mut refused) = (0, 0);
+    while ended.iter().sum::<usize>() < count {
+        seed += 1;
+        let mut chance = Chance(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(seed));
+        let text = random(&mut chance);
+        let plan = match case::read(&text, "random") {
+            Ok(plan) => plan,
+            Err(error) => {
+                // Told by its key and line; most do go together.
+                assert!(
+                    error
+                        .problems
+                        .iter()
+                        .all(|problem| !problem.rule.is_empty())
+                );
+                refused += 1;
+                continue;
+            }
+        };
+        let running = std::panic::AssertUnwindSafe(|| run(&plan, &text, &path));
+        match std::panic::catch_unwind(running) {
+            Ok(Ending::Complete) => ended[0] += 1,
+            Ok(Ending::Lost { error, .. }) => {
+                assert!(!error.tried.is_empty());
+                ended[1] += 1;
+            }
+            Ok(Ending::Stopped) => ended[2] += 1,
+            Err(_) => panic!("seed {seed}:\n{text}"),
+        }
+    }
+    std::fs::remove_dir_all(path).unwrap();
+    println!("complete, lost, stopped: {ended:?}; {refused} did not go together");
+    assert!(refused < 2 * count, "{refused}");
+    assert!(2 * ended[0] > count, "{ended:?}");
+}
