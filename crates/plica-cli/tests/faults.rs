@@ -196,7 +196,6 @@ fn all(every: usize) {
         case: &(MORE.to_owned() + "[output]\nstates_every = 2\n"),
         act: GO_ON,
         mend: &[GO_ON],
-        ..fresh
     }
     .survives(2 * every);
     Act {
