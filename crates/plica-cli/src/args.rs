@@ -47,13 +47,7 @@ pub enum Command {
     #[command(after_long_help = REPORT_EPILOGUE)]
     Report(ReportArguments),
     /// Say whether a case is sound, and what running it would take
-    Check {
-        /// The case file
-        case: PathBuf,
-        /// Files that the case names may lie anywhere in this folder; else only in that of the case, or where plica runs
-        #[arg(long, value_name = "DIR")]
-        within: Option<PathBuf>,
-    },
+    Check(CaseArguments),
     /// Write a commented case file to start from
     New {
         /// Where to; - prints it
@@ -69,11 +63,20 @@ pub enum Command {
     },
 }
 
+/// A case, and where the files lie that it names.
+#[derive(Args, Debug)]
+pub struct CaseArguments {
+    /// The case file
+    #[arg(value_name = "CASE")]
+    pub file: PathBuf,
+    /// Files that the case names may lie anywhere in this folder; else only in that of the case, or where plica runs
+    #[arg(long, value_name = "DIR")]
+    pub within: Option<PathBuf>,
+}
+
 /// What `plica run` takes.
 #[derive(Args, Debug)]
 pub struct RunArguments {
-    /// The case file
-    pub case: PathBuf,
     /// Directory to write to [default: runs/ and the name of the case]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -84,9 +87,9 @@ pub struct RunArguments {
     /// title, [solver], [output], the steps of the stage it is in and all later stages may have changed
     #[arg(long, conflicts_with = "overwrite")]
     pub resume: bool,
-    /// Files that the case names may lie anywhere in this folder; else only in that of the case, or where plica runs
-    #[arg(long, value_name = "DIR")]
-    pub within: Option<PathBuf>,
+    /// The case, and where its files lie
+    #[command(flatten)]
+    pub case: CaseArguments,
     /// Threads to use [default: all cores]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

@@ -1,8 +1,9 @@
 //! Reading a case from disk.
 
+use crate::args::CaseArguments;
 use crate::failure::Failure;
 use plica::case::{self, Open, Wanted};
-use plica::study::{Plan, RunDirectory, SavedState};
+use plica::study::{NamedMode, Plan, RunDirectory, SavedState, SavedStateError};
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
@@ -11,25 +12,42 @@ const LARGEST: u64 = 1 << 20;
 
 /// The text of a case file and what it means; files that it names are looked for from the folder of the file on. They lie in
 /// that folder, in the one that the program runs in, or in one that the user has given.
-pub fn open(path: &Path, within: Option<&Path>) -> Result<(String, Plan), Failure> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    if let Some(within) = within.filter(|within| !within.is_dir()) {
-        let what = format!("--within {}: there is no such folder", within.display());
-        return Err(Failure::Usage(what));
+pub fn open(arguments: &CaseArguments) -> Result<(String, Plan), Failure> {
+    let reach = Reach::of(arguments)?;
+    open_with(&arguments.file, &|wanted| reach.read(wanted))
+}
+
+/// Where files may lie that a case names.
+struct Reach<'a> {
+    folder: &'a Path,
+    within: Option<&'a Path>,
+}
+
+impl<'a> Reach<'a> {
+    fn of(arguments: &'a CaseArguments) -> Result<Self, Failure> {
+        let folder = match arguments.file.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let within = arguments.within.as_deref();
+        if let Some(within) = within.filter(|within| !within.is_dir()) {
+            let what = format!("--within {}: there is no such folder", within.display());
+            return Err(Failure::Usage(what));
+        }
+        Ok(Self { folder, within })
     }
-    open_with(path, &|wanted| {
-        let file = folder.join(wanted.path());
-        let roots = [Some(folder), Some(Path::new(".")), within];
+
+    /// Reads a file, if it lies there.
+    fn read(&self, wanted: Wanted<'_>) -> Result<SavedState, SavedStateError> {
+        let file = self.folder.join(wanted.path());
+        let roots = [Some(self.folder), Some(Path::new(".")), self.within];
         if !lies_in(&file, roots.into_iter().flatten())? {
             let why = "it lies neither in the folder of the case nor in the one that plica runs in, and a case does not reach further by \
                 itself; if it may, name a folder that holds it with --within DIR";
             return Err(Error::new(ErrorKind::PermissionDenied, why).into());
         }
         SavedState::read(&file)
-    })
+    }
 }
 
 /// Whether a file lies in one of some folders, links followed.
@@ -78,7 +96,41 @@ pub fn open_with(path: &Path, named: &Open<'_>) -> Result<(String, Plan), Failur
 
 /// The plan of a run that is there. The state it began from it has kept, and the modes of its imperfections.
 pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
-    let own = |wanted: Wanted<'_>| match wanted {
+    let own = |wanted: Wanted<'_>| kept(directory, wanted);
+    let (_, mut plan) = open_with(&directory.path().join("case.toml"), &own)?;
+    // A case without a title had that of its file, which was called otherwise then.
+    if let Some(title) = directory.manifest()["title"].as_str() {
+        plan.title = title.to_owned();
+    }
+    Ok(plan)
+}
+
+/// [`open`] for a run that was begun by a case that meant `old`: a file that is still named as it was then is not asked for again.
+pub fn open_again(
+    arguments: &CaseArguments,
+    directory: &RunDirectory,
+    old: &Plan,
+) -> Result<(String, Plan), Failure> {
+    let reach = Reach::of(arguments)?;
+    open_with(&arguments.file, &|wanted| {
+        let as_then = match wanted {
+            Wanted::State(file) => old.start.iter().any(|start| start.file == file),
+            Wanted::Mode(number, file) => {
+                let is_it = |mode: &NamedMode| mode.imperfection == number && mode.file == file;
+                old.modes.iter().any(is_it)
+            }
+        };
+        if as_then {
+            kept(directory, wanted)
+        } else {
+            reach.read(wanted)
+        }
+    })
+}
+
+/// What a run has kept of a file that its case names.
+fn kept(directory: &RunDirectory, wanted: Wanted<'_>) -> Result<SavedState, SavedStateError> {
+    match wanted {
         Wanted::State(_) => {
             let kept = directory.start();
             // A run of before that was kept has its own first state.
@@ -86,13 +138,7 @@ pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
             SavedState::read(if kept.exists() { &kept } else { &first })
         }
         Wanted::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
-    };
-    let (_, mut plan) = open_with(&directory.path().join("case.toml"), &own)?;
-    // A case without a title had that of its file, which was called otherwise then.
-    if let Some(title) = directory.manifest()["title"].as_str() {
-        plan.title = title.to_owned();
     }
-    Ok(plan)
 }
 
 /// The name of a case: that of its file, without the ending.

@@ -1,5 +1,6 @@
 //! `plica check`.
 
+use crate::args::CaseArguments;
 use crate::failure::Failure;
 use crate::{case_file, console};
 use plica::case::advice;
@@ -7,12 +8,11 @@ use plica::material::{Material, NeoHookean, Volumetric};
 use plica::spline::Circle;
 use plica::study::{Plan, fits, forecast};
 use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube};
-use std::path::Path;
 
 /// Says that a case is sound, and what it takes.
-pub fn check(path: &Path, within: Option<&Path>) -> Result<(), Failure> {
-    let (_, plan) = case_file::open(path, within)?;
-    let mut page = format!("{} is sound: {}\n\n", path.display(), plan.title);
+pub fn check(arguments: &CaseArguments) -> Result<(), Failure> {
+    let (_, plan) = case_file::open(arguments)?;
+    let mut page = format!("{} is sound: {}\n\n", arguments.file.display(), plan.title);
     for (name, value) in rows(&plan) {
         page += &format!("  {name:<10} {value}\n");
     }

@@ -48,7 +48,7 @@ fn main() -> ExitCode {
         Command::Plot(arguments) => plot::plot(&arguments),
         Command::Animate(arguments) => render::animate(&arguments),
         Command::Report(arguments) => report::report(&arguments),
-        Command::Check { case, within } => check::check(&case, within.as_deref()),
+        Command::Check(arguments) => check::check(&arguments),
         Command::New { file } => new::new(&file),
         Command::Schema => new::schema(),
         Command::Completions { shell } => new::completions(shell),

@@ -8,7 +8,7 @@ use crate::{case_file, console, threads};
 use plica::case::{advice, differences};
 use plica::report::pictures;
 use plica::study::{self, Observer, Plan, RunDirectory, StudyError, Summary};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Draws the pictures of a run; says which. A picture that cannot be drawn does not undo a run.
 fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<String, Failure> {
@@ -33,43 +33,47 @@ fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<Stri
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     // Before anything computes, which checking a case may do already.
     threads::limit(arguments.threads)?;
-    let (text, plan) = case_file::open(&arguments.case, arguments.within.as_deref())?;
     let out = match &arguments.out {
         Some(out) => out.clone(),
-        None => PathBuf::from("runs").join(case_file::stem(&arguments.case)),
+        None => PathBuf::from("runs").join(case_file::stem(&arguments.case.file)),
     };
+    if arguments.resume && RunDirectory::is_there(&out) {
+        return take_up(arguments, &out);
+    }
+    let (text, plan) = case_file::open(&arguments.case)?;
     let interrupt = listen()?;
     study::fits(&plan).map_err(Failure::Study)?;
-    if arguments.resume && RunDirectory::is_there(&out) {
-        let mut directory = RunDirectory::open(&out).map_err(Failure::Study)?;
-        directory.own().map_err(Failure::Study)?;
-        let before = directory.read("case.toml").unwrap_or_default();
-        let same = before == text.as_bytes();
-        let plan = match (directory.has_hardly_begun(), same) {
-            (true, _) => plan,
-            // What it names may have changed since, and what it was is kept.
-            (false, true) => case_file::of_run(&directory)?,
-            (false, false) => {
-                let old = case_file::of_run(&directory)?;
-                let before = String::from_utf8_lossy(&before);
-                may_go_on(&directory, [(&before, &old), (&text, &plan)])?;
-                Plan {
-                    start: old.start,
-                    ..plan
-                }
-            }
-        };
-        if same && directory.is_complete() {
-            return nothing_to_do(&directory);
-        }
-        if !same {
-            directory.write_case(&text).map_err(Failure::Study)?;
-        }
-        return lead(&plan, directory, interrupt, study::resume);
-    }
     let directory =
         RunDirectory::create(&out, &text, arguments.overwrite).map_err(Failure::Study)?;
     lead(&plan, directory, interrupt, study::run)
+}
+
+/// Goes on with a run by a case, which may have changed ahead of where it is.
+fn take_up(arguments: &RunArguments, out: &Path) -> Result<(), Failure> {
+    let mut directory = RunDirectory::open(out).map_err(Failure::Study)?;
+    directory.own().map_err(Failure::Study)?;
+    let before = directory.read("case.toml").unwrap_or_default();
+    let (text, plan) = if directory.has_hardly_begun() {
+        case_file::open(&arguments.case)?
+    } else {
+        let old = case_file::of_run(&directory)?;
+        let (text, plan) = case_file::open_again(&arguments.case, &directory, &old)?;
+        if before == text.as_bytes() {
+            if directory.is_complete() {
+                return nothing_to_do(&directory);
+            }
+        } else {
+            let before = String::from_utf8_lossy(&before);
+            may_go_on(&directory, [(&before, &old), (&text, &plan)])?;
+        }
+        (text, plan)
+    };
+    let interrupt = listen()?;
+    study::fits(&plan).map_err(Failure::Study)?;
+    if before != text.as_bytes() {
+        directory.write_case(&text).map_err(Failure::Study)?;
+    }
+    lead(&plan, directory, interrupt, study::resume)
 }
 
 /// Goes on with a run.

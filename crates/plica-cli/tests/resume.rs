@@ -399,14 +399,51 @@ fn a_run_goes_on_with_the_state_that_it_began_from() {
         "{head}\n[start]\nstate = \"start.safetensors\"\n[[stages]]\nsteps = 8\ndrive.circular.diameter_ratio = 0.5\n[output]\nstates_every = 0\n"
     );
     let (whole, _) = undisturbed(&directory, &case);
+    let resume = || {
+        let said = plica(
+            &directory,
+            &["run", "case.toml", "--out", "cut", "--resume"],
+        );
+        (said.status.code(), text(&said.stderr))
+    };
+    let changes: [fn(&Path, &Path); 2] = [
+        |first, start| {
+            fs::copy(first.join("states/state-0003.safetensors"), start).unwrap();
+        },
+        |_, start| fs::remove_file(start).unwrap(),
+    ];
+    for change in changes {
+        let run = stopped(&directory);
+        change(&directory.join("first"), &start);
+        let (code, told) = resume();
+        assert_eq!(code, Some(0), "{told}");
+        assert_same(&whole, &run);
+        fs::copy(first_state(&directory, 6), &start).unwrap();
+    }
+    // Under another name it is looked at; the same state is the same start.
     let run = stopped(&directory);
-    fs::copy(first_state(&directory, 3), &start).unwrap();
-    let said = plica(
-        &directory,
-        &["run", "case.toml", "--out", "cut", "--resume"],
+    let other = directory.join("other.safetensors");
+    fs::write(
+        directory.join("case.toml"),
+        case.replace("\"start.safe", "\"other.safe"),
+    )
+    .unwrap();
+    fs::copy(first_state(&directory, 3), &other).unwrap();
+    let before = left(&run);
+    let (code, told) = resume();
+    assert_eq!(code, Some(2), "{told}");
+    let difference = "start.state: \"start.safetensors\" -> \"other.safetensors\"";
+    assert!(
+        told.contains("the start must stay") && told.contains(difference),
+        "{told}"
     );
-    assert!(said.status.success(), "{}", text(&said.stderr));
-    assert_same(&whole, &run);
+    assert_same(&before, &run);
+    fs::copy(first_state(&directory, 6), &other).unwrap();
+    let (code, told) = resume();
+    assert_eq!(code, Some(0), "{told}");
+    let went_on = left(&run);
+    let apart = |(name, _): &(&PathBuf, &Vec<u8>)| name.as_path() != Path::new("case.toml");
+    assert!(went_on.iter().filter(apart).eq(whole.iter().filter(apart)));
 }
 
 fn first_state(directory: &Path, number: usize) -> PathBuf {

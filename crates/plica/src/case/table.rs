@@ -73,8 +73,8 @@ pub const KEYS: &[Key] = &[
         "How many times as dense as elsewhere."),
 
     key("start.state", Text, "", Always("\"runs/tube/states/state-0015.safetensors\""), ANY,
-        "Path of a saved state, from the folder of the case file on, in which it lies, or where plica runs, or in the folder that `--within` names: \
-         the run begins there, and the first stage at its load."),
+        "Path of a saved state, from the folder of the case file on: the run begins there, and the first stage at its load. The file lies in \
+         that folder or in the one that plica runs in (or below), or in one that `--within DIR` names."),
 
     key("stages", Tables, "", Always("[{ drive.circular.diameter_ratio = 0.5 }]"), ANY,
         "What happens, one stage after the other; each begins where the one before ends, the first at rest or at `start`."),
@@ -125,8 +125,8 @@ pub const KEYS: &[Key] = &[
     key("imperfections[].shape.random.half_waves", Count, "", Or("4"), from(1.0).to(50.0),
         "1 to this half-waves along the zone of the muscle, or the tube. Not for an end."),
     key("imperfections[].shape.mode", Text, "", OrElse("", "\"runs/tube/modes/mode-01-harmonic-2.safetensors\""), ANY,
-        "Path of a mode that `plica stability` has left in an axisymmetric run, relative to the folder of the case file; for the geometry only. A \
-         mode of harmonic n has a crest at angle zero."),
+        "Path of a mode that `plica stability` has left in an axisymmetric run, from the folder of the case file on, lying as `start.state` does; for \
+         the geometry only. A mode of harmonic n has a crest at angle zero."),
 
     key("solver.scheme", Word(&["static", "newmark", "dragged"]), "", Or("\"static\""), ANY,
         "`\"static\"`: equilibrium after equilibrium, with relaxation where the path breaks off. `\"newmark\"`: the pseudo-time of \

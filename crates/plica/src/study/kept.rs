@@ -15,9 +15,10 @@ pub fn kept(old: &Plan, new: &Plan, within: Option<(usize, f64)>) -> Vec<String>
     hold(old.mesh == new.mesh, "the mesh".into());
     hold(old.symmetry == new.symmetry, "the symmetry".into());
     hold(old.units == new.units, "the units".into());
+    // Wherever it lies.
     let start = |plan: &Plan| {
-        let start = plan.start.as_ref();
-        start.map(|Start { load, .. }| load.clone())
+        let start = plan.start.clone();
+        start.map(|Start { load, state, .. }| (load, state))
     };
     hold(start(old) == start(new), "the start".into());
     let begun = within.map_or(0, |(stage, _)| stage + 1);
@@ -75,6 +76,14 @@ mod tests {
             change(|plan| plan.symmetry = Symmetry::Fold(2)),
             ["the symmetry"]
         );
+        let begun = change(|plan| {
+            plan.start = Some(Start {
+                file: "state-3".into(),
+                load: plan.tube.rest(),
+                state: fixture::state(plan, 3),
+            });
+        });
+        assert_eq!(begun, ["the start"]);
         let ended = change(|plan| plan.stages[1].load.ends[0].twist = 1.0);
         assert_eq!(ended, ["stage `b`, which has begun"]);
         assert_eq!(change(|plan| plan.stages.truncate(1)).len(), 1);
