@@ -4,13 +4,16 @@ use super::Wall;
 
 impl Wall {
     /// The smallest distance between two of its points that are at least `apart` from each other along the
-    /// wall; 0 if the wall crosses itself anywhere.
+    /// wall, or between its ends if it is shorter than that; 0 if the wall crosses itself anywhere.
     pub fn gap(&self, apart: f64) -> f64 {
         let points = &self.points;
+        let [first, .., last] = points[..] else {
+            return 0.0;
+        };
         let lengths: Vec<f64> = points.windows(2).map(|p| distance(p[0], p[1])).collect();
         let longest = lengths.iter().fold(0.0_f64, |most, l| most.max(*l));
         if !(longest > 0.0 && longest.is_finite()) {
-            return f64::INFINITY;
+            return distance(first, last);
         }
         let along: Vec<f64> = std::iter::once(0.0)
             .chain(lengths.iter().scan(0.0, |sum, l| {
@@ -37,7 +40,11 @@ impl Wall {
                 j += 1 + (room / longest).max(0.0) as usize;
             }
         }
-        gap
+        if gap.is_finite() {
+            gap
+        } else {
+            distance(first, last)
+        }
     }
 }
 
@@ -82,6 +89,13 @@ mod tests {
     fn a_straight_wall_is_as_near_to_itself_as_is_asked() {
         let gap = through(&[(0.0, 0.5), (3.0, 0.5)]).gap(0.06);
         assert!((0.06..0.1).contains(&gap), "{gap}");
+    }
+
+    #[test]
+    fn a_wall_that_is_shorter_has_the_distance_of_its_ends() {
+        let short = wall(vec![(0.0, 0.5), (0.02, 0.5), (0.04, 0.47)]);
+        assert!((short.gap(0.06) - 0.05).abs() < 1e-12);
+        assert_eq!(wall(vec![(0.1, 0.5); 3]).gap(0.06), 0.0);
     }
 
     #[test]
