@@ -1,7 +1,6 @@
 //! Newton's method with the energy as judge.
 
 use super::forcing::Forcing;
-use super::state::worst;
 use super::{Balance, Equilibrium, Failure, Found, Method, Settings, Solver, Tangent, Watch};
 
 /// A residual this small, relative to the forces in play, is equilibrium even if rounding keeps
@@ -40,7 +39,7 @@ pub fn newton<P: Equilibrium>(
             return Err(Failure::NotConverged {
                 iterations,
                 imbalance,
-                worst: worst(&forces.residual, given),
+                worst: forces.worst(given),
             });
         }
         let solver = problem.tangent(load, &u).into_shifted(0.0)?;
@@ -63,7 +62,7 @@ pub fn newton<P: Equilibrium>(
                     return Err(Failure::Unsolved {
                         iterations,
                         imbalance,
-                        worst: worst(&forces.residual, given),
+                        worst: forces.worst(given),
                     });
                 }
             }
@@ -81,7 +80,7 @@ pub fn newton<P: Equilibrium>(
                 return Err(Failure::NoDescent {
                     iterations,
                     imbalance,
-                    worst: worst(&forces.residual, given),
+                    worst: forces.worst(given),
                 });
             }
         };

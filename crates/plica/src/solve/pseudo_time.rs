@@ -1,7 +1,7 @@
 //! Pseudo-time with a drag that stays: the paper's scheme, and its backward Euler sister.
 
 use super::newton::newton;
-use super::state::worst;
+use super::state::largest;
 use super::{
     Balance, Equilibrium, Failure, Found, Integrator, Method, PseudoTime, Settings, Tangent, Watch,
     relaxation,
@@ -26,7 +26,7 @@ pub fn pseudo_time<P: Equilibrium>(
     watch: &mut dyn Watch,
 ) -> Result<Found, Failure<P::Broken>> {
     let watch = &mut Renamed(watch);
-    let (mut iterations, mut drag_work, mut moved) = (0, 0.0, (0.0, 0));
+    let (mut iterations, mut drag_work, mut moved) = (0, 0.0, (0, 0.0));
     for n in 1..=scheme.ramp + scheme.hold {
         let t = (n as f64 / scheme.ramp as f64).min(1.0);
         let load = problem.between(from, target, t);
@@ -44,10 +44,9 @@ pub fn pseudo_time<P: Equilibrium>(
         let step: Vec<f64> = next.u.iter().zip(&u).map(|(a, b)| a - b).collect();
         iterations += next.iterations;
         drag_work += force.iter().zip(&step).map(|(f, s)| f * s).sum::<f64>();
-        let farthest = worst(&step, &vec![false; step.len()]);
-        moved = (step[farthest].abs(), farthest);
+        moved = largest(step.iter().copied().enumerate());
         (u, *velocity) = (next.u, now);
-        if n >= scheme.ramp && moved.0 < scheme.tolerance {
+        if n >= scheme.ramp && moved.1 < scheme.tolerance {
             let forces = problem.forces(&load, &u).map_err(Failure::Broken)?;
             return Ok(Found {
                 u,
@@ -59,8 +58,8 @@ pub fn pseudo_time<P: Equilibrium>(
     }
     Err(Failure::StillMoving {
         steps: scheme.hold,
-        moved: moved.0,
-        worst: moved.1,
+        moved: moved.1,
+        worst: moved.0,
     })
 }
 

@@ -3,7 +3,6 @@
 use super::forcing::Forcing;
 use super::newton::{EQUILIBRIUM, free_part};
 use super::operator::dot;
-use super::state::worst;
 use super::{Balance, Equilibrium, Failure, Found, Method, Settings, Solver, Tangent, Watch};
 
 /// Drag after a step along which the energy did not fall, over the drag before.
@@ -71,14 +70,14 @@ pub fn relaxation<P: Equilibrium>(
             return Err(refused.unwrap_or(Failure::NoDescent {
                 iterations,
                 imbalance,
-                worst: worst(&forces.residual, given),
+                worst: forces.worst(given),
             }));
         }
         if iterations == settings.relaxation_steps {
             return Err(Failure::NotConverged {
                 iterations,
                 imbalance,
-                worst: worst(&forces.residual, given),
+                worst: forces.worst(given),
             });
         }
         let K = tangent.take().unwrap_or_else(|| {

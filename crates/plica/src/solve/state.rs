@@ -46,23 +46,26 @@ pub struct Balance {
 impl Balance {
     /// |R| over the free unknowns, relative to the forces in play.
     pub fn imbalance(&self, given: &[bool]) -> f64 {
-        let free = self
-            .residual
-            .iter()
-            .zip(given)
-            .filter(|(_, given)| !**given);
-        free.map(|(r, _)| r * r).sum::<f64>().sqrt() / self.in_play
+        self.free(given).map(|(_, r)| r * r).sum::<f64>().sqrt() / self.in_play
+    }
+
+    /// The free unknown that is farthest from balance.
+    pub fn worst(&self, given: &[bool]) -> usize {
+        largest(self.free(given)).0
+    }
+
+    /// The free unknowns and their entries of R.
+    fn free<'a>(&'a self, given: &'a [bool]) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let all = self.residual.iter().copied().enumerate();
+        all.zip(given)
+            .filter_map(|(entry, given)| (!given).then_some(entry))
     }
 }
 
-/// Where the entries of a vector are largest among the free ones.
-pub(super) fn worst(vector: &[f64], given: &[bool]) -> usize {
-    let free = vector.iter().zip(given).enumerate();
-    let sizes = free.filter(|(_, (_, given))| !**given);
-    let sizes = sizes.map(|(i, (x, _))| (i, x.abs()));
-    sizes
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .map_or(0, |(i, _)| i)
+/// Which of some entries is largest, and its size; 0 and nothing if there are none.
+pub(super) fn largest(entries: impl Iterator<Item = (usize, f64)>) -> (usize, f64) {
+    let sizes = entries.map(|(i, x)| (i, x.abs()));
+    sizes.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default()
 }
 
 /// An accepted state.

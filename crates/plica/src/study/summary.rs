@@ -106,7 +106,7 @@ fn advice(error: &PathError<Inverted>) -> &'static str {
             "Try more pseudo-time (solver.pseudo_time.hold), less drag, or more steps in this stage"
         }
         Some(Failure::Unsolved { .. }) => {
-            "Try more steps in this stage, fewer or more even elements (mesh.refine), or a smaller Poisson's ratio"
+            "Try more steps in this stage, or fewer or more even elements (mesh.refine)"
         }
         Some(Failure::Broken(_)) => {
             "Try more steps in this stage, more solver.halvings, or a finer mesh there (mesh.refine)"
