@@ -25,7 +25,8 @@ impl fmt::Display for Place {
 impl Place {
     /// Angle and depth in words.
     pub fn beside_z(&self) -> String {
-        let degrees = |angle: f64| angle.to_degrees().round().rem_euclid(360.0);
+        // Whole degrees know no negative zero.
+        let degrees = |angle: f64| (angle.to_degrees().round() as i64).rem_euclid(360);
         let angle =
             (self.angle).map_or(String::new(), |angle| format!("θ = {}°, ", degrees(angle)));
         angle
@@ -95,7 +96,9 @@ impl SplineTube {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::{TubeAndLoad, tube_and_load, unknowns};
     use super::*;
+    use std::f64::consts::{FRAC_PI_2, TAU};
 
     #[test]
     fn a_place_is_told_in_words() {
@@ -109,10 +112,49 @@ mod tests {
         };
         assert_eq!(place(None, 0.0), "z = 0.7500 D, on the outer wall");
         assert_eq!(place(None, 0.25), "z = 0.7500 D, 25 % of the wall deep");
-        let angle = Some(-0.5 * std::f64::consts::PI);
-        assert_eq!(
-            place(angle, 1.0),
-            "z = 0.7500 D, θ = 270°, on the inner wall"
-        );
+        let at = |angle| place(Some(angle), 1.0);
+        assert_eq!(at(-FRAC_PI_2), "z = 0.7500 D, θ = 270°, on the inner wall");
+        assert_eq!(at(-1e-3), "z = 0.7500 D, θ = 0°, on the inner wall");
+    }
+
+    #[test]
+    fn an_unknown_lies_where_its_control_point_does() {
+        for rings in [1, 6] {
+            let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 6], rings);
+            let along = tube.control_values(|z, _, _| [z; 3]);
+            let inwards = tube.control_values(|_, r, _| [(0.5 - r) / 0.15; 3]);
+            let around = tube.control_values(|_, _, ring| [tube.sector.ring_angle(ring); 3]);
+            for unknown in 0..along.len() {
+                let place = tube.place_of(unknown);
+                assert_eq!(place.z, along[unknown]);
+                assert!((place.depth - inwards[unknown]).abs() < 1e-12);
+                assert_eq!(place.angle, (rings > 1).then_some(around[unknown]));
+            }
+        }
+    }
+
+    #[test]
+    fn a_wall_is_strained_hardest_where_it_is_bent_most() {
+        let TubeAndLoad { tube, load } = tube_and_load(3, [12, 2, 12], 12);
+        let rest = tube.tube.rest();
+        // Wider, by more at the inside or at the outside.
+        for (power, depth) in [(-2, 1.0), (4, 0.0)] {
+            let u = unknowns(&tube, |_, r, _| [0.0, 1e-3 * (r / 0.5).powi(power), 0.0]);
+            let (place, density) = tube.hardest_strained(&rest, &u).unwrap();
+            assert_eq!(place.depth, depth);
+            assert!(density > 0.0);
+        }
+        // A bump, at a third of a turn.
+        let bump = unknowns(&tube, |z, _, s| {
+            let off = (z - 1.0).powi(2) + (s - 1.0 / 3.0).powi(2);
+            [0.0, 0.02 * (-off / 0.02).exp(), 0.0]
+        });
+        let (place, _) = tube.hardest_strained(&rest, &bump).unwrap();
+        assert!((place.z - 1.0).abs() < 0.2, "{place}");
+        let turn = place.angle.unwrap() / TAU;
+        assert!((turn - 1.0 / 3.0).abs() < 0.15, "{place}");
+        // What is not a number is nowhere.
+        let nowhere = vec![f64::NAN; bump.len()];
+        assert_eq!(tube.hardest_strained(&load, &nowhere), None);
     }
 }
