@@ -23,7 +23,11 @@ def read(path):
     reader.SetFileName(str(path))
     reader.Update()
     assert reader.GetErrorCode() == 0, path
-    return reader.GetOutput()
+    read = reader.GetOutput()
+    for data in (read.GetPointData(), read.GetCellData(), read.GetFieldData()):
+        for i in range(data.GetNumberOfArrays()):
+            assert np.isfinite(vtk_to_numpy(data.GetArray(i))).all(), (path, data.GetArrayName(i))
+    return read
 
 
 def field(data, name):

@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{files, root};
+use common::{Chance, files, root};
 use plica::case;
 use plica::study::{Checkpoint, SavedState};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -69,17 +69,7 @@ const WORDS: &[&str] = &[
     "title = 3\n",
 ];
 
-/// Numbers that look random, the same from the same seed.
-struct Chance(u64);
-
 impl Chance {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 % n.max(1) as u64) as usize
-    }
-
     fn mutated(&mut self, bytes: &[u8], others: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = bytes.to_vec();
         for _ in 0..1 + self.below(4) {

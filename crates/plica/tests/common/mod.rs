@@ -1,4 +1,4 @@
-//! What the tests of pages share.
+//! What the tests of pages, and those by chance, share.
 
 #![allow(dead_code)] // every file of tests uses a part
 
@@ -35,4 +35,17 @@ pub fn files(directory: &Path, ending: &str) -> Vec<PathBuf> {
 pub fn quoted(text: &str) -> Vec<String> {
     let quoted = text.split('`').skip(1).step_by(2);
     quoted.map(str::to_owned).collect()
+}
+
+/// Numbers that look random, the same from the same seed (xorshift); the seed is not 0.
+pub struct Chance(pub u64);
+
+impl Chance {
+    /// One of 0 to n − 1; of none, 0.
+    pub fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % n.max(1) as u64) as usize
+    }
 }
