@@ -13,13 +13,14 @@ use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor, TextSpan};
 
+use rayon::prelude::*;
+
+use super::inked::{Block, Patch, blocks};
 use super::label::{Level, Piece, pieces};
 use super::{DrawError, Image};
 
 /// How much finer than asked kuva draws.
 const FINER: usize = 2;
-/// White that is drawn around what is, in final pixels.
-const AROUND: f64 = 3.0;
 /// Farther from the corner, in points, nothing is drawn.
 const FAR: f64 = 1e5;
 /// So many widths of texts are remembered.
@@ -67,20 +68,21 @@ pub(super) struct Canvas {
     /// kuva's pixels per point.
     zoom: f64,
     scene: Scene,
-    /// From where to where down the page something is drawn, in points.
-    inked: Vec<(f64, f64)>,
+    /// Where each element of the scene leaves ink; nowhere in particular what only says how others are drawn.
+    inked: Vec<Vec<Patch>>,
     stamps: Vec<(Image, i64, i64)>,
     /// Pages that lie on their left side, and the middle of each.
     upward: Vec<(Canvas, Place)>,
     clips: usize,
-    paper: Image,
+    /// Width and height in final pixels.
+    pixels: [usize; 2],
 }
 
 impl Canvas {
     /// A white page of `width` by `height` points that becomes `width_px` pixels wide.
     pub fn new(width: f64, height: f64, width_px: usize) -> Result<Self, DrawError> {
-        let paper = Image::white(width_px as f64, height * width_px as f64 / width)?;
-        let scene = Scene::new((paper.width * FINER) as f64, (paper.height * FINER) as f64);
+        let pixels = Image::size(width_px as f64, height * width_px as f64 / width)?;
+        let scene = Scene::new((pixels[0] * FINER) as f64, (pixels[1] * FINER) as f64);
         let zoom = (FINER * width_px) as f64 / width;
         Ok(Self {
             width,
@@ -90,35 +92,14 @@ impl Canvas {
             stamps: Vec::new(),
             upward: Vec::new(),
             clips: 0,
-            paper,
+            pixels,
         })
     }
 
-    /// Remembers that something is drawn at these heights, and so far above and below.
-    fn ink(&mut self, heights: impl IntoIterator<Item = f64>, beyond: f64) {
-        let none = (f64::INFINITY, f64::NEG_INFINITY);
-        let (top, bottom) = (heights.into_iter()).fold(none, |(a, b), y| (a.min(y), b.max(y)));
-        if top <= bottom {
-            self.inked.push((top - beyond, bottom + beyond));
-        }
-    }
-
-    /// The bands of the page on which anything is drawn, in final rows of pixels from the top, with a little white around.
-    fn bands(&self) -> Vec<(usize, usize)> {
-        let (rows, height) = (self.pixels_per_point(), self.paper.height);
-        let row = |y: f64, more: f64| (y * rows + more).clamp(0.0, height as f64) as usize;
-        let mut inked = self.inked.clone();
-        inked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut bands: Vec<(usize, usize)> = vec![];
-        for (top, bottom) in inked {
-            let (top, bottom) = (row(top, -AROUND), row(bottom, AROUND));
-            match bands.last_mut() {
-                Some(last) if top <= last.1 => last.1 = last.1.max(bottom),
-                _ => bands.push((top, bottom)),
-            }
-        }
-        bands.retain(|(top, bottom)| top < bottom);
-        bands
+    /// Adds an element that leaves ink on these patches; without any it says how others are drawn.
+    fn add(&mut self, element: Primitive, patches: impl IntoIterator<Item = Patch>) {
+        self.scene.add(element);
+        self.inked.push(patches.into_iter().collect());
     }
 
     /// Final pixels per point.
@@ -149,22 +130,26 @@ impl Canvas {
             .map(|&(x, y)| (x * self.zoom, y * self.zoom))
             .collect();
         let stroke_width = pen.width * self.zoom;
-        self.ink(run.iter().map(|place| place.1), pen.width);
-        self.scene.add(Primitive::PolyLine {
+        let line = Primitive::PolyLine {
             points,
             stroke: ink(pen.colour),
             stroke_width,
             stroke_dasharray: None,
-        });
+        };
+        let pieces = run.windows(2);
+        self.add(
+            line,
+            pieces.filter_map(|ends| Patch::around(ends.iter().copied(), pen.width)),
+        );
     }
 
     /// A filled disc; a white rim lifts it off the lines beneath.
     pub fn disc(&mut self, (x, y): Place, radius: f64, colour: [u8; 3], rim: f64) {
-        self.ink([y], radius + rim);
+        let patch = Patch::around([(x, y)], radius + rim);
         for (r, c) in [(radius + rim, [255; 3]), (radius, colour)] {
             let (cx, cy, r) = (x * self.zoom, y * self.zoom, r * self.zoom);
             let (fill, none) = (ink(c), None);
-            self.scene.add(Primitive::Circle {
+            let disc = Primitive::Circle {
                 cx,
                 cy,
                 r,
@@ -172,13 +157,14 @@ impl Canvas {
                 fill_opacity: none,
                 stroke: None,
                 stroke_width: none,
-            });
+            };
+            self.add(disc, patch);
         }
     }
 
     /// A filled rectangle without an outline.
     pub fn rectangle(&mut self, (x, y): Place, width: f64, height: f64, colour: [u8; 3]) {
-        self.ink([y, y + height], 0.0);
+        let patch = Patch::around([(x, y), (x + width, y + height)], 0.0);
         let (x, y, width, height) = (
             x * self.zoom,
             y * self.zoom,
@@ -186,7 +172,7 @@ impl Canvas {
             height * self.zoom,
         );
         let fill = ink(colour);
-        self.scene.add(Primitive::Rect {
+        let rectangle = Primitive::Rect {
             x,
             y,
             width,
@@ -195,12 +181,12 @@ impl Canvas {
             stroke: None,
             stroke_width: None,
             opacity: None,
-        });
+        };
+        self.add(rectangle, patch);
     }
 
     /// A filled polygon without an outline.
     pub fn polygon(&mut self, corners: &[Place], colour: [u8; 3]) {
-        self.ink(corners.iter().map(|corner| corner.1), 0.0);
         let mut d = String::new();
         for (i, (x, y)) in corners.iter().enumerate() {
             let word = if i == 0 { 'M' } else { 'L' };
@@ -208,14 +194,15 @@ impl Canvas {
         }
         d.push('Z');
         let (fill, stroke, stroke_width) = (Some(ink(colour)), Color::None, 0.0);
-        self.scene.add(Primitive::Path(Box::new(PathData {
+        let polygon = Primitive::Path(Box::new(PathData {
             d,
             fill,
             stroke,
             stroke_width,
             opacity: None,
             stroke_dasharray: None,
-        })));
+        }));
+        self.add(polygon, Patch::around(corners.iter().copied(), 0.0));
     }
 
     /// What is drawn until [`Canvas::unclip`] shows only inside this rectangle.
@@ -226,23 +213,24 @@ impl Canvas {
             width * self.zoom,
             height * self.zoom,
         );
-        self.scene.add(Primitive::ClipStart {
+        let id = format!("clip-{}", self.clips);
+        let clip = Primitive::ClipStart {
             x,
             y,
             width,
             height,
-            id: format!("clip-{}", self.clips),
-        });
+            id,
+        };
+        self.add(clip, None);
         self.clips += 1;
     }
 
     pub fn unclip(&mut self) {
-        self.scene.add(Primitive::ClipEnd);
+        self.add(Primitive::ClipEnd, None);
     }
 
     /// Writes a label with its baseline at `place`; `size` in points.
     pub fn text(&mut self, (x, y): Place, label: &str, size: f64, anchor: Anchor, colour: [u8; 3]) {
-        self.ink([y - size, y], size);
         let pieces = pieces(label);
         let widths: Vec<f64> = pieces
             .iter()
@@ -257,12 +245,15 @@ impl Canvas {
         }
         for (piece, width) in pieces.iter().zip(widths) {
             let drop = piece.level.drop() * size;
-            self.scene.add(written(
+            let text = written(
                 piece,
                 (pen, (y + drop) * self.zoom),
                 size * self.zoom,
                 colour,
-            ));
+            );
+            let (left, right) = (pen / self.zoom, (pen + width) / self.zoom);
+            // Ascenders and descenders, and italics that lean out.
+            self.add(text, Patch::around([(left, y - size), (right, y)], size));
             pen += width;
         }
     }
@@ -308,17 +299,50 @@ impl Canvas {
             let turned = slip.finish()?.turned_left();
             self.stamp(turned, (x - height / 2.0, y - width / 2.0));
         }
-        // Most of a page of tubes is not kuva's, and what is costs by the area.
-        let bands = self.bands();
-        let mut page = self.paper;
-        for (top, bottom) in bands {
-            let fine = rendered(&band(&self.scene, FINER * top, FINER * bottom))?;
-            page.stamp(&fine.reduced(FINER), 0, top as i64);
+        // Most of a page is bare or not kuva's, and what is costs by the area.
+        let per_point = self.pixels_per_point();
+        let blocks = blocks(self.inked.iter().flatten(), self.pixels, per_point);
+        let painted = |block: &Block| Ok(self.part(block, per_point)?.reduced(FINER));
+        let painted: Vec<Image> = blocks
+            .par_iter()
+            .map(painted)
+            .collect::<Result<_, DrawError>>()?;
+        let [width, height] = self.pixels;
+        let mut page = Image::white(width as f64, height as f64)?;
+        for (block, image) in blocks.iter().zip(&painted) {
+            page.stamp(image, block.columns.start as i64, block.rows.start as i64);
         }
         for (picture, x, y) in &self.stamps {
             page.stamp(picture, *x, *y);
         }
         Ok(page)
+    }
+
+    /// A block of the page, painted in kuva's pixels.
+    fn part(&self, block: &Block, per_point: f64) -> Result<Image, DrawError> {
+        let [columns, rows] = [&block.columns, &block.rows];
+        let mut part = Scene::new((FINER * columns.len()) as f64, (FINER * rows.len()) as f64);
+        part.add(Primitive::GroupStart {
+            transform: Some(format!(
+                "translate(-{},-{})",
+                FINER * columns.start,
+                FINER * rows.start
+            )),
+            title: None,
+            extra_attrs: None,
+        });
+        for (element, patches) in self.scene.elements.iter().zip(&self.inked) {
+            if patches.is_empty() || patches.iter().any(|patch| block.meets(patch, per_point)) {
+                let mut element = element.clone();
+                if let Primitive::RichText { y, .. } = &mut element {
+                    // As kuva does, which rounds the other way above the block.
+                    *y = y.floor();
+                }
+                part.add(element);
+            }
+        }
+        part.add(Primitive::GroupEnd);
+        rendered(&part)
     }
 
     /// The page as lines and texts, in points; pictures laid over it multiply with what is beneath, so that their white is
@@ -368,19 +392,6 @@ impl Canvas {
 /// A scene as SVG.
 fn lines(scene: &Scene) -> String {
     SvgBackend::new().render_scene(scene)
-}
-
-/// The part of a scene between two heights, in its pixels.
-fn band(scene: &Scene, top: usize, bottom: usize) -> Scene {
-    let mut band = Scene::new(scene.width, (bottom - top) as f64);
-    band.add(Primitive::GroupStart {
-        transform: Some(format!("translate(0,-{top})")),
-        title: None,
-        extra_attrs: None,
-    });
-    scene.elements.iter().for_each(|one| band.add(one.clone()));
-    band.add(Primitive::GroupEnd);
-    band
 }
 
 fn ink([r, g, b]: [u8; 3]) -> Color {
@@ -522,5 +533,54 @@ mod tests {
         assert!((width("a b") - width("a") - width("b") - width(" ")).abs() < 0.5);
         assert!(width(" ") > 2.0);
         assert!(width("x_{max}") < width("xmax"));
+    }
+
+    #[test]
+    fn a_page_in_blocks_is_the_page_in_one() {
+        let mut canvas = Canvas::new(300.0, 200.0, 900).unwrap();
+        let pen = Pen {
+            dash: (3.0, 2.0),
+            ..Pen::new([20, 90, 160], 1.3)
+        };
+        let wave: Vec<Place> = (0..200)
+            .map(|i| {
+                (
+                    30.0 + f64::from(i),
+                    100.0 + 60.0 * (0.05 * f64::from(i)).sin(),
+                )
+            })
+            .collect();
+        canvas.clip((20.0, 20.0), 250.0, 110.0);
+        canvas.polyline(&wave, pen);
+        canvas.line((25.0, 25.0), (280.0, 190.0), Pen::new([200, 0, 0], 0.7));
+        canvas.unclip();
+        canvas.disc((150.0, 60.3), 4.0, [0, 120, 0], 1.0);
+        canvas.rectangle((200.2, 15.7), 40.0, 9.0, [240, 200, 90]);
+        canvas.polygon(&[(10.0, 150.0), (60.0, 195.0), (12.0, 190.0)], [9, 90, 9]);
+        // Across the cells of the page, at many heights.
+        for k in 0..12 {
+            let place = (5.0 + 2.1 * f64::from(k), 12.3 + 15.7 * f64::from(k));
+            canvas.text(
+                place,
+                "(*invaginated*, W_{max} = 10^{-4} gjpqy)",
+                9.0,
+                Anchor::Start,
+                INK,
+            );
+        }
+        let whole = Block {
+            columns: 0..canvas.pixels[0],
+            rows: 0..canvas.pixels[1],
+        };
+        let whole = canvas.part(&whole, canvas.pixels_per_point()).unwrap();
+        let (whole, page) = (whole.reduced(FINER), canvas.finish().unwrap());
+        assert_eq!((whole.width, whole.height), (page.width, page.height));
+        let apart = |(a, b): (&[u8; 3], &[u8; 3])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
+        let off = whole
+            .pixels
+            .iter()
+            .zip(&page.pixels)
+            .filter(|&pair| apart(pair));
+        assert_eq!(off.count(), 0);
     }
 }

@@ -44,14 +44,10 @@ impl Cutaway {
         let count = (width / strip) as usize;
         for i in 0..count {
             let t = (i as f64 + 0.5) / count as f64;
-            // Each strip reaches to the bar's end under the next ones, so that no seam shows.
+            // Each strip reaches under the next ones, so that no seam shows.
             let start = left + width * i as f64 / count as f64;
-            canvas.rectangle(
-                (start, top),
-                left + width - start,
-                height,
-                self.map.colour(t),
-            );
+            let length = (left + width - start).min(8.0 * strip);
+            canvas.rectangle((start, top), length, height, self.map.colour(t));
         }
         let middle = top + height / 2.0;
         let right = left + width;

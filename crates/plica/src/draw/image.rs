@@ -20,18 +20,26 @@ impl Image {
     /// A white picture.
     ///
     /// # Errors
-    /// [`DrawError::Size`] unless both sides lie between 16 and [`MAX_SIDE`] pixels.
+    /// As [`Image::size`].
     pub fn white(width: f64, height: f64) -> Result<Self, DrawError> {
-        let allowed = 16.0..=MAX_SIDE as f64;
-        if !allowed.contains(&width) || !allowed.contains(&height) {
-            return Err(DrawError::Size { width, height });
-        }
-        let (width, height) = (width.round() as usize, height.round() as usize);
+        let [width, height] = Self::size(width, height)?;
         Ok(Self {
             width,
             height,
             pixels: vec![[255; 3]; width * height],
         })
+    }
+
+    /// The sides of a picture in whole pixels.
+    ///
+    /// # Errors
+    /// [`DrawError::Size`] unless both lie between 16 and [`MAX_SIDE`] pixels.
+    pub fn size(width: f64, height: f64) -> Result<[usize; 2], DrawError> {
+        let allowed = 16.0..=MAX_SIDE as f64;
+        if !allowed.contains(&width) || !allowed.contains(&height) {
+            return Err(DrawError::Size { width, height });
+        }
+        Ok([width, height].map(|side| side.round() as usize))
     }
 
     /// Pictures one below the other, flush left, on white.

@@ -40,6 +40,7 @@ mod colour_bar;
 pub mod cutaway;
 mod frame;
 pub mod image;
+mod inked;
 pub mod inset;
 pub mod label;
 mod light;

@@ -13,6 +13,8 @@ use std::ops::Range;
 const STRIP: usize = 16;
 /// What counts as on an edge, in samples.
 const NEAR: f64 = 1e-6;
+/// What counts as a step in depth, in samples over one sample.
+const STEP: f32 = 12.0;
 
 /// A structured grid of quadrilaterals that carries a field.
 #[derive(Clone, Debug, Default)]
@@ -136,23 +138,21 @@ pub fn render(
     }
     let shader = Shader::new(range, map);
     let pixels = image.pixels.par_chunks_mut(STRIP * width);
-    pixels
-        .zip(strips)
-        .enumerate()
-        .for_each(|(k, (pixels, own))| {
-            let top = (k * height).saturating_sub(samples);
-            let bottom = ((k + 1) * height + samples).min(size.1);
-            let mut buffer = Samples::new(size.0, top..bottom);
-            for number in own {
-                let corners = scene.triangles[number as usize];
-                buffer.triangle(
-                    scene.places(corners),
-                    number,
-                    scene.surface[number as usize],
-                );
-            }
-            buffer.resolve(pixels, k * height, samples, &scene, &shader);
-        });
+    let strips = pixels.zip(strips).enumerate();
+    strips.for_each_init(Samples::default, |buffer, (k, (pixels, own))| {
+        let top = (k * height).saturating_sub(samples);
+        let bottom = ((k + 1) * height + samples).min(size.1);
+        buffer.begin(size.0, top..bottom);
+        for number in own {
+            let corners = scene.triangles[number as usize];
+            buffer.triangle(
+                scene.places(corners),
+                number,
+                scene.surface[number as usize],
+            );
+        }
+        buffer.resolve(pixels, k * height, samples, &scene, &shader);
+    });
     Ok(image)
 }
 
@@ -240,6 +240,7 @@ fn rows([a, b, c]: [[f64; 3]; 3], height: usize) -> Option<Range<usize>> {
 }
 
 /// What the samples of a strip of the picture hold: which triangle lies there, and where on it. What is hidden is never lit.
+#[derive(Default)]
 struct Samples {
     width: usize,
     /// Rows of the picture's samples.
@@ -253,16 +254,17 @@ struct Samples {
 }
 
 impl Samples {
-    fn new(width: usize, rows: Range<usize>) -> Self {
+    /// Empties it for a strip.
+    fn begin(&mut self, width: usize, rows: Range<usize>) {
         let count = width * rows.len();
-        Self {
-            width,
-            rows,
-            depth: vec![f32::NEG_INFINITY; count],
-            surface: vec![0; count],
-            triangle: vec![0; count],
-            weights: vec![[0.0; 2]; count],
-        }
+        (self.width, self.rows) = (width, rows);
+        self.depth.clear();
+        self.depth.resize(count, f32::NEG_INFINITY);
+        self.surface.clear();
+        self.surface.resize(count, 0);
+        // Where there is no surface these are not read.
+        self.triangle.resize(count, 0);
+        self.weights.resize(count, [0.0; 2]);
     }
 
     fn triangle(&mut self, [a, b, c]: [[f64; 3]; 3], number: u32, id: u16) {
@@ -374,12 +376,25 @@ impl Samples {
     /// The surface that all samples of a pixel show, 0 for none, if no edge runs through it.
     fn fills(&self, column: usize, row: usize, samples: usize) -> Option<u16> {
         let surface = self.surface[row * self.width + column];
-        let whole = (row..row + samples).all(|y| {
-            let start = y * self.width + column;
-            let line = &self.surface[start..start + samples];
-            line.iter().all(|&one| one == surface)
-                && (column..column + samples).all(|x| !self.is_edge(x, y, samples))
-        });
+        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+        let mut is_of_it = |column: usize, row: usize| {
+            (row..row + samples).all(|y| {
+                let line = y * self.width + column..y * self.width + column + samples;
+                for &depth in &self.depth[line.clone()] {
+                    (low, high) = (low.min(depth), high.max(depth));
+                }
+                self.surface[line].iter().all(|&one| one == surface)
+            })
+        };
+        // Samples are compared with those of the pixels to the right and below.
+        let (right, below) = (column + samples, row + samples);
+        let alone = is_of_it(column, row)
+            && (right >= self.width || is_of_it(right, row))
+            && (below >= self.rows.len() || is_of_it(column, below));
+        let whole = alone
+            && (surface == 0
+                || high - low <= STEP * samples as f32
+                || (row..below).all(|y| (column..right).all(|x| !self.is_edge(x, y, samples))));
         whole.then_some(surface)
     }
 
@@ -401,7 +416,7 @@ impl Samples {
                     0.0
                 }
             });
-            self.surface[here] != 0 && jump > 12.0 * reach as f32 && jump > 6.0 * before
+            self.surface[here] != 0 && jump > STEP * reach as f32 && jump > 6.0 * before
         };
         let (left, above) = (
             x.checked_sub(reach).map(|_| here - reach),
