@@ -17,9 +17,6 @@ const WIDTH: usize = 1800;
 const ALONG: usize = 300;
 const AROUND: usize = 48;
 
-/// How a picture comes about.
-type Drawing<'a> = dyn Fn() -> Result<Vec<u8>, DrawError> + Sync + 'a;
-
 /// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots; of a chosen state without one no more
 /// than its energy.
 ///
@@ -41,18 +38,22 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     };
     let chosen: Vec<Wall<'_>> = story.chosen.iter().filter_map(state).collect();
     let upwards = upright(story.chosen.iter().copied(), &scale);
-    let drawings: [(&str, &Drawing<'_>); 3] = [
-        ("energy.png", &|| energy(plan, summary, &story).png(WIDTH)),
-        ("walls.png", &|| walls(plan, &tube, &chosen).png(WIDTH)),
-        ("tube.png", &|| {
-            cutaway(plan, &tube, &chosen, upwards).png(WIDTH)
-        }),
+    let energy = || energy(plan, summary, &story).png(WIDTH);
+    if chosen.is_empty() {
+        return Ok(vec![("energy.png".to_owned(), energy()?)]);
+    }
+    // The tube takes longest: whoever is done with the plots helps.
+    let (tube, plots) = rayon::join(
+        || cutaway(plan, &tube, &chosen, upwards).png(WIDTH),
+        || Ok([energy()?, walls(plan, &tube, &chosen).png(WIDTH)?]),
+    );
+    let [energy, walls] = plots?;
+    let pictures = [
+        ("energy.png", energy),
+        ("walls.png", walls),
+        ("tube.png", tube?),
     ];
-    let count = if chosen.is_empty() { 1 } else { drawings.len() };
-    drawings[..count]
-        .par_iter()
-        .map(|(name, draw)| Ok(((*name).to_owned(), draw()?)))
-        .collect()
+    Ok(pictures.map(|(name, png)| (name.to_owned(), png)).into())
 }
 
 /// What the axis of energies is called.
