@@ -171,7 +171,7 @@ fn all(every: usize) {
         mend: &[GO_ON],
     };
     fresh.survives(every);
-    // A former run of something else, which is to be replaced.
+    // A former run of something else, which is to be replaced. As long as it is whole it is not taken for one of the new case.
     let other = plain.replace("1e-4", "2e-4");
     Act {
         name: "faults-overwrite",

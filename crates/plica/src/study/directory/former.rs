@@ -8,10 +8,12 @@ use std::path::{Path, PathBuf};
 /// Takes what a former run wrote out of its directory, known by name; every other file stays, and so does the manifest, so
 /// that what is left of a broken attempt is still known as a run.
 pub(super) fn clear(path: &Path) -> Result<(), StudyError> {
-    let mut old = stability_files(path);
+    // The case first: without it what is left is no run, should this be cut off.
+    let mut old = vec![path.join(CASE)];
+    old.extend(stability_files(path));
     let pictures = ["energy.png", "walls.png", "tube.png", "report.html"];
     old.extend(
-        [CASE, START, HISTORY, "history.part", "checkpoint.part"]
+        [START, HISTORY, "history.part", "checkpoint.part"]
             .iter()
             .chain(&CHECKPOINTS)
             .chain(&pictures)

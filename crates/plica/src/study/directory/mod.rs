@@ -316,9 +316,12 @@ fn is_a_run(path: &Path) -> bool {
     manifest(path)["program"] == PROGRAM
 }
 
-/// Whether a directory is that of a run that was killed before its case was there.
+/// Whether a directory is that of a run that was killed before its case was there: while it replaced another, maybe. Its manifest
+/// says no more than whose it is.
 fn is_unborn(path: &Path) -> bool {
-    is_a_run(path) && ![CASE, HISTORY].iter().any(|name| path.join(name).exists())
+    let manifest = manifest(path);
+    let keys = manifest.as_object().map_or(0, serde_json::Map::len);
+    keys == 1 && is_a_run(path) && !path.join(CASE).exists()
 }
 
 /// Whether a file is what is left of a run that could not even begin.
@@ -378,8 +381,20 @@ mod tests {
         fs::write(path.join("manifest.part"), "{").unwrap();
         RunDirectory::create(&path, "case", false).unwrap();
         assert_eq!(fs::read(path.join("case.toml")).unwrap(), b"case");
-        // Without a case it is a run still.
+        // Cut off while it replaced a run, it begins.
         fs::remove_file(path.join("case.toml")).unwrap();
+        fs::write(path.join(HISTORY), "of before").unwrap();
+        RunDirectory::create(&path, "again", false).unwrap();
+        assert!(!path.join(HISTORY).exists());
+        // One that has lost its case is a run still.
+        fs::remove_file(path.join("case.toml")).unwrap();
+        fs::write(
+            path.join(MANIFEST),
+            r#"{"program": "plica", "verdict": "complete"}"#,
+        )
+        .unwrap();
+        let refused = RunDirectory::create(&path, "again", false);
+        assert!(matches!(refused, Err(StudyError::Occupied(_))));
         RunDirectory::create(&path, "again", true).unwrap();
         fs::remove_dir_all(path).unwrap();
     }
