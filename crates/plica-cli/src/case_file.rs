@@ -3,7 +3,7 @@
 use crate::args::CaseArguments;
 use crate::failure::Failure;
 use plica::case::{self, Open, Wanted};
-use plica::study::{NamedMode, Plan, RunDirectory, SavedState, SavedStateError};
+use plica::study::{NamedMode, Plan, RunDirectory, SavedState, SavedStateError, StudyError};
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
@@ -41,7 +41,9 @@ impl<'a> Reach<'a> {
     fn read(&self, wanted: Wanted<'_>) -> Result<SavedState, SavedStateError> {
         let file = self.folder.join(wanted.path());
         let roots = [Some(self.folder), Some(Path::new(".")), self.within];
-        if !lies_in(&file, roots.into_iter().flatten())? {
+        // Links followed, once.
+        let file = file.canonicalize()?;
+        if !lies_in(&file, roots.into_iter().flatten()) {
             let why = "it lies neither in the folder of the case nor in the one that plica runs in, and a case does not reach further by \
                 itself; if it may, name a folder that holds it with --within DIR";
             return Err(Error::new(ErrorKind::PermissionDenied, why).into());
@@ -50,14 +52,12 @@ impl<'a> Reach<'a> {
     }
 }
 
-/// Whether a file lies in one of some folders, links followed.
-fn lies_in<'a>(file: &Path, mut folders: impl Iterator<Item = &'a Path>) -> Result<bool, Error> {
-    let file = file.canonicalize()?;
-    Ok(folders.any(|folder| {
-        folder
-            .canonicalize()
-            .is_ok_and(|folder| file.starts_with(folder))
-    }))
+/// Whether a file lies in one of some folders, links of those followed.
+fn lies_in<'a>(file: &Path, mut folders: impl Iterator<Item = &'a Path>) -> bool {
+    folders.any(|folder| {
+        let folder = folder.canonicalize();
+        folder.is_ok_and(|folder| file.starts_with(folder))
+    })
 }
 
 /// The same, with another way to the files that it names.
@@ -95,11 +95,21 @@ pub fn open_with(path: &Path, named: &Open<'_>) -> Result<(String, Plan), Failur
 }
 
 /// The plan of a run that is there. The state it began from it has kept, and the modes of its imperfections.
+///
+/// # Errors
+/// What it has kept, if that is damaged, and not the case that names it.
 pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
+    for path in directory.kept() {
+        let read = SavedState::read(&path);
+        read.map_err(|source| Failure::Study(StudyError::State { path, source }))?;
+    }
     let own = |wanted: Wanted<'_>| kept(directory, wanted);
-    let (_, mut plan) = open_with(&directory.path().join("case.toml"), &own)?;
+    let case = directory.path().join("case.toml");
+    let (_, mut plan) = open_with(&case, &own)?;
     // A case without a title had that of its file, which was called otherwise then.
-    if let Some(title) = directory.manifest()["title"].as_str() {
+    let manifest = directory.manifest();
+    let titled = manifest["title"].as_str().filter(|title| !title.is_empty());
+    if let Some(title) = titled.filter(|_| plan.title == stem(&case)) {
         plan.title = title.to_owned();
     }
     Ok(plan)

@@ -43,8 +43,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let (text, plan) = case_file::open(&arguments.case)?;
     let interrupt = listen()?;
     study::fits(&plan).map_err(Failure::Study)?;
-    let directory =
-        RunDirectory::create(&out, &text, arguments.overwrite).map_err(Failure::Study)?;
+    let directory = RunDirectory::create(&out, &text, &plan.title, arguments.overwrite)
+        .map_err(Failure::Study)?;
     lead(&plan, directory, interrupt, study::run)
 }
 
@@ -71,7 +71,9 @@ fn take_up(arguments: &RunArguments, out: &Path) -> Result<(), Failure> {
     let interrupt = listen()?;
     study::fits(&plan).map_err(Failure::Study)?;
     if before != text.as_bytes() {
-        directory.write_case(&text).map_err(Failure::Study)?;
+        directory
+            .write_case(&text, &plan.title)
+            .map_err(Failure::Study)?;
     }
     lead(&plan, directory, interrupt, study::resume)
 }

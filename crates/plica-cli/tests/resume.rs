@@ -434,7 +434,8 @@ fn a_run_goes_on_with_the_state_that_it_began_from() {
     assert_eq!(code, Some(2), "{told}");
     let difference = "start.state: \"start.safetensors\" -> \"other.safetensors\"";
     assert!(
-        told.contains("the start must stay") && told.contains(difference),
+        told.contains("the state that it starts from (`other.safetensors` is another) must stay")
+            && told.contains(difference),
         "{told}"
     );
     assert_same(&before, &run);

@@ -177,7 +177,7 @@ fn checkpoint() -> Vec<u8> {
         [[stages]]\nsteps = 2\ndrive.circular.diameter_ratio = 0.95\n[output]\npictures = false\n";
     let plan = case::read(case, "small").unwrap();
     let path = std::env::temp_dir().join(format!("plica-fuzz-{}", std::process::id()));
-    let mut directory = plica::study::RunDirectory::create(&path, case, true).unwrap();
+    let mut directory = plica::study::RunDirectory::create(&path, case, "", true).unwrap();
     plica::study::run(&plan, &mut directory, &mut Nobody).unwrap();
     let bytes = std::fs::read(path.join("checkpoint.safetensors")).unwrap();
     std::fs::remove_dir_all(path).unwrap();

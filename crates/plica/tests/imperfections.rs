@@ -17,7 +17,7 @@ fn waves(name: &str, case: &str, n: usize) -> Vec<(f64, [f64; 2])> {
     let plan = plica::case::read(case, name).unwrap();
     let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
     let path = std::env::temp_dir().join(format!("plica-{name}-{}", std::process::id()));
-    let mut directory = RunDirectory::create(&path, case, true).unwrap();
+    let mut directory = RunDirectory::create(&path, case, "", true).unwrap();
     let summary = study::run(&plan, &mut directory, &mut Nobody).unwrap();
     std::fs::remove_dir_all(&path).unwrap();
     assert!(summary.finished(), "{}", summary.ending());

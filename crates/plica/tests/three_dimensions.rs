@@ -95,7 +95,7 @@ fn a_round_state_loses_the_same_harmonics_whatever_is_solved_for() {
         let rings = plan.mesh.rings(plan.symmetry);
         let name = format!("plica-rounds-{rings}-{}", std::process::id());
         let path = std::env::temp_dir().join(name);
-        let mut directory = RunDirectory::create(&path, &case, true).unwrap();
+        let mut directory = RunDirectory::create(&path, &case, "", true).unwrap();
         let summary = study::run(&plan, &mut directory, &mut Nobody).unwrap();
         std::fs::remove_dir_all(&path).unwrap();
         assert!(summary.finished(), "{}", summary.ending());

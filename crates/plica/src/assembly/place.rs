@@ -63,7 +63,7 @@ impl SplineTube {
     }
 
     /// Where a state's strain energy density is highest, looked for in the middle of every element and above and below it on both
-    /// walls; and how high it is, in E.
+    /// walls; and how high it is, in E. Where the wall is turned over, between the points at which it is integrated, it is infinite.
     pub fn hardest_strained(&self, load: &Load, u: &[f64]) -> Option<(Place, f64)> {
         let tube = &self.tube;
         let (inner, thickness) = (tube.inner_radius(), tube.thickness);
@@ -76,14 +76,17 @@ impl SplineTube {
             let density = |(radius, around): (f64, usize)| {
                 let angle = self.sector.angle() * around as f64;
                 let at = super::Point { z, radius, angle };
-                (
-                    self.place(z, radius, around),
-                    self.sample(load, u, at).energy_density,
-                )
+                let sample = self.sample(load, u, at);
+                let density = if sample.is_turned_over() {
+                    f64::INFINITY
+                } else {
+                    sample.energy_density
+                };
+                (self.place(z, radius, around), density)
             };
             places
                 .map(density)
-                .filter(|(_, density)| density.is_finite())
+                .filter(|(_, density)| !density.is_nan())
                 .max_by(|a, b| a.1.total_cmp(&b.1))
         };
         let highest: Vec<_> = (0..self.axial.elements())
@@ -153,6 +156,14 @@ mod tests {
         assert!((place.z - 1.0).abs() < 0.2, "{place}");
         let turn = place.angle.unwrap() / TAU;
         assert!((turn - 1.0 / 3.0).abs() < 0.15, "{place}");
+        // A wall that is turned over is no better for its energy.
+        let over = unknowns(&tube, |z, r, s| {
+            let off = (z - 1.0).powi(2) + (s - 1.0 / 3.0).powi(2);
+            [0.0, 6.0 * (0.425 - r) * (-off / 0.02).exp(), 0.0]
+        });
+        let (place, density) = tube.hardest_strained(&rest, &over).unwrap();
+        assert_eq!(density, f64::INFINITY);
+        assert!((place.z - 1.0).abs() < 0.3, "{place}");
         // What is not a number is nowhere.
         let nowhere = vec![f64::NAN; bump.len()];
         assert_eq!(tube.hardest_strained(&load, &nowhere), None);

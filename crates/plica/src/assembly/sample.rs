@@ -42,6 +42,12 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// Whether the wall is turned over there, or where its volume is resisted, as a spline may be between the points at which it is
+    /// integrated: neither energy nor stress exists.
+    pub fn is_turned_over(&self) -> bool {
+        self.elastic.determinant().min(self.jacobian) <= 0.0
+    }
+
     /// Principal stretches of Fe, largest first, and their directions in the deformed wall, (z, outwards, around) at the
     /// middle of the point's element.
     pub fn stretches(&self) -> [(f64, [f64; 3]); 3] {

@@ -96,12 +96,15 @@ pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
 /// # Errors
 /// As [`read`]; a file that cannot be opened, or is not one of the case's tube, is a problem too.
 pub fn read_with(text: &str, name: &str, open: &Open<'_>) -> Result<Plan, CaseError> {
-    let root = DeTable::parse(text).map_err(|e| CaseError::from_toml(&e))?;
+    let (root, errors) = DeTable::parse_recoverable(text);
+    if !errors.is_empty() {
+        return Err(CaseError::not_toml(&errors));
+    }
     let mut problems = Problems::default();
     shape::check(root.get_ref(), &mut problems);
     let plan = match spec::Spec::deserialize(Deserializer::from(root.clone())) {
         Ok(spec) => check::plan(&spec, name, open, &mut problems),
-        Err(error) if problems.is_empty() => return Err(CaseError::from_toml(&error)),
+        Err(error) if problems.is_empty() => return Err(CaseError::not_toml(&[error])),
         Err(_) => return Err(problems.located(text, &root)),
     };
     if problems.is_empty() {

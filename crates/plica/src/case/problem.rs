@@ -58,9 +58,9 @@ impl fmt::Display for CaseError {
 }
 
 impl CaseError {
-    /// A text that is not TOML.
-    pub(super) fn from_toml(error: &toml::de::Error) -> Self {
-        let problem = Problem {
+    /// A text that is not TOML, and why, in the order of the text.
+    pub(super) fn not_toml(errors: &[toml::de::Error]) -> Self {
+        let problem = |error: &toml::de::Error| Problem {
             key: String::new(),
             value: None,
             rule: error.message().to_owned(),
@@ -68,9 +68,9 @@ impl CaseError {
             span: error.span(),
             on_key: false,
         };
-        Self {
-            problems: vec![problem],
-        }
+        let mut problems: Vec<Problem> = errors.iter().map(problem).collect();
+        problems.sort_by_key(|problem| problem.span.clone().map(|span| span.start));
+        Self { problems }
     }
 }
 

@@ -13,7 +13,8 @@ use rayon::prelude::*;
 /// Width of every picture, in pixels.
 const WIDTH: usize = 1800;
 
-/// Pieces along a tube, and around its half, that are fine enough for that: a polygon is off a circle by a sixth of a pixel.
+/// Pieces along a tube, and around its half where it is round, that are fine enough for that: a polygon is off a circle by a sixth of a
+/// pixel.
 const ALONG: usize = 300;
 const AROUND: usize = 48;
 
@@ -109,7 +110,9 @@ fn cutaway(plan: &Plan, tube: &SplineTube, chosen: &[Wall<'_>], upwards: f64) ->
     // A run does not wait for what is finer than its picture shows.
     let elements = tube.axial.elements();
     look.opening.points[0] = elements * (ALONG / elements).clamp(1, 2) + 1;
-    look.opening.points[1] = AROUND + 1;
+    if tube.sector.rings == 1 {
+        look.opening.points[1] = AROUND + 1;
+    }
     let panel = |state: &Wall<'_>| Panel {
         label: state.label.clone(),
         surfaces: looked_at(tube, state.load, state.u, upwards, &look),

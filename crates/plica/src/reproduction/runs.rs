@@ -226,7 +226,7 @@ impl Queue<'_> {
             problems.join("; ")
         })?;
         let path = self.folder.join(&job.name);
-        let directory = RunDirectory::create(&path, &text, true);
+        let directory = RunDirectory::create(&path, &text, &plan.title, true);
         let trouble = |error: StudyError| error.to_string();
         let mut directory = directory.map_err(trouble)?;
         let mut relay = Relay {

@@ -1,6 +1,7 @@
 //! What of a plan must stay while a run is left.
 
-use super::{Plan, Start};
+use super::{Plan, SavedState, Start};
+use crate::tube::Load;
 
 /// What keeps a run that was begun by one plan, and has come so far into a stage, from going on by another, in words; nothing if it can
 /// go on. The title, the solver, the outputs, the number of steps of the stage it is in and all later stages may change.
@@ -16,12 +17,22 @@ pub fn kept(old: &Plan, new: &Plan, within: Option<(usize, f64)>) -> Vec<String>
     hold(old.symmetry == new.symmetry, "the symmetry".into());
     hold(old.units == new.units, "the units".into());
     // Wherever it lies.
-    let start = |plan: &Plan| {
-        let start = plan.start.clone();
+    fn start(plan: &Plan) -> Option<(&Load, &SavedState)> {
+        let start = plan.start.as_ref();
         start.map(|Start { load, state, .. }| (load, state))
+    }
+    let same_start = start(old) == start(new);
+    let what = match (&old.start, &new.start) {
+        (Some(_), Some(new)) => {
+            format!("the state that it starts from (`{}` is another)", new.file)
+        }
+        _ => "the start".into(),
     };
-    hold(start(old) == start(new), "the start".into());
-    let begun = within.map_or(0, |(stage, _)| stage + 1);
+    hold(same_start, what);
+    // Stages go on from the start.
+    let begun = within
+        .filter(|_| same_start)
+        .map_or(0, |(stage, _)| stage + 1);
     for k in 0..begun {
         let is_done = within.is_some_and(|(stage, reached)| k < stage || reached == 1.0);
         let steps = |plan: &Plan| {

@@ -48,6 +48,8 @@ pub struct Manifest {
     pub states_out_of_equilibrium: usize,
     /// States that are unstable.
     pub states_unstable: usize,
+    /// Whether its pictures are drawn, and what only a run needs that goes on is not.
+    pub closed: bool,
 }
 
 impl Manifest {
@@ -74,6 +76,7 @@ impl Manifest {
             states: 0,
             states_out_of_equilibrium: 0,
             states_unstable: 0,
+            closed: false,
         }
     }
 

@@ -44,5 +44,5 @@ pub use problem::TubeProblem;
 pub use prolong::prolong;
 pub use run::{folded, resume, run};
 pub use saved_state::{Array, SavedState, SavedStateError};
-pub use summary::{Ending, Snapshot, Summary, Whereabouts};
+pub use summary::{Ending, Phase, Snapshot, Summary, Whereabouts};
 pub use units::Scale;

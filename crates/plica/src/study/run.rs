@@ -2,7 +2,7 @@
 
 use super::manifest::Manifest;
 use super::record::Record;
-use super::summary::{Ending, Summary, whereabouts};
+use super::summary::{Ending, Phase, Summary, whereabouts};
 use super::{
     Checkpoint, Layout, Observer, Plan, Row, RunDirectory, Start, StudyError, TubeProblem, fits,
     prolong,
@@ -194,7 +194,7 @@ fn follow(
                     } else {
                         let state = path.state();
                         Ending::Lost {
-                            stage: stage.name.clone(),
+                            phase: Phase::Stage(stage.name.clone()),
                             whereabouts: whereabouts(
                                 record.tube(),
                                 &error,
@@ -228,8 +228,8 @@ fn begin<'a>(
     observer: &mut dyn Observer,
 ) -> Result<Result<Path<'a, TubeProblem>, Ending>, StudyError> {
     let path = |load, u| Path::begin(problem, load, u, plan.solver.clone());
-    let lost = |stage: &str, error| Ending::Lost {
-        stage: stage.to_owned(),
+    let lost = |phase, error| Ending::Lost {
+        phase,
         whereabouts: whereabouts(&problem.tube, &error, None),
         error,
     };
@@ -245,7 +245,7 @@ fn begin<'a>(
             Ok(path) => path,
             Err(broken) => {
                 let tried = vec![(Method::Rest, Failure::Broken(broken))];
-                return Ok(Err(lost("rest", PathError { tried, step })));
+                return Ok(Err(lost(Phase::Rest, PathError { tried, step })));
             }
         };
         if !plan.tube.imperfections.is_empty() {
@@ -255,7 +255,7 @@ fn begin<'a>(
             match path.advance(1.0, &mut watch) {
                 Ok(found) => step = found,
                 Err(error) if error.stopped() => return Ok(Err(Ending::Stopped)),
-                Err(error) => return Ok(Err(lost("rest", error))),
+                Err(error) => return Ok(Err(lost(Phase::Rest, error))),
             }
         }
         record.accept("rest", &mut path, &step, true, observer)?;
@@ -266,7 +266,7 @@ fn begin<'a>(
     let (u, step) = match settle(plan, problem, start, &mut watch) {
         Ok(settled) => settled,
         Err(error) if error.stopped() => return Ok(Err(Ending::Stopped)),
-        Err(error) => return Ok(Err(lost(START, error))),
+        Err(error) => return Ok(Err(lost(Phase::Start, error))),
     };
     let mut path = match path(start.load.clone(), u) {
         Ok(path) => path,

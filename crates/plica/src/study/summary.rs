@@ -17,13 +17,24 @@ pub enum Ending {
     Stopped,
     /// The tube could not be followed further.
     Lost {
-        /// The stage it was lost in.
-        stage: String,
+        /// Where it was lost.
+        phase: Phase,
         /// What was tried.
         error: PathError<Inverted>,
         /// Where in the tube it is to be looked for.
         whereabouts: Vec<Whereabouts>,
     },
+}
+
+/// Where on its path a tube is lost.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Phase {
+    /// On the way to rest, with its imperfections.
+    Rest,
+    /// On the way to equilibrium of the state that it starts from.
+    Start,
+    /// In a stage of this name.
+    Stage(String),
 }
 
 impl Ending {
@@ -43,18 +54,28 @@ impl fmt::Display for Ending {
             Self::Complete => f.write_str("every stage was done"),
             Self::Stopped => f.write_str("stopped on request; every state so far is kept"),
             Self::Lost {
-                stage,
+                phase,
                 error,
                 whereabouts,
             } => {
-                write!(
-                    f,
-                    "the tube could not be followed further in stage `{stage}` ({error}); the last good state is kept. "
-                )?;
+                match phase {
+                    Phase::Rest => write!(
+                        f,
+                        "with its imperfections the tube was not brought to rest ({error}); there is no first state. "
+                    ),
+                    Phase::Start => write!(
+                        f,
+                        "the state that it starts from was not brought to equilibrium on this mesh ({error}); there is no first state. "
+                    ),
+                    Phase::Stage(stage) => write!(
+                        f,
+                        "the tube could not be followed further in stage `{stage}` ({error}); the last good state is kept. "
+                    ),
+                }?;
                 for there in whereabouts {
                     write!(f, "{there}. ")?;
                 }
-                f.write_str(advice(error))
+                f.write_str(advice(phase, error))
             }
         }
     }
@@ -63,8 +84,12 @@ impl fmt::Display for Ending {
 /// A place at which to look for why a tube was lost.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Whereabouts {
-    /// What was tried last was farthest from balance there, or moved most.
+    /// What was tried last was farthest from balance there.
     Unbalanced(Place),
+    /// What was tried last still moved most there.
+    Moving(Place),
+    /// The last good state is turned over there, between points of integration.
+    Turned(Place),
     /// The last good state has its highest strain energy density there, in E.
     Strained(Place, f64),
 }
@@ -75,13 +100,21 @@ pub(super) fn whereabouts(
     error: &PathError<Inverted>,
     last: Option<(&Load, &[f64])>,
 ) -> Vec<Whereabouts> {
-    let worst = error.tried.last().and_then(|(_, failure)| failure.worst());
-    let unbalanced = worst.map(|unknown| Whereabouts::Unbalanced(tube.place_of(unknown)));
+    let tried = error.tried.last().and_then(|(_, failure)| {
+        let place = tube.place_of(failure.worst()?);
+        Some(match failure {
+            Failure::StillMoving { .. } => Whereabouts::Moving(place),
+            _ => Whereabouts::Unbalanced(place),
+        })
+    });
     let strained = last.and_then(|(load, u)| tube.hardest_strained(load, u));
     let strained = strained
         .filter(|(_, density)| *density > ROUNDING)
-        .map(|(place, density)| Whereabouts::Strained(place, density));
-    unbalanced.into_iter().chain(strained).collect()
+        .map(|(place, density)| match density.is_finite() {
+            true => Whereabouts::Strained(place, density),
+            false => Whereabouts::Turned(place),
+        });
+    tried.into_iter().chain(strained).collect()
 }
 
 /// A strain energy density, in E, that is none.
@@ -91,6 +124,11 @@ impl fmt::Display for Whereabouts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unbalanced(place) => write!(f, "What was tried last was farthest off at {place}"),
+            Self::Moving(place) => write!(f, "What was tried last still moved most at {place}"),
+            Self::Turned(place) => write!(
+                f,
+                "The last good state is turned over at {place}, between the points at which it is integrated: it needs a finer mesh there"
+            ),
             Self::Strained(place, density) => write!(
                 f,
                 "The last good state is strained hardest at {place} (energy density {density:.1e} E)"
@@ -99,8 +137,17 @@ impl fmt::Display for Whereabouts {
     }
 }
 
-/// What may help, by how the last method failed.
-fn advice(error: &PathError<Inverted>) -> &'static str {
+/// What may help, by where the tube was lost and how the last method failed.
+fn advice(phase: &Phase, error: &PathError<Inverted>) -> &'static str {
+    match phase {
+        Phase::Rest => {
+            return "Try a smaller imperfection, more solver.newton_iterations or solver.relaxation_steps, or a finer mesh there (mesh.refine)";
+        }
+        Phase::Start => {
+            return "Try a mesh nearer to that of the saved state, or more solver.newton_iterations or solver.relaxation_steps";
+        }
+        Phase::Stage(_) => {}
+    }
     match error.tried.last().map(|(_, failure)| failure) {
         Some(Failure::StillMoving { .. }) => {
             "Try more pseudo-time (solver.pseudo_time.hold), less drag, or more steps in this stage"
@@ -189,7 +236,7 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lines = self.findings().lines();
         if lines.is_empty() {
-            return write!(f, "no state was accepted");
+            return writeln!(f, "no state was accepted");
         }
         for (name, value) in lines {
             writeln!(f, "  {name:<22} {value}")?;

@@ -1,6 +1,8 @@
 //! What a former run wrote, known by name: it alone is ever taken out of a directory.
 
-use super::{CASE, CHECKPOINTS, HISTORY, OF_STATES, START, STATE_ENDING, number_of_state};
+use super::{
+    CASE, CHECKPOINTS, HISTORY, IMPERFECTIONS, OF_STATES, START, STATE_ENDING, number_of_state,
+};
 use crate::study::StudyError;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +21,7 @@ pub(super) fn clear(path: &Path) -> Result<(), StudyError> {
             .chain(&pictures)
             .map(|name| path.join(name)),
     );
-    old.extend(modes(&path.join("imperfections")));
+    old.extend(modes(&path.join(IMPERFECTIONS)));
     let drawn = [
         ("vtk/walls", "vtp"),
         ("vtk/volume", "vtu"),
@@ -61,7 +63,7 @@ pub(super) fn stability_files(path: &Path) -> Vec<PathBuf> {
 }
 
 /// The files of modes in a folder.
-fn modes(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+pub(super) fn modes(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
     files(folder).filter(|file| {
         let name = file
             .file_name()

@@ -1,8 +1,11 @@
 //! What a run leaves so that it can be taken up again: a history that ends where it goes on, checkpoints, and states that pictures
 //! may need.
 
-use super::former::remove;
-use super::{CHECKPOINTS, HISTORY, OF_STATES, RunDirectory, SPARE, STATE_ENDING, name_of_spare};
+use super::former::{modes, remove};
+use super::{
+    CHECKPOINTS, HISTORY, IMPERFECTIONS, OF_STATES, RunDirectory, SPARE, START, STATE_ENDING,
+    name_of_spare,
+};
 use crate::study::{Checkpoint, Plan, Row, SavedState, StudyError};
 use std::fs::{self, File};
 use std::path::PathBuf;
@@ -30,7 +33,9 @@ impl RunDirectory {
         );
         remove(later)?;
         if rows.is_empty() {
-            return remove(vec![path]);
+            // What it begins with is kept when it begins.
+            let begun = [path, self.path.join(START)].into_iter();
+            return remove(begun.chain(modes(&self.path.join(IMPERFECTIONS))).collect());
         }
         let mut table = csv::Writer::from_writer(vec![]);
         for row in rows {
@@ -124,6 +129,11 @@ impl RunDirectory {
     /// Takes out what only a run that goes on needs, once its pictures are drawn.
     pub fn tidy(&self) -> Result<(), StudyError> {
         // First of all, so that pictures are not drawn again while states that they need are going.
+        if let serde_json::Value::Object(mut about) = self.manifest()
+            && about.insert("closed".into(), true.into()) != Some(true.into())
+        {
+            self.write_manifest(&about)?;
+        }
         remove(vec![self.path.join(CHECKPOINTS[1])])?;
         remove(self.numbered(SPARE, STATE_ENDING)?.into_values().collect())?;
         // Empty by now; if not, it holds something that is not a run's.
@@ -133,6 +143,9 @@ impl RunDirectory {
 
     /// Whether the run is at its end, its pictures drawn.
     pub fn is_complete(&self) -> bool {
-        self.verdict() == "complete" && !self.path.join(CHECKPOINTS[1]).exists()
+        let closed = self.manifest()["closed"].as_bool();
+        // One of before that was told has no checkpoint before its last.
+        let closed = closed.unwrap_or_else(|| !self.path.join(CHECKPOINTS[1]).exists());
+        closed && self.verdict() == "complete"
     }
 }

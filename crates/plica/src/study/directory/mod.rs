@@ -6,7 +6,7 @@ mod writing;
 
 use super::lock::{LOCK, Lock};
 use super::{Row, StudyError};
-use former::{clear, files, remove, stability_files};
+use former::{clear, files, modes, remove, stability_files};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -39,6 +39,9 @@ pub struct RunDirectory {
     lock: Option<Lock>,
 }
 
+/// What a manifest says of a run that is being replaced.
+const REPLACED: &str = "replaced";
+
 /// What a manifest names as its program.
 pub const PROGRAM: &str = "plica";
 
@@ -62,6 +65,9 @@ const CHECKPOINTS: [&str; 2] = ["checkpoint.safetensors", "checkpoint-before.saf
 /// The state that a run began from.
 const START: &str = "start.safetensors";
 
+/// Folder of the modes that imperfections have the shape of.
+const IMPERFECTIONS: &str = "imperfections";
+
 /// Ending of the files of saved states.
 const STATE_ENDING: &str = "safetensors";
 
@@ -73,9 +79,14 @@ const OF_STATES: [(&str, &str); 3] = [
 ];
 
 impl RunDirectory {
-    /// Makes the directory and writes the case into it. A directory that holds anything is left
+    /// Makes the directory and writes the case into it, and its title beside. A directory that holds anything is left
     /// alone, unless it is that of a former run and `overwrite` is given.
-    pub fn create(path: &Path, case_text: &str, overwrite: bool) -> Result<Self, StudyError> {
+    pub fn create(
+        path: &Path,
+        case_text: &str,
+        title: &str,
+        overwrite: bool,
+    ) -> Result<Self, StudyError> {
         let trouble = |source| StudyError::File {
             path: path.to_owned(),
             source,
@@ -103,20 +114,28 @@ impl RunDirectory {
             history: None,
             lock,
         };
-        // First of all, so that whatever becomes of the rest it is known as a run.
-        directory.write_manifest(&serde_json::json!({ "program": PROGRAM }))?;
+        // First of all, so that whatever becomes of the rest it is known as a run: as the former one while that has its case.
+        let mut about = directory.about();
+        about.insert(REPLACED.into(), true.into());
+        directory.write_manifest(&about)?;
         clear(path)?;
-        directory.write_case(case_text)?;
+        directory.write_manifest(&serde_json::json!({ "program": PROGRAM }))?;
+        directory.write_case(case_text, title)?;
         Ok(directory)
     }
 
     /// Takes it for this process, until it is dropped.
     ///
     /// # Errors
-    /// [`StudyError::Busy`] if another process has it.
+    /// [`StudyError::Busy`] if another process has it; else as [`RunDirectory::open`].
     pub fn own(&mut self) -> Result<(), StudyError> {
         if self.lock.is_none() {
-            self.lock = Some(Lock::take(&self.path)?);
+            let lock = Some(Lock::take(&self.path)?);
+            // Whoever had it may have changed it since.
+            *self = Self {
+                lock,
+                ..Self::open(&self.path)?
+            };
         }
         Ok(())
     }
@@ -223,6 +242,10 @@ impl RunDirectory {
             path: path.clone(),
             source: std::io::Error::other(error),
         };
+        if path.exists() && !path.is_file() {
+            let what = std::io::Error::other("not a plain file");
+            return Err(trouble(what.into()));
+        }
         let mut table = csv::Reader::from_path(&path).map_err(trouble)?;
         let mut rows: Vec<Row> = vec![];
         for row in table.deserialize() {
@@ -274,6 +297,16 @@ impl RunDirectory {
         format!("{STATES}/state-{row:04}.{STATE_ENDING}")
     }
 
+    /// The files that keep what the run began with: its first state, if that is not rest, and modes.
+    pub fn kept(&self) -> Vec<PathBuf> {
+        let start = Some(self.start()).filter(|start| start.exists());
+        let modes = modes(&self.path.join(IMPERFECTIONS)).filter(|mode| {
+            let ending = mode.extension().and_then(|ending| ending.to_str());
+            ending == Some(STATE_ENDING)
+        });
+        start.into_iter().chain(modes).collect()
+    }
+
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
@@ -320,8 +353,13 @@ fn is_a_run(path: &Path) -> bool {
 /// says no more than whose it is.
 fn is_unborn(path: &Path) -> bool {
     let manifest = manifest(path);
-    let keys = manifest.as_object().map_or(0, serde_json::Map::len);
-    keys == 1 && is_a_run(path) && !path.join(CASE).exists()
+    let no_more = |about: &serde_json::Map<String, serde_json::Value>| {
+        about
+            .keys()
+            .all(|key| ["program", "title"].contains(&key.as_str()))
+    };
+    let begins = manifest[REPLACED] == true || manifest.as_object().is_some_and(no_more);
+    begins && is_a_run(path) && !path.join(CASE).exists()
 }
 
 /// Whether a file is what is left of a run that could not even begin.
@@ -339,7 +377,7 @@ fn name_of_spare(row: usize) -> String {
 
 /// The relative path of the mode that an imperfection has the shape of.
 fn imperfection(number: usize) -> String {
-    format!("imperfections/mode-{number:02}.{STATE_ENDING}")
+    format!("{IMPERFECTIONS}/mode-{number:02}.{STATE_ENDING}")
 }
 
 /// The number N of a file that is called `state-N` with an ending.
@@ -369,7 +407,7 @@ mod tests {
         let path = scratch("not-a-run");
         fs::write(path.join(MANIFEST), r#"{"name": "my web app"}"#).unwrap();
         fs::write(path.join("logo.png"), "logo").unwrap();
-        let refused = RunDirectory::create(&path, "case", true);
+        let refused = RunDirectory::create(&path, "case", "", true);
         assert!(matches!(refused, Err(StudyError::NotARun(_))));
         assert_eq!(fs::read(path.join("logo.png")).unwrap(), b"logo");
         fs::remove_dir_all(path).unwrap();
@@ -379,12 +417,12 @@ mod tests {
     fn what_is_left_of_a_run_that_could_not_begin_is_no_hindrance() {
         let path = scratch("left-over");
         fs::write(path.join("manifest.part"), "{").unwrap();
-        RunDirectory::create(&path, "case", false).unwrap();
+        RunDirectory::create(&path, "case", "", false).unwrap();
         assert_eq!(fs::read(path.join("case.toml")).unwrap(), b"case");
         // Cut off while it replaced a run, it begins.
         fs::remove_file(path.join("case.toml")).unwrap();
         fs::write(path.join(HISTORY), "of before").unwrap();
-        RunDirectory::create(&path, "again", false).unwrap();
+        RunDirectory::create(&path, "again", "", false).unwrap();
         assert!(!path.join(HISTORY).exists());
         // One that has lost its case is a run still.
         fs::remove_file(path.join("case.toml")).unwrap();
@@ -393,16 +431,16 @@ mod tests {
             r#"{"program": "plica", "verdict": "complete"}"#,
         )
         .unwrap();
-        let refused = RunDirectory::create(&path, "again", false);
+        let refused = RunDirectory::create(&path, "again", "", false);
         assert!(matches!(refused, Err(StudyError::Occupied(_))));
-        RunDirectory::create(&path, "again", true).unwrap();
+        RunDirectory::create(&path, "again", "", true).unwrap();
         fs::remove_dir_all(path).unwrap();
     }
 
     #[test]
     fn a_former_run_is_replaced_when_asked_and_other_files_stay() {
         let path = scratch("former-run");
-        RunDirectory::create(&path, "first", false).unwrap();
+        RunDirectory::create(&path, "first", "", false).unwrap();
         for folder in ["profiles", "states", "vtk/walls", "pictures"] {
             fs::create_dir_all(path.join(folder)).unwrap();
         }
@@ -424,9 +462,9 @@ mod tests {
         ] {
             fs::write(path.join(name), name).unwrap();
         }
-        let again = RunDirectory::create(&path, "second", false);
+        let again = RunDirectory::create(&path, "second", "", false);
         assert!(matches!(again, Err(StudyError::Occupied(_))));
-        RunDirectory::create(&path, "second", true).unwrap();
+        RunDirectory::create(&path, "second", "", true).unwrap();
         assert_eq!(fs::read(path.join("case.toml")).unwrap(), b"second");
         let stays = |name: &str| path.join(name).exists();
         assert!(stays("logo.png") && stays("profiles/mine.csv"));

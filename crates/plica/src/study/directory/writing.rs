@@ -1,26 +1,33 @@
 //! Files as they come to the disk: aside first, then under their name, and never a number that is none.
 
 use super::{CASE, HISTORY, MANIFEST, PROGRAM, RunDirectory, START, STATE_ENDING, imperfection};
-use crate::study::{NamedMode, Row, SavedState, StudyError};
+use crate::study::{NamedMode, Row, SavedState, SavedStateError, StudyError};
 use serde::Serialize;
 use std::fs::{self, File};
 use std::io::Write;
 
 impl RunDirectory {
-    /// Writes the case, in the place of another if there is one.
-    pub fn write_case(&mut self, case_text: &str) -> Result<(), StudyError> {
+    /// Writes the case, in the place of another if there is one, and its title, which a case may have from its file.
+    pub fn write_case(&mut self, case_text: &str, title: &str) -> Result<(), StudyError> {
         // The manifest first: so it holds no case to be another, and no run of it to be complete.
-        let mut about = match self.manifest() {
-            serde_json::Value::Object(about) => about,
-            _ => serde_json::Map::new(),
-        };
+        let mut about = self.about();
         about.remove("case_hash");
         about.remove("verdict");
-        about.insert("program".into(), PROGRAM.into());
+        about.insert("title".into(), title.into());
         self.write_manifest(&about)?;
         self.write(CASE, case_text.as_bytes())?;
         self.case_hash = blake3::hash(case_text.as_bytes()).to_string();
         Ok(())
+    }
+
+    /// What its manifest says; no more than whose it is where there is none.
+    pub(super) fn about(&self) -> serde_json::Map<String, serde_json::Value> {
+        let mut about = match self.manifest() {
+            serde_json::Value::Object(about) => about,
+            _ => serde_json::Map::new(),
+        };
+        about.insert("program".into(), PROGRAM.into());
+        about
     }
 
     /// Adds a row to `history.csv`; it is on its way to the disk when this returns.
@@ -116,9 +123,17 @@ impl RunDirectory {
 
     /// Writes a state, or what has the form of one, under a relative path.
     pub(super) fn write_saved(&self, name: &str, state: &SavedState) -> Result<(), StudyError> {
-        let bytes = state.to_bytes().map_err(|source| StudyError::State {
-            path: self.path.join(name),
-            source,
+        let path = || self.path.join(name);
+        let bytes = state.to_bytes().map_err(|source| match source {
+            SavedStateError::Array { name, .. } => StudyError::NoNumber {
+                path: path(),
+                what: format!("the array `{name}`"),
+                number: "no number in places".into(),
+            },
+            source => StudyError::State {
+                path: path(),
+                source,
+            },
         })?;
         self.write(name, &bytes)
     }
@@ -177,7 +192,7 @@ mod tests {
     #[test]
     fn a_number_that_is_none_is_not_written() {
         let path = scratch("no-number");
-        let directory = RunDirectory::create(&path, "case", false).unwrap();
+        let directory = RunDirectory::create(&path, "case", "", false).unwrap();
         let refused = directory.write_table(
             "profiles/state-0001.csv",
             &["z", "r"],
@@ -197,7 +212,7 @@ mod tests {
         state.u[5] = f64::INFINITY;
         assert!(matches!(
             directory.write_state(&state),
-            Err(StudyError::State { .. })
+            Err(StudyError::NoNumber { .. })
         ));
         fs::remove_dir_all(path).unwrap();
     }

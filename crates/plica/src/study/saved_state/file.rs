@@ -104,12 +104,13 @@ impl SavedState {
     /// # Errors
     /// As [`SavedState::from_bytes`]; and if it cannot be read, or is no plain file.
     pub fn read(path: &Path) -> Result<Self, SavedStateError> {
-        let file = File::open(path)?;
-        let about = file.metadata()?;
+        // Before it is opened, which a pipe without a writer never is.
+        let about = std::fs::metadata(path)?;
         if !about.is_file() {
             let what = "not a plain file";
             return Err(Error::new(ErrorKind::InvalidInput, what).into());
         }
+        let file = File::open(path)?;
         let mut bytes = vec![];
         file.take(about.len()).read_to_end(&mut bytes)?;
         Self::from_bytes(&bytes)
