@@ -8,7 +8,7 @@
 
 mod common;
 
-use common::{assert_same, left, plica, scratch, text};
+use common::{assert_same_after, left, plica, scratch, text};
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
@@ -84,8 +84,8 @@ impl Act<'_> {
             assert!(said.status.success(), "{}", text(&said.stderr));
         };
         if let Some(before) = self.before {
-            fs::write(directory.join("case.toml"), HEAD.to_owned() + before).unwrap();
-            does(&["run", "case.toml", "--out", "before"]);
+            fs::write(directory.join("tube.toml"), HEAD.to_owned() + before).unwrap();
+            does(&["run", "tube.toml", "--out", "before"]);
         }
         let cut = directory.join("cut");
         let again = || {
@@ -94,7 +94,7 @@ impl Act<'_> {
                 copy(&directory.join("before"), &cut);
             }
         };
-        fs::write(directory.join("case.toml"), HEAD.to_owned() + self.case).unwrap();
+        fs::write(directory.join("tube.toml"), HEAD.to_owned() + self.case).unwrap();
         again();
         does(self.act);
         let whole = left(&cut);
@@ -121,8 +121,9 @@ impl Act<'_> {
                     assert_eq!(said.status.code(), Some(3), "{how} at {at}: {told}");
                     assert!(told.contains("No space left"), "{how} at {at}: {told}");
                 }
-                self.mended(&directory, &format!("{how} at {at}"));
-                assert_same(&whole, &cut);
+                let what = format!("{}: {how} at {at}", self.name);
+                self.mended(&directory, &what);
+                assert_same_after(&what, &whole, &cut);
                 at += every;
             }
             assert!(at > 20.max(every), "{how}: {at}");
@@ -149,7 +150,7 @@ impl Act<'_> {
                 text(&stderr)
             );
             if let Some(before) = before {
-                assert_same(&before, &directory.join("cut"));
+                assert_same_after(what, &before, &directory.join("cut"));
             }
             told.push(text(&stderr));
         }
@@ -157,9 +158,11 @@ impl Act<'_> {
     }
 }
 
-const RUN: &[&str] = &["run", "case.toml", "--out", "cut"];
-const GO_ON: &[&str] = &["run", "case.toml", "--out", "cut", "--resume"];
-const OVERWRITE: &[&str] = &["run", "case.toml", "--out", "cut", "--overwrite"];
+/// By another command, in a run whose case has a title of its file only.
+const RESUME: &[&str] = &["resume", "cut"];
+const RUN: &[&str] = &["run", "tube.toml", "--out", "cut"];
+const GO_ON: &[&str] = &["run", "tube.toml", "--out", "cut", "--resume"];
+const OVERWRITE: &[&str] = &["run", "tube.toml", "--out", "cut", "--overwrite"];
 
 fn all(every: usize) {
     let plain = MORE.to_owned() + PLAIN;
@@ -171,6 +174,13 @@ fn all(every: usize) {
         mend: &[GO_ON],
     };
     fresh.survives(every);
+    Act {
+        name: "faults-resume",
+        case: &(MORE.to_owned() + "[output]\nstates_every = 2\n"),
+        mend: &[RESUME, GO_ON],
+        ..fresh
+    }
+    .survives(2 * every);
     // A former run of something else, which is to be replaced. As long as it is whole it is not taken for one of the new case.
     let other = plain.replace("1e-4", "2e-4");
     Act {
@@ -194,6 +204,15 @@ fn all(every: usize) {
         name: "faults-pictures",
         before: Some("[output]\nstates_every = 2\n"),
         case: &(MORE.to_owned() + "[output]\nstates_every = 2\n"),
+        act: GO_ON,
+        mend: &[GO_ON],
+    }
+    .survives(2 * every);
+    // Pictures alone, of a run that was complete without.
+    Act {
+        name: "faults-drawn",
+        before: Some("[output]\npictures = false\n"),
+        case: "",
         act: GO_ON,
         mend: &[GO_ON],
     }

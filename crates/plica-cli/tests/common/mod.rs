@@ -130,10 +130,15 @@ pub fn left(run: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 /// That a run has left the same.
 pub fn assert_same(whole: &BTreeMap<PathBuf, Vec<u8>>, run: &Path) {
+    assert_same_after("", whole, run);
+}
+
+/// That a run has left the same after something.
+pub fn assert_same_after(what: &str, whole: &BTreeMap<PathBuf, Vec<u8>>, run: &Path) {
     let got = left(run);
     let names: Vec<_> = got.keys().collect();
-    assert_eq!(names, whole.keys().collect::<Vec<_>>());
+    assert_eq!(names, whole.keys().collect::<Vec<_>>(), "{what}");
     for (name, bytes) in whole {
-        assert!(got[name] == *bytes, "{} differs", name.display());
+        assert!(got[name] == *bytes, "{what}: {} differs", name.display());
     }
 }
