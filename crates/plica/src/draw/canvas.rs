@@ -292,6 +292,18 @@ impl Canvas {
             / self.zoom
     }
 
+    /// A label, or as much of its beginning as fits into a width, in points.
+    pub fn fitting(&self, label: &str, size: f64, width: f64) -> String {
+        if self.text_width(label, size) <= width {
+            return label.to_owned();
+        }
+        let letters: Vec<char> = label.chars().collect();
+        let cut = |count: usize| letters[..count].iter().collect::<String>() + "…";
+        let fits = |count: &usize| self.text_width(&cut(*count), size) <= width;
+        let counts: Vec<usize> = (0..letters.len()).collect();
+        cut(counts.partition_point(fits).saturating_sub(1))
+    }
+
     /// The page as pixels.
     pub fn finish(mut self) -> Result<Image, DrawError> {
         for (slip, (x, y)) in std::mem::take(&mut self.upward) {
@@ -524,6 +536,18 @@ mod tests {
             got,
             [vec![(0.0, 0.0), (2.0, 0.0)], vec![(3.0, 1.0), (3.0, 3.0)]]
         );
+    }
+
+    #[test]
+    fn a_long_label_is_cut_where_it_fits() {
+        let canvas = Canvas::new(100.0, 50.0, 400).unwrap();
+        assert_eq!(canvas.fitting("short", 10.0, 90.0), "short");
+        let long = "a title that goes on and on, and on";
+        let cut = canvas.fitting(long, 10.0, 90.0);
+        assert!(cut.ends_with('…') && long.starts_with(cut.trim_end_matches('…')));
+        let width = canvas.text_width(&cut, 10.0);
+        assert!((75.0..=90.0).contains(&width), "{width}");
+        assert_eq!(canvas.fitting(long, 10.0, 0.0), "…");
     }
 
     #[test]

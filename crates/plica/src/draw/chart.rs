@@ -153,7 +153,8 @@ impl Chart {
         let tail = if self.x_label.is_empty() { 20.0 } else { 35.0 };
         let mut canvas = Canvas::new(self.width_pt, frame.bottom() + tail, width_px)?;
         if !self.title.is_empty() {
-            canvas.text((frame.left, 13.0), &self.title, TITLE, Anchor::Start, INK);
+            let title = canvas.fitting(&self.title, TITLE, self.width_pt - frame.left - 4.0);
+            canvas.text((frame.left, 13.0), &title, TITLE, Anchor::Start, INK);
         }
         self.draw_legend(&mut canvas, &frame, &legend);
         self.draw_axes(&mut canvas, &frame, &x, &y)?;

@@ -147,7 +147,8 @@ impl Cutaway {
         }
         let mut canvas = Canvas::new(self.width_pt, bottom + 44.0, width_px)?;
         if !self.title.is_empty() {
-            canvas.text((SIDE, 13.0), &self.title, TITLE, Anchor::Start, INK);
+            let title = canvas.fitting(&self.title, TITLE, self.width_pt - 2.0 * SIDE);
+            canvas.text((SIDE, 13.0), &title, TITLE, Anchor::Start, INK);
         }
         let margin = 2.0; // points around a tube, for the line at its edge
         let pixels = canvas.pixels_per_point();

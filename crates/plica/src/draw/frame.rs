@@ -5,6 +5,9 @@ use super::canvas::{Canvas, Place};
 use super::chart::{Chart, ROW, TEXT};
 use super::ticks::{Ticks, ticks};
 
+/// The least width of a frame, over that of the page: two ticks find room.
+const NARROWEST: f64 = 0.35;
+
 /// Lower and upper end of an axis.
 pub(super) type Ends = (f64, f64);
 
@@ -67,7 +70,7 @@ impl Chart {
         legend: usize,
         names: usize,
     ) -> Result<(Frame, Ticks, Ticks), DrawError> {
-        let (x, y) = self.ranges()?;
+        let (mut x, y) = self.ranges()?;
         let aspect = (y.1 - y.0) / (x.1 - x.0);
         // Width of the tick labels depends on the height and the other way round; a guess at the height settles it.
         let guess = if self.equal_aspect {
@@ -83,8 +86,6 @@ impl Chart {
             .fold(0.0, f64::max);
         let left = widest + if self.y_label.is_empty() { 12.0 } else { 24.0 };
         let mut width = (self.width_pt - left - 12.0).max(self.width_pt * 0.2);
-        let x_ticks = ticks(x.0, x.1, ((width / 38.0) as usize).clamp(2, 8));
-
         let mut height = if self.equal_aspect {
             aspect * width
         } else {
@@ -93,7 +94,15 @@ impl Chart {
         let tallest = 1.2 * self.width_pt;
         if height > tallest {
             (height, width) = (tallest, tallest / aspect);
+            let narrowest = NARROWEST * self.width_pt;
+            if width < narrowest {
+                // Of what is much higher than wide, with a bare margin on both sides.
+                let middle = f64::midpoint(x.0, x.1);
+                let half = 0.5 * (x.1 - x.0) * narrowest / width;
+                (x, width) = ((middle - half, middle + half), narrowest);
+            }
         }
+        let x_ticks = ticks(x.0, x.1, ((width / 38.0) as usize).clamp(2, 8));
         let title = if self.title.is_empty() { 0.0 } else { 1.0 };
         let top = 8.0 + ROW * (title * 1.3 + legend as f64 * 1.1 + names as f64);
         Ok((
