@@ -72,3 +72,33 @@ fn a_lost_run_says_where_and_what_may_help_and_goes_on_with_that() {
     assert!(said.status.success(), "{}", text(&said.stderr));
     assert!(directory.join("run/states/state-0003.safetensors").exists());
 }
+
+#[test]
+fn a_run_that_has_no_first_state_says_so() {
+    let directory = scratch("lost-first");
+    let dented = "[[imperfections]]\nof = \"colon-end\"\namplitude = 0.025\nshape = { wave = { harmonic = 2 } }\n";
+    let case = CASE
+        .replace("newton_iterations = 4", "newton_iterations = 1")
+        .replace("relaxation_steps = 4", "relaxation_steps = 1")
+        .replace(
+            "[[stages]]\nname = \"contract\"",
+            &(dented.to_owned() + "[[stages]]\nname = \"contract\""),
+        );
+    fs::write(directory.join("case.toml"), case).unwrap();
+    let said = plica(&directory, &["run", "case.toml", "--out", "run"]);
+    let told = text(&said.stderr);
+    assert_eq!(said.status.code(), Some(1), "{told}");
+    assert!(text(&said.stdout).ends_with("no state was accepted\n"));
+    let last = told.lines().last().unwrap();
+    for word in [
+        "not brought to rest",
+        "no first state",
+        "smaller imperfection",
+    ] {
+        assert!(last.contains(word), "{word}: {last}");
+    }
+    assert!(
+        !last.contains("last good state") && !last.contains("halvings"),
+        "{last}"
+    );
+}

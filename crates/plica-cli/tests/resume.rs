@@ -420,6 +420,15 @@ fn a_run_goes_on_with_the_state_that_it_began_from() {
         assert_same(&whole, &run);
         fs::copy(first_state(&directory, 6), &start).unwrap();
     }
+    // What is kept is told of by its own name where it is damaged.
+    let run = stopped(&directory);
+    flip(&run.join("start.safetensors"));
+    let (code, told) = resume();
+    assert_eq!(code, Some(3), "{told}");
+    assert!(
+        told.contains("cut/start.safetensors") && told.contains("damaged"),
+        "{told}"
+    );
     // Under another name it is looked at; the same state is the same start.
     let run = stopped(&directory);
     let other = directory.join("other.safetensors");
