@@ -300,10 +300,7 @@ impl RunDirectory {
     /// The files that keep what the run began with: its first state, if that is not rest, and modes.
     pub fn kept(&self) -> Vec<PathBuf> {
         let start = Some(self.start()).filter(|start| start.exists());
-        let modes = modes(&self.path.join(IMPERFECTIONS)).filter(|mode| {
-            let ending = mode.extension().and_then(|ending| ending.to_str());
-            ending == Some(STATE_ENDING)
-        });
+        let modes = modes(&self.path.join(IMPERFECTIONS));
         start.into_iter().chain(modes).collect()
     }
 
