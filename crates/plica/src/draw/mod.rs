@@ -38,6 +38,7 @@ pub mod chart;
 pub mod colour;
 mod colour_bar;
 pub mod cutaway;
+mod dashes;
 mod frame;
 pub mod image;
 mod inked;
