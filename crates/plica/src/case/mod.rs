@@ -4,7 +4,8 @@
 //! A case passes four doors, each in its own file:
 //!
 //! 1. `toml` reads the text;
-//! 2. `shape` holds every key, type and range against the table [`KEYS`];
+//! 2. `shape` holds every key, type and range against the table [`KEYS`], and has something sound stand
+//!    in for what is wrong, so that one mistake does not hide another;
 //! 3. `spec` is the case as written, in plain structs;
 //! 4. `check` looks at what several keys must fulfil together and makes everything
 //!    dimensionless (lengths in D, stresses in E).
@@ -39,8 +40,10 @@ mod schema;
 mod shape;
 mod spec;
 mod spelling;
+mod stand_in;
 mod starter;
 mod table;
+mod unreadable;
 
 pub use advice::advice;
 pub use difference::{Difference, differences};
@@ -83,8 +86,8 @@ impl<'a> Wanted<'a> {
 /// none: the name of the file without its ending.
 ///
 /// # Errors
-/// All problems that were found, in the order of the text. A text that is not TOML, or not shaped
-/// like a case, is not looked at any further.
+/// All problems that were found, in the order of the text. Of a text that is not TOML throughout what can be read is held against
+/// the table of keys, and no further.
 pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
     let none = |_: Wanted<'_>| Err(std::io::Error::from(std::io::ErrorKind::NotFound).into());
     read_with(text, name, &none)
@@ -96,16 +99,26 @@ pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
 /// # Errors
 /// As [`read`]; a file that cannot be opened, or is not one of the case's tube, is a problem too.
 pub fn read_with(text: &str, name: &str, open: &Open<'_>) -> Result<Plan, CaseError> {
+    // The reader loses a value that does not end where the text ends without a line break.
+    let text = &format!("{text}\n");
     let (root, errors) = DeTable::parse_recoverable(text);
-    if !errors.is_empty() {
-        return Err(CaseError::not_toml(&errors));
-    }
     let mut problems = Problems::default();
-    shape::check(root.get_ref(), &mut problems);
-    let plan = match spec::Spec::deserialize(Deserializer::from(root.clone())) {
+    let unreadable = unreadable::tell(text, root.get_ref(), &errors, &mut problems);
+    // From here on the tree has the shape of a case, whatever is written.
+    let mut shaped = root.clone();
+    shape::check(shaped.get_mut(), &unreadable, &mut problems);
+    if !unreadable.is_empty() {
+        return Err(problems.located(text, &root));
+    }
+    let plan = match spec::Spec::deserialize(Deserializer::from(shaped)) {
         Ok(spec) => check::plan(&spec, name, open, &mut problems),
-        Err(error) if problems.is_empty() => return Err(CaseError::not_toml(&[error])),
-        Err(_) => return Err(problems.located(text, &root)),
+        Err(error) => {
+            if problems.is_empty() {
+                let place = error.span().unwrap_or(0..0);
+                problems.not_toml(error.message(), None, place);
+            }
+            return Err(problems.located(text, &root));
+        }
     };
     if problems.is_empty() {
         Ok(plan)
@@ -114,5 +127,7 @@ pub fn read_with(text: &str, name: &str, open: &Open<'_>) -> Result<Plan, CaseEr
     }
 }
 
+#[cfg(test)]
+mod slips;
 #[cfg(test)]
 mod tests;

@@ -2,6 +2,7 @@
 
 use super::locate::locate;
 use std::fmt;
+use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeTable;
 
@@ -25,9 +26,9 @@ pub struct Problem {
     /// What may be written instead.
     pub cure: Option<String>,
     /// The bytes of the text it is about.
-    pub span: Option<std::ops::Range<usize>>,
+    pub span: Option<Range<usize>>,
     /// Whether it is the key that is wrong, and not its value.
-    pub(super) on_key: bool,
+    on_key: bool,
 }
 
 impl fmt::Display for Problem {
@@ -57,68 +58,71 @@ impl fmt::Display for CaseError {
     }
 }
 
-impl CaseError {
-    /// A text that is not TOML, and why, in the order of the text.
-    pub(super) fn not_toml(errors: &[toml::de::Error]) -> Self {
-        let problem = |error: &toml::de::Error| Problem {
-            key: String::new(),
-            value: None,
-            rule: error.message().to_owned(),
-            cure: None,
-            span: error.span(),
-            on_key: false,
-        };
-        let mut problems: Vec<Problem> = errors.iter().map(problem).collect();
-        problems.sort_by_key(|problem| problem.span.clone().map(|span| span.start));
-        Self { problems }
-    }
-}
-
 /// Problems as they are found.
 #[derive(Debug, Default)]
-pub(super) struct Problems(Vec<Problem>);
+pub(super) struct Problems {
+    found: Vec<Problem>,
+    replaced: Vec<String>,
+}
 
 impl Problems {
+    /// A place in the text is not TOML.
+    pub fn not_toml(&mut self, why: &str, cure: Option<String>, place: Range<usize>) {
+        self.add("", why.to_owned(), cure).span = Some(place);
+    }
+
     /// A value breaks a rule.
     pub fn value(&mut self, key: &str, rule: impl Into<String>, cure: Option<String>) {
-        self.add(key, rule.into(), cure, false);
+        self.add(key, rule.into(), cure).on_key = false;
     }
 
     /// A key should not be there, or should be.
     pub fn key(&mut self, key: &str, rule: impl Into<String>, cure: Option<String>) {
-        self.add(key, rule.into(), cure, true);
+        self.add(key, rule.into(), cure);
     }
 
-    fn add(&mut self, key: &str, rule: String, cure: Option<String>, on_key: bool) {
-        self.0.push(Problem {
+    /// The value of a key, or what is meant to be one, is not used. Something stands in for it, and rules that hold it against
+    /// others would say nothing.
+    pub fn replaced(&mut self, key: String) {
+        self.replaced.push(key);
+    }
+
+    fn add(&mut self, key: &str, rule: String, cure: Option<String>) -> &mut Problem {
+        self.found.push(Problem {
             key: key.to_owned(),
             value: None,
             rule,
             cure,
             span: None,
-            on_key,
+            on_key: true,
         });
+        let last = self.found.len() - 1;
+        &mut self.found[last]
     }
 
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.found.is_empty()
     }
 
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.found.len()
     }
 
-    /// Whether nothing was found about these keys so far; a rule about several keys is worth
-    /// looking at only then.
+    /// Whether nothing was found so far about these keys, or what is below them, and nothing stands in for a table around them; a
+    /// rule about several keys is worth looking at only then.
     pub fn none_about(&self, keys: &[&str]) -> bool {
-        let about = |problem: &Problem| keys.contains(&problem.key.as_str());
-        !self.0.iter().any(about)
+        let about = |key: &&str| {
+            let replaced = |other: &String| is_within(other, key) || is_within(key, other);
+            let found = |problem: &Problem| is_within(&problem.key, key);
+            self.found.iter().any(found) || self.replaced.iter().any(replaced)
+        };
+        !keys.iter().any(about)
     }
 
     /// All of them, with their places in the text.
     pub fn located(self, text: &str, root: &Spanned<DeTable>) -> CaseError {
-        let mut problems = self.0;
-        for problem in &mut problems {
+        let mut problems = self.found;
+        for problem in problems.iter_mut().filter(|problem| problem.span.is_none()) {
             let place = locate(root, &problem.key);
             if place.exact && !problem.on_key {
                 problem.value = text
@@ -132,6 +136,15 @@ impl Problems {
         }
         problems.sort_by_key(|p| p.span.as_ref().map_or(0, |s| s.start));
         CaseError { problems }
+    }
+}
+
+/// Whether a key is another, or below it. Nothing but itself is within the case as a whole: a key that nobody knows, and that
+/// stands in no table, is about nothing else.
+fn is_within(key: &str, table: &str) -> bool {
+    match key.strip_prefix(table) {
+        Some(rest) => rest.is_empty() || !table.is_empty() && rest.starts_with(['.', '[']),
+        None => false,
     }
 }
 

@@ -65,6 +65,7 @@ fn part(
     let key = format!("{path}.of");
     if !matches!(written.of, spec::Part::ColonEnd | spec::Part::IleumEnd)
         && written.direction.is_some()
+        && problems.none_about(&[&key])
     {
         let rule = "only an imperfect end has a direction";
         let cure = Some("leave it out".into());
@@ -76,7 +77,7 @@ fn part(
         spec::Part::Geometry => Some(Part::Geometry),
         spec::Part::Muscle(name) => {
             let found = tube.muscles.iter().position(|muscle| muscle.name == *name);
-            if found.is_none() {
+            if found.is_none() && problems.none_about(&[&format!("muscles.{name}")]) {
                 let names = || tube.muscles.iter().map(|muscle| muscle.name.as_str());
                 let cure = match nearest(name, names()) {
                     Some(near) => format!("did you mean \"{near}\"?"),
@@ -129,8 +130,9 @@ fn amplitude(
     problems: &mut Problems,
 ) -> f64 {
     let key = format!("{path}.amplitude");
+    let of_key = format!("{path}.of");
     if matches!(of, Part::Muscle(_)) {
-        if written.amplitude.abs() > LARGEST_CHANGE && problems.none_about(&[&key]) {
+        if written.amplitude.abs() > LARGEST_CHANGE && problems.none_about(&[&key, &of_key]) {
             let rule = format!(
                 "must be from -{LARGEST_CHANGE} to {LARGEST_CHANGE} (a fraction of the muscle's activity)"
             );
@@ -141,7 +143,8 @@ fn amplitude(
     let diameter = spec.tube.diameter;
     let largest = LARGEST_DISPLACEMENT * tube.thickness;
     let amplitude = written.amplitude / diameter;
-    if amplitude.abs() > largest && problems.none_about(&[&key, "tube.thickness", "tube.diameter"])
+    if amplitude.abs() > largest
+        && problems.none_about(&[&key, &of_key, "tube.thickness", "tube.diameter"])
     {
         let rule = format!(
             "must be at most a quarter of the wall's thickness, {}",
@@ -163,10 +166,11 @@ fn wave(
     run: (&Mesh, Symmetry),
     problems: &mut Problems,
 ) -> Shape {
+    let of_key = format!("{path}.of");
     let path = format!("{path}.shape.wave");
     check_harmonic(&format!("{path}.harmonic"), wave.harmonic, run, problems);
     let key = format!("{path}.axial");
-    if matches!(of, Part::End(..)) && wave.axial.is_some() {
+    if matches!(of, Part::End(..)) && wave.axial.is_some() && problems.none_about(&[&of_key]) {
         nothing_along(&key, problems);
     }
     let axial = match wave.axial {
@@ -190,6 +194,7 @@ fn random(
     run: (&Mesh, Symmetry),
     problems: &mut Problems,
 ) -> Shape {
+    let of_key = format!("{path}.of");
     let path = format!("{path}.shape.random");
     let (mesh, symmetry) = run;
     let key = format!("{path}.harmonics");
@@ -201,7 +206,7 @@ fn random(
     let harmonics = random.harmonics.unwrap_or(usual.min(told_apart));
     check_highest(&key, harmonics, run, problems);
     let end = matches!(of, Part::End(..));
-    if end && random.half_waves.is_some() {
+    if end && random.half_waves.is_some() && problems.none_about(&[&of_key]) {
         nothing_along(&format!("{path}.half_waves"), problems);
     }
     let half_waves = random.half_waves.unwrap_or(usual);
@@ -233,6 +238,9 @@ fn mode(
     let Wanted::Mode(imperfection, file) = wanted else {
         return None;
     };
+    if !problems.none_about(&[&key, &format!("{path}.of")]) {
+        return None;
+    }
     if of != Part::Geometry {
         let rule = "only an imperfect geometry can have the shape of a mode";
         problems.key(&key, rule, Some("write of = \"geometry\"".into()));
@@ -249,12 +257,7 @@ fn mode(
         }
     };
     let n = mode.harmonic;
-    let about_others = [
-        "symmetry.fold",
-        "tube.length",
-        "tube.thickness",
-        "tube.diameter",
-    ];
+    let about_others = ["symmetry", "tube.length", "tube.thickness", "tube.diameter"];
     if problems.none_about(&about_others) {
         check_size(&key, &state, tube, problems);
         let most = mesh.around / 4;
@@ -305,7 +308,7 @@ fn check_harmonic(key: &str, n: usize, run: (&Mesh, Symmetry), problems: &mut Pr
         && m > 0
         && !n.is_multiple_of(m)
     {
-        if problems.none_about(&[key, "symmetry.fold"]) {
+        if problems.none_about(&[key, "symmetry"]) {
             let rule =
                 format!("must be a multiple of {m}, since the tube repeats {m} times around");
             let cure = format!("try {m}, or use another symmetry");
@@ -324,7 +327,7 @@ fn check_highest(
     problems: &mut Problems,
 ) {
     const AROUND: &str = "mesh.control_points.around";
-    if !problems.none_about(&[key, AROUND]) {
+    if !problems.none_about(&[key, "symmetry", AROUND]) {
         return;
     }
     if symmetry == Symmetry::Axisymmetric && n > 0 {
@@ -352,7 +355,7 @@ pub(super) fn check_wall(
     let Some(last) = tube.imperfections.iter().rposition(of_geometry) else {
         return;
     };
-    if !problems.is_empty() {
+    if !problems.none_about(&["imperfections", "tube", "mesh", "symmetry"]) {
         return;
     }
     if let Some(at) = folded(tube, mesh, symmetry) {
@@ -366,7 +369,15 @@ pub(super) fn check_wall(
 
 /// Whether the wall can take the targets of the stages where an imperfect muscle is strongest.
 pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
-    if !problems.is_empty() {
+    let about = [
+        "imperfections",
+        "muscles",
+        "stages",
+        "start",
+        "tube.length",
+        "tube.diameter",
+    ];
+    if !problems.none_about(&about) {
         return;
     }
     for (m, muscle) in tube.muscles.iter().enumerate() {

@@ -12,6 +12,7 @@ const LARGEST: usize = 20_000_000;
 const AXIAL: &str = "mesh.control_points.axial";
 const AROUND: &str = "mesh.control_points.around";
 const THICKNESS: &str = "mesh.control_points.thickness";
+const DEGREE: &str = "mesh.degree";
 
 /// The mesh, and the symmetry of the run.
 pub(super) fn mesh(spec: &Spec, tube: &Tube, problems: &mut Problems) -> (Mesh, Symmetry) {
@@ -32,35 +33,35 @@ pub(super) fn mesh(spec: &Spec, tube: &Tube, problems: &mut Problems) -> (Mesh, 
         spec::Symmetry::Fold(m) => Symmetry::Fold(m),
         spec::Symmetry::None => Symmetry::None,
     };
-    if !problems.none_about(&[AXIAL, AROUND, THICKNESS, "mesh.degree", "symmetry.fold"]) {
-        return (mesh, symmetry);
-    }
-    let before = problems.len();
     let degree = mesh.degree;
     for (key, count) in [(AXIAL, mesh.axial), (THICKNESS, mesh.thickness)] {
-        if count <= degree {
+        if count <= degree && problems.none_about(&[key, DEGREE]) {
             let rule = format!("must be above the degree of the splines, {degree}");
             problems.value(key, rule, Some(format!("try {}", 2 * degree + 2)));
         }
     }
-    if mesh.around < 2 * degree + 2 {
+    if mesh.around < 2 * degree + 2 && problems.none_about(&[AROUND, DEGREE]) {
         let rule = format!("must be at least {} for degree {degree}", 2 * degree + 2);
         problems.value(AROUND, rule, Some("try 60".into()));
     }
-    if mesh.volumetric == Integration::Reduced && ![3, 5].contains(&degree) {
+    if mesh.volumetric == Integration::Reduced
+        && ![3, 5].contains(&degree)
+        && problems.none_about(&["mesh.volumetric_integration", DEGREE])
+    {
         let rule = format!("there is such a rule for splines of degree 3 and 5, not for {degree}");
         let cure = "try degree 3, or \"full\"".to_owned();
         problems.value("mesh.volumetric_integration", rule, Some(cure));
     }
     if let Symmetry::Fold(m) = symmetry
         && !mesh.around.is_multiple_of(m)
+        && problems.none_about(&["symmetry", AROUND])
     {
         let around = mesh.around;
         let rule = format!("must divide the {around} control points around the tube");
         let cure = format!("try {} points around", around.next_multiple_of(m));
         problems.value("symmetry.fold", rule, Some(cure));
     }
-    if problems.len() == before {
+    if problems.none_about(&["mesh.control_points", DEGREE, "symmetry"]) {
         let solved = mesh.axial * mesh.thickness * mesh.rings(symmetry);
         if solved > LARGEST {
             let rule = format!("{solved} control points to solve for, {LARGEST} at most");

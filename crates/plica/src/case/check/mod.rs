@@ -1,8 +1,8 @@
 //! What the keys of a case must fulfil together, and their scaling to lengths in D and stresses
 //! in E. One file a table of the case.
 //!
-//! Rules about several keys are looked at only where nothing is wrong with the single ones, so
-//! that one slip gives one message.
+//! Rules about several keys are looked at only where nothing is wrong with the single ones they read, so that one slip gives one
+//! message, and several slips are all told at once.
 
 mod imperfections;
 mod mesh;
@@ -33,6 +33,9 @@ pub(super) fn plan(spec: &Spec, name: &str, open: &Open<'_>, problems: &mut Prob
         .as_ref()
         .map_or(tube.rest(), |start| start.load.clone());
     let stages = stages::stages(spec, &tube, &begin, problems);
+    if start.is_some() == spec.start.is_some() {
+        stages::check_whole(&tube, &begin, &stages, problems);
+    }
     let run = (&mesh, symmetry);
     let (imperfections, modes) = imperfections::imperfections(spec, &tube, run, open, problems);
     tube.imperfections = imperfections;
@@ -64,12 +67,14 @@ pub(super) fn plan(spec: &Spec, name: &str, open: &Open<'_>, problems: &mut Prob
 /// A stretch of the tube, in D, held against the rules for zones.
 fn zone(key: &str, spec: &Spec, zone: [f64; 2], length: f64, problems: &mut Problems) -> [f64; 2] {
     let [from, to] = zone.map(|z| z / spec.tube.diameter);
-    if !problems.none_about(&[key, "tube.length", "tube.diameter"]) {
+    if !problems.none_about(&[key]) {
         return [from, to];
     }
     if from >= to {
         let cure = (from > to).then(|| format!("try [{}, {}]", zone[1], zone[0]));
         problems.value(key, "must be [from, to] with from below to", cure);
+    } else if !problems.none_about(&["tube.length", "tube.diameter"]) {
+        return [from, to];
     } else if from < 0.0 || to > length * (1.0 + ROUNDING) {
         let end = length * spec.tube.diameter;
         problems.value(key, format!("must lie within the tube, 0 to {end}"), None);

@@ -25,7 +25,14 @@ pub(super) fn muscles(spec: &Spec, length: f64, problems: &mut Problems) -> Vec<
                 && other.zone[0] < zone[1] - ROUNDING
         });
         if let Some(rival) = rival
-            && problems.none_about(&[&key, &format!("muscles.{}.zone", rival.name)])
+            && problems.none_about(&[
+                &key,
+                &format!("{path}.direction"),
+                &format!("muscles.{}.zone", rival.name),
+                &format!("muscles.{}.direction", rival.name),
+                "tube.length",
+                "tube.diameter",
+            ])
         {
             let rule = format!(
                 "overlaps the zone of {}, a muscle of the same direction",

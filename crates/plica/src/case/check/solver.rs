@@ -8,7 +8,7 @@ use crate::solve::{Integrator, PseudoTime, Scheme, Settings};
 pub(super) fn settings(solver: &spec::Solver, problems: &mut Problems) -> Settings {
     let scheme = match solver.scheme {
         spec::Scheme::Static => {
-            if solver.pseudo_time.is_some() {
+            if solver.pseudo_time.is_some() && problems.none_about(&["solver.scheme"]) {
                 let rule = "has no meaning for the static scheme";
                 let cure = "choose solver.scheme = \"newmark\" or \"dragged\", or leave it out";
                 problems.key("solver.pseudo_time", rule, Some(cure.into()));

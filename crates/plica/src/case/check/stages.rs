@@ -32,12 +32,9 @@ pub(super) fn stages(
         let path = format!("stages[{}]", i + 1);
         let name = stage.name.clone();
         let name = name.unwrap_or_else(|| format!("stage-{}", i + 1));
-        if stages.iter().any(|other| other.name == name) {
-            problems.value(
-                &format!("{path}.name"),
-                "another stage has this name already",
-                None,
-            );
+        let key = format!("{path}.name");
+        if stages.iter().any(|other| other.name == name) && problems.none_about(&[&key]) {
+            problems.value(&key, "another stage has this name already", None);
         }
         for (target, drive) in &stage.drive {
             let key = format!("{path}.drive.{target}");
@@ -49,14 +46,15 @@ pub(super) fn stages(
             steps: stage.steps,
         });
     }
-    if problems.is_empty() {
-        check_whole(tube, begin, &stages, problems);
-    }
     stages
 }
 
 /// What must hold for all stages together.
-fn check_whole(tube: &Tube, begin: &Load, stages: &[Stage], problems: &mut Problems) {
+pub(super) fn check_whole(tube: &Tube, begin: &Load, stages: &[Stage], problems: &mut Problems) {
+    let about = ["stages", "muscles", "start", "tube.length", "tube.diameter"];
+    if !problems.none_about(&about) {
+        return;
+    }
     if stages.iter().all(|stage| stage.load == *begin) {
         let cure = "write drive.NAME.diameter_ratio = 0.25 in a stage, NAME being a muscle's";
         problems.key(
@@ -133,7 +131,11 @@ fn apply(
     load: &mut Load,
     problems: &mut Problems,
 ) {
+    let muscle = format!("muscles.{name}");
     let Some(driven) = Driven::find(name, tube) else {
+        if !problems.none_about(&[&muscle]) {
+            return;
+        }
         let muscles = || tube.muscles.iter().map(|m| m.name.as_str());
         let names = || muscles().chain(ENDS).chain(WALLS);
         let cure = match nearest(name, names()) {
@@ -154,7 +156,7 @@ fn apply(
         ("pressure", drive.pressure),
         ("dead_pressure", drive.dead_pressure),
     ];
-    if written.iter().all(|(_, value)| value.is_none()) {
+    if written.iter().all(|(_, value)| value.is_none()) && problems.none_about(&[path]) {
         let cure = format!("give {}", targets.join(" or "));
         problems.key(path, "drives nothing", Some(cure));
     }
@@ -162,6 +164,9 @@ fn apply(
         let Some(value) = value else { continue };
         let key = format!("{path}.{target}");
         if !targets.contains(&target) {
+            if !problems.none_about(&[&format!("{muscle}.direction")]) {
+                continue;
+            }
             let rule = format!("not a target of {}", driven.words());
             let cure = format!("did you mean {}?", targets.join(" or "));
             problems.key(&key, rule, Some(cure));
@@ -221,7 +226,8 @@ pub(super) fn check_closed(key: &str, tube: &Tube, problems: &mut Problems) {
 /// Whether ends that slide under a true pressure stay in their planes.
 pub(super) fn check_planes(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
     let pressed = |stage: &Stage| stage.load.pressures.iter().any(|p| p.follower != 0.0);
-    if !problems.is_empty() || !stages.iter().any(pressed) {
+    let none = problems.none_about(&["imperfections", "ends", "stages", "start"]);
+    if !none || !stages.iter().any(pressed) {
         return;
     }
     for (i, imperfection) in tube.imperfections.iter().enumerate() {
@@ -262,9 +268,8 @@ pub(super) fn check_stretch(
     tube: &Tube,
     problems: &mut Problems,
 ) {
-    let zone = format!("muscles.{}.zone", muscle.name);
-    let table = format!("muscles.{}.profile.table", muscle.name);
-    if !problems.none_about(&[key, &zone, &table, "tube.length", "tube.diameter"]) {
+    let own = format!("muscles.{}", muscle.name);
+    if !problems.none_about(&[key, &own, "tube.length", "tube.diameter"]) {
         return;
     }
     let smallest = muscle.smallest_stretch(ratio, tube.length);

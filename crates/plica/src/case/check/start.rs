@@ -21,6 +21,9 @@ pub(super) fn start(
     open: &Open<'_>,
     problems: &mut Problems,
 ) -> Option<Start> {
+    if !problems.none_about(&[KEY]) {
+        return None;
+    }
     let file = spec.start.as_ref()?.state.clone();
     let state = match open(Wanted::State(&file)) {
         Ok(state) => state,
@@ -32,7 +35,7 @@ pub(super) fn start(
         }
     };
     // What is wrong with the tube itself comes first.
-    if !problems.is_empty() {
+    if !problems.none_about(&["tube", "muscles", "ends", "mesh", "symmetry"]) {
         return None;
     }
     let before = problems.len();

@@ -35,7 +35,7 @@ pub(super) fn tube(spec: &Spec, problems: &mut Problems) -> Tube {
     let ratio = "material.neo-hookean.poisson_ratio";
     if matches!(law.volumetric, spec::Volumetric::Quadratic)
         && law.poisson_ratio < 0.0
-        && problems.none_about(&[ratio])
+        && problems.none_about(&[ratio, "material.neo-hookean.volumetric"])
     {
         let rule =
             "the quadratic law has no lowest energy for a negative Poisson's ratio".to_owned();

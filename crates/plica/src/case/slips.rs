@@ -1,0 +1,331 @@
+//! One slip, one message; several slips, as many, all at once.
+
+use super::keys::{Given, Kind, key};
+use super::*;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// A case with a table of every kind.
+const RICH: &str = r#"
+title = "rich"
+symmetry = { fold = 2 }
+[units]
+length = "mm"
+stress = "kPa"
+[tube]
+diameter = 20.0
+length = 100.0
+thickness = 1.0
+[material.neo-hookean]
+youngs_modulus = 50.0
+poisson_ratio = 0.4
+volumetric = "quadratic"
+[muscles.ring]
+direction = "circular"
+zone = [70.0, 90.0]
+profile = "half-sine"
+[muscles.next]
+direction = "circular"
+zone = [90.0, 95.0]
+profile = { smooth-box = { edge = 0.25 } }
+[muscles.long]
+direction = "longitudinal"
+zone = [70.0, 90.0]
+profile = { table = [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]] }
+[ends]
+colon = "fixed"
+ileum = "sliding"
+[mesh]
+control_points = { axial = 40, around = 24, thickness = 6 }
+degree = 3
+volumetric_integration = "reduced"
+refine = [{ zone = [80.0, 85.0], factor = 2.0 }]
+[[stages]]
+name = "both"
+steps = 3
+drive.ring.diameter_ratio = 0.8
+drive.long.length_ratio = 1.1
+drive.ileum.displacement = -2.0
+drive.colon.twist_degrees = 10
+[[stages]]
+drive.inner-wall.pressure = 0.5
+drive.outer-wall.dead_pressure = 0.25
+drive.next.diameter_ratio = 0.9
+[[imperfections]]
+of = "colon-end"
+direction = "axial"
+amplitude = 0.01
+shape = { wave = { harmonic = 2, phase_degrees = 20 } }
+[[imperfections]]
+of = { muscle = "ring" }
+amplitude = 0.1
+shape = { random = { seed = 7, harmonics = 4, half_waves = 2 } }
+[[imperfections]]
+of = "geometry"
+amplitude = 0.01
+shape = { wave = { harmonic = 4, axial = { zone = [20.0, 40.0] } } }
+[solver]
+scheme = "newmark"
+tolerance = 1e-7
+newton_iterations = 20
+relaxation_steps = 100
+relaxation_drag = 2.0
+halvings = 6
+pseudo_time = { drag = 50.0, ramp = 5, tolerance = 1e-6, hold = 1000, settle = false }
+[output]
+pictures = false
+profiles_every = 2
+states_every = 2
+harmonics = 2
+wall_points = 101
+"#;
+
+/// The rich case and those that come along, by their names.
+fn cases() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let mut cases = vec![("rich".to_owned(), RICH.to_owned())];
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        cases.push((name, std::fs::read_to_string(path).unwrap()));
+    }
+    for (name, text) in &cases {
+        read(text, name).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+    cases
+}
+
+/// One step on the way to a key: its name, or its place in a list.
+#[derive(Clone, Debug)]
+enum Step {
+    Name(String),
+    Member(usize),
+}
+
+/// The ways to all keys and members below a value.
+fn ways(value: &Value, way: &[Step], found: &mut Vec<Vec<Step>>) {
+    let steps: Vec<(Step, &Value)> = match value {
+        Value::Table(table) => {
+            let step = |(name, value)| (Step::Name(String::clone(name)), value);
+            table.iter().map(step).collect()
+        }
+        Value::Array(list) if list.iter().all(Value::is_table) => {
+            let members = list.iter().enumerate();
+            members.map(|(i, value)| (Step::Member(i), value)).collect()
+        }
+        _ => vec![],
+    };
+    for (step, value) in steps {
+        let way = [way, &[step]].concat();
+        found.push(way.clone());
+        ways(value, &way, found);
+    }
+}
+
+fn at<'v>(mut value: &'v mut Value, way: &[Step]) -> &'v mut Value {
+    for step in way {
+        value = match step {
+            Step::Name(name) => &mut value[name.as_str()],
+            Step::Member(i) => &mut value[*i],
+        };
+    }
+    value
+}
+
+/// The path in a case, and its pattern in the table of keys.
+fn paths(way: &[Step]) -> (String, String) {
+    let (mut path, mut pattern) = (String::new(), String::new());
+    for step in way {
+        match step {
+            Step::Name(name) => {
+                let chosen = pattern == "muscles" || pattern == "stages[].drive";
+                path = keys::join(&path, name);
+                pattern = keys::join(&pattern, if chosen { "<name>" } else { name });
+            }
+            Step::Member(i) => {
+                path += &format!("[{}]", i + 1);
+                pattern += "[]";
+            }
+        }
+    }
+    (path, pattern)
+}
+
+/// Every slip in one key of a case, and what it was.
+fn slips(text: &str) -> Vec<(String, Value)> {
+    let case = Value::Table(text.parse::<Table>().unwrap());
+    let (mut all, mut slips) = (vec![], vec![]);
+    ways(&case, &[], &mut all);
+    for way in all {
+        let (path, pattern) = paths(&way);
+        let mut wrong = case.clone();
+        let place = at(&mut wrong, &way);
+        *place = match place {
+            Value::Integer(_) | Value::Float(_) | Value::Boolean(_) => Value::String("?".into()),
+            _ => Value::Integer(7),
+        };
+        slips.push((format!("{path}, of another type"), wrong));
+        let Some((Step::Name(name), table)) = way.split_last() else {
+            continue;
+        };
+        if !pattern.ends_with("<name>") {
+            let mut misspelt = case.clone();
+            let table = at(&mut misspelt, table).as_table_mut().unwrap();
+            let value = table.remove(name).unwrap();
+            table.insert(format!("{name}x"), value);
+            slips.push((format!("{path}, misspelt"), misspelt));
+        }
+        if key(&pattern).is_some_and(|key| matches!(key.given, Given::Always(_))) {
+            let mut missing = case.clone();
+            at(&mut missing, table).as_table_mut().unwrap().remove(name);
+            slips.push((format!("{path}, left out"), missing));
+        }
+    }
+    slips
+}
+
+#[test]
+fn one_slip_is_one_message() {
+    let mut seen = 0;
+    for (name, text) in cases() {
+        for (what, case) in slips(&text) {
+            let text = toml::to_string(&case).unwrap();
+            let told = read(&text, &name).expect_err(&what).problems;
+            assert_eq!(told.len(), 1, "{name}, {what}: {told:#?}\n{text}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 500, "{seen}");
+}
+
+#[test]
+fn two_slips_are_two_messages() {
+    let case: Value = Value::Table(RICH.parse().unwrap());
+    let tables: Vec<&String> = case.as_table().unwrap().keys().collect();
+    let slips = slips(RICH);
+    for (i, one) in tables.iter().enumerate() {
+        for other in &tables[..i] {
+            // The first slip deep in each of the two tables.
+            let of = |table: &str| {
+                let below = |what: &str| {
+                    what.strip_prefix(table)
+                        .is_some_and(|rest| !rest.starts_with(','))
+                };
+                let found = slips.iter().find(|(what, _)| below(what));
+                let found =
+                    found.or_else(|| slips.iter().find(|(what, _)| what.starts_with(table)));
+                found.unwrap().1[table].clone()
+            };
+            let mut wrong = case.clone();
+            for table in [one, other] {
+                wrong[table.as_str()] = of(table);
+            }
+            let text = toml::to_string(&wrong).unwrap();
+            let told = read(&text, "case").unwrap_err().problems;
+            assert_eq!(told.len(), 2, "{one}, {other}: {told:#?}");
+        }
+    }
+}
+
+#[test]
+fn one_slip_of_toml_is_one_message() {
+    for (name, text) in cases() {
+        let lines: Vec<&str> = text.lines().collect();
+        for (n, line) in lines.iter().enumerate() {
+            let line = line.split(" #").next().unwrap();
+            let slips = match line.split_once(" = ").filter(|_| !line.starts_with('#')) {
+                Some((key, _)) => [
+                    "1.2.3", "word", "0,5", "05", "", "\"open", "[1, 2", "{ a = 1",
+                ]
+                .map(|value| format!("{key} = {value}"))
+                .into_iter()
+                .chain([line.replacen('=', " ", 1)])
+                .collect(),
+                None if line.starts_with('[') => vec![line.replacen(']', "", 1)],
+                None => vec![],
+            };
+            for slip in slips {
+                let mut wrong = lines.clone();
+                wrong[n] = &slip;
+                let text = wrong.join("\n");
+                let told = read(&text, &name).expect_err(&slip).problems;
+                assert_eq!(told.len(), 1, "{name}, {slip}: {told:#?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn slips_of_every_kind_are_told_together() {
+    let text = "\
+        [tube]\nlenght = 5.0\n\
+        [material.neo-hookean]\npoisson_ratio = 0.5\n\
+        [muscles.a]\ndirection = 'circular'\nzone = [1.0, 0.5]\n\
+        [muscles.b]\ndirection = 'circular'\nzone = 0.5\n\
+        [muscles.c]\nzone = [0.0, 0.2]\n\
+        [mesh]\ncontrol_points = { axial = 2, around = 'many' }\n\
+        [[stages]]\ndrive.a.length_ratio = 1.5\ndrive.b.diameter_ratio = true\ndrive.c.length_ratio = 1.5\n\
+        drive.d.diameter_ratio = 0.5\n\
+        [solver]\nhalvings = 0.5\npseudo_time = { drag = 1.0 }\n";
+    let problems = read(text, "case").unwrap_err().problems;
+    let keys: Vec<&str> = problems.iter().map(|p| p.key.as_str()).collect();
+    let expected = [
+        "tube.lenght",
+        "material.neo-hookean.poisson_ratio",
+        "muscles.a.zone",
+        "muscles.b.zone",
+        "muscles.c.direction",
+        "mesh.control_points.axial",
+        "mesh.control_points.around",
+        "stages[1].drive.a.length_ratio",
+        "stages[1].drive.b.diameter_ratio",
+        "stages[1].drive.d",
+        "solver.halvings",
+        "solver.pseudo_time",
+    ];
+    assert_eq!(keys, expected);
+    // Where one value cannot be read, the others are held against the table of keys.
+    let broken = format!("title = none\n{text}");
+    let problems = read(&broken, "case").unwrap_err().problems;
+    let keys: Vec<&str> = problems.iter().map(|p| p.key.as_str()).collect();
+    let expected = [
+        "",
+        "tube.lenght",
+        "material.neo-hookean.poisson_ratio",
+        "muscles.b.zone",
+        "mesh.control_points.around",
+        "stages[1].drive.b.diameter_ratio",
+        "solver.halvings",
+    ];
+    assert_eq!(keys, expected);
+}
+
+#[test]
+fn bare_words_are_told_what_they_should_be() {
+    for (word, cure) in [
+        ("thick", Some("write \"thick\"")),
+        ("True", Some("write true")),
+        ("NaN", None),
+        ("fals", Some("write \"fals\"")),
+        ("3,5", Some("write the number with a point")),
+        ("3,", None),
+    ] {
+        let text = format!("[tube]\nlength = {word}\n[[stages]]\n");
+        let problems = read(&text, "case").unwrap_err().problems;
+        assert_eq!(problems.len(), 1, "{word}: {problems:?}");
+        assert_eq!(problems[0].cure.as_deref(), cure, "{word}");
+    }
+}
+
+#[test]
+fn something_can_stand_in_for_every_key_that_must_be_given() {
+    for key in KEYS
+        .iter()
+        .filter(|key| matches!(key.given, Given::Always(_)))
+    {
+        let mut table = DeTable::new();
+        stand_in::stand_in(&mut table, key);
+        assert!(table.contains_key(key.name()), "{}", key.path);
+        assert!(key.kind != Kind::Tables || key.path == "stages");
+    }
+}
