@@ -3,7 +3,6 @@
 use super::SplineTube;
 use crate::tube::Load;
 use rayon::prelude::*;
-use std::fmt;
 
 /// A place in the wall at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,12 +13,6 @@ pub struct Place {
     pub angle: Option<f64>,
     /// How deep in the wall, from 0 at its outside to 1 at its inside.
     pub depth: f64,
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "z = {:.4} D, {}", self.z, self.beside_z())
-    }
 }
 
 impl Place {
@@ -105,19 +98,15 @@ mod tests {
 
     #[test]
     fn a_place_is_told_in_words() {
-        let place = |angle: Option<f64>, depth| {
-            Place {
-                z: 0.75,
-                angle,
-                depth,
-            }
-            .to_string()
+        let beside_z = |angle: Option<f64>, depth| {
+            let z = 0.75;
+            Place { z, angle, depth }.beside_z()
         };
-        assert_eq!(place(None, 0.0), "z = 0.7500 D, on the outer wall");
-        assert_eq!(place(None, 0.25), "z = 0.7500 D, 25 % of the wall deep");
-        let at = |angle| place(Some(angle), 1.0);
-        assert_eq!(at(-FRAC_PI_2), "z = 0.7500 D, θ = 270°, on the inner wall");
-        assert_eq!(at(-1e-3), "z = 0.7500 D, θ = 0°, on the inner wall");
+        assert_eq!(beside_z(None, 0.0), "on the outer wall");
+        assert_eq!(beside_z(None, 0.25), "25 % of the wall deep");
+        let at = |angle| beside_z(Some(angle), 1.0);
+        assert_eq!(at(-FRAC_PI_2), "θ = 270°, on the inner wall");
+        assert_eq!(at(-1e-3), "θ = 0°, on the inner wall");
     }
 
     #[test]
@@ -153,9 +142,9 @@ mod tests {
             [0.0, 0.02 * (-off / 0.02).exp(), 0.0]
         });
         let (place, _) = tube.hardest_strained(&rest, &bump).unwrap();
-        assert!((place.z - 1.0).abs() < 0.2, "{place}");
+        assert!((place.z - 1.0).abs() < 0.2, "{place:?}");
         let turn = place.angle.unwrap() / TAU;
-        assert!((turn - 1.0 / 3.0).abs() < 0.15, "{place}");
+        assert!((turn - 1.0 / 3.0).abs() < 0.15, "{place:?}");
         // A wall that is turned over is no better for its energy.
         let over = unknowns(&tube, |z, r, s| {
             let off = (z - 1.0).powi(2) + (s - 1.0 / 3.0).powi(2);
@@ -163,7 +152,7 @@ mod tests {
         });
         let (place, density) = tube.hardest_strained(&rest, &over).unwrap();
         assert_eq!(density, f64::INFINITY);
-        assert!((place.z - 1.0).abs() < 0.3, "{place}");
+        assert!((place.z - 1.0).abs() < 0.3, "{place:?}");
         // What is not a number is nowhere.
         let nowhere = vec![f64::NAN; bump.len()];
         assert_eq!(tube.hardest_strained(&load, &nowhere), None);

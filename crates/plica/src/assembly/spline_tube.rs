@@ -81,9 +81,7 @@ pub struct Forces {
 
 /// An element is turned inside out: det Fe is not positive (or not a number).
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "the wall is turned inside out near {place} (det Fe = {jacobian:.3e}, element {element:?})"
-)]
+#[error("the wall is turned inside out (det Fe = {jacobian:.3e}, element {element:?})")]
 pub struct Inverted {
     /// Element along the tube, through the wall and around the sector.
     pub element: [usize; 3],

@@ -2,7 +2,7 @@
 
 use super::summary::Ending;
 use super::units::Scale;
-use super::{Plan, Row, RunDirectory};
+use super::{Plan, Row, RunDirectory, StudyError};
 use serde::Serialize;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -105,9 +105,18 @@ impl Manifest {
 
     /// At its end.
     pub fn end(&mut self, ending: &Ending, rows: &[Row]) {
+        self.close(ending.name(), ending.to_string(), rows);
+    }
+
+    /// At an end that no tube comes to.
+    pub fn fail(&mut self, error: &StudyError, rows: &[Row]) {
+        self.close("lost", error.to_string(), rows);
+    }
+
+    fn close(&mut self, verdict: &str, text: String, rows: &[Row]) {
         self.ended_unix = Some(now());
-        self.verdict = ending.name().into();
-        self.verdict_text = ending.to_string();
+        self.verdict = verdict.into();
+        self.verdict_text = text;
         self.states = rows.len();
         self.states_out_of_equilibrium = rows.iter().filter(|r| r.equilibrium == "no").count();
         self.states_unstable = rows

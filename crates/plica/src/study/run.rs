@@ -3,6 +3,7 @@
 use super::manifest::Manifest;
 use super::record::Record;
 use super::summary::{Ending, Phase, Summary, whereabouts};
+use super::units::Scale;
 use super::{
     Checkpoint, Layout, Observer, Plan, Row, RunDirectory, Start, StudyError, TubeProblem, fits,
     prolong,
@@ -110,12 +111,17 @@ fn lead(
         }
     };
     let ending = match begun {
-        Ok((path, stage)) => follow(plan, path, stage, &mut record, observer)?,
-        Err(ending) => ending,
+        Ok((path, stage)) => follow(plan, path, stage, &mut record, observer),
+        Err(ending) => Ok(ending),
     };
     let Record {
         rows, snapshots, ..
     } = record;
+    if let Err(error @ StudyError::NoNumber { .. }) = &ending {
+        manifest.fail(error, &rows);
+        directory.write_manifest(&manifest)?;
+    }
+    let ending = ending?;
 
     manifest.end(&ending, &rows);
     directory.write_manifest(&manifest)?;
@@ -201,6 +207,7 @@ fn follow(
                                 Some((&state.load, &state.u)),
                             ),
                             error,
+                            scale: Scale::of(plan.units.as_ref()),
                         }
                     });
                 }
@@ -232,6 +239,7 @@ fn begin<'a>(
         phase,
         whereabouts: whereabouts(&problem.tube, &error, None),
         error,
+        scale: Scale::of(plan.units.as_ref()),
     };
     let Some(start) = &plan.start else {
         let rest = plan.tube.rest();

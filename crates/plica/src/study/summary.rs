@@ -23,6 +23,8 @@ pub enum Ending {
         error: PathError<Inverted>,
         /// Where in the tube it is to be looked for.
         whereabouts: Vec<Whereabouts>,
+        /// The units in which that is told.
+        scale: Scale,
     },
 }
 
@@ -57,6 +59,7 @@ impl fmt::Display for Ending {
                 phase,
                 error,
                 whereabouts,
+                scale,
             } => {
                 match phase {
                     Phase::Rest => write!(
@@ -73,7 +76,7 @@ impl fmt::Display for Ending {
                     ),
                 }?;
                 for there in whereabouts {
-                    write!(f, "{there}. ")?;
+                    write!(f, "{}. ", there.told(scale))?;
                 }
                 f.write_str(advice(phase, error))
             }
@@ -88,6 +91,8 @@ pub enum Whereabouts {
     Unbalanced(Place),
     /// What was tried last still moved most there.
     Moving(Place),
+    /// What was tried last is turned inside out there.
+    Inverted(Place),
     /// The last good state is turned over there, between points of integration.
     Turned(Place),
     /// The last good state has its highest strain energy density there, in E.
@@ -101,6 +106,9 @@ pub(super) fn whereabouts(
     last: Option<(&Load, &[f64])>,
 ) -> Vec<Whereabouts> {
     let tried = error.tried.last().and_then(|(_, failure)| {
+        if let Failure::Broken(Inverted { place, .. }) = failure {
+            return Some(Whereabouts::Inverted(*place));
+        }
         let place = tube.place_of(failure.worst()?);
         Some(match failure {
             Failure::StillMoving { .. } => Whereabouts::Moving(place),
@@ -120,21 +128,38 @@ pub(super) fn whereabouts(
 /// A strain energy density, in E, that is none.
 const ROUNDING: f64 = 1e-12;
 
-impl fmt::Display for Whereabouts {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Whereabouts {
+    /// In words, with lengths and stresses in the units of a case.
+    pub fn told(&self, scale: &Scale) -> String {
+        let at = |place: &Place| {
+            let z = significant(scale.length * place.z);
+            format!("at z = {z} {}, {}", scale.length_name, place.beside_z())
+        };
         match self {
-            Self::Unbalanced(place) => write!(f, "What was tried last was farthest off at {place}"),
-            Self::Moving(place) => write!(f, "What was tried last still moved most at {place}"),
-            Self::Turned(place) => write!(
-                f,
-                "The last good state is turned over at {place}, between the points at which it is integrated: it needs a finer mesh there"
+            Self::Unbalanced(place) => {
+                format!("What was tried last was farthest off {}", at(place))
+            }
+            Self::Moving(place) => format!("What was tried last still moved most {}", at(place)),
+            Self::Inverted(place) => {
+                format!("What was tried last is turned inside out {}", at(place))
+            }
+            Self::Turned(place) => format!(
+                "The last good state is turned over {}, between the points at which it is integrated: it needs a finer mesh there",
+                at(place)
             ),
-            Self::Strained(place, density) => write!(
-                f,
-                "The last good state is strained hardest at {place} (energy density {density:.1e} E)"
+            Self::Strained(place, density) => format!(
+                "The last good state is strained hardest {} (energy density {:.1e} {})",
+                at(place),
+                scale.stress * density,
+                scale.stress_name
             ),
         }
     }
+}
+
+/// A number to four digits.
+fn significant(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 /// What may help, by where the tube was lost and how the last method failed.
@@ -242,5 +267,41 @@ impl fmt::Display for Summary {
             writeln!(f, "  {name:<22} {value}")?;
         }
         writeln!(f, "  {:<22} {}", "written to", self.directory.display())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::Units;
+
+    #[test]
+    fn places_are_told_in_the_units_of_the_case() {
+        let place = Place {
+            z: 1.87504,
+            angle: Some(1.0),
+            depth: 0.25,
+        };
+        let units = Units {
+            length: "mm".into(),
+            stress: "kPa".into(),
+            diameter: 25.0,
+            youngs_modulus: 40.0,
+        };
+        let (plain, scaled) = (Scale::of(None), Scale::of(Some(&units)));
+        let strained = Whereabouts::Strained(place, 0.06);
+        assert_eq!(
+            strained.told(&plain),
+            "The last good state is strained hardest at z = 1.875 D, θ = 57°, 25 % of the wall deep (energy density 6.0e-2 E)"
+        );
+        assert_eq!(
+            strained.told(&scaled),
+            "The last good state is strained hardest at z = 46.88 mm, θ = 57°, 25 % of the wall deep (energy density 2.4e0 kPa)"
+        );
+        let inverted = Whereabouts::Inverted(place).told(&scaled);
+        assert!(
+            inverted.ends_with("inside out at z = 46.88 mm, θ = 57°, 25 % of the wall deep"),
+            "{inverted}"
+        );
     }
 }

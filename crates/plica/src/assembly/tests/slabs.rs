@@ -60,10 +60,10 @@ fn an_element_turned_inside_out_is_an_error_that_says_where() {
     } = tube.forces(&rest, &u).unwrap_err();
     // Elements are 0.075 long: row 13 passes row 14, and the element between them is mirrored.
     assert_eq!(element[0], 13);
-    assert!((place.z - middle - 0.5 * 0.075).abs() < 1e-14, "{place}");
+    assert!((place.z - middle - 0.5 * 0.075).abs() < 1e-14, "{place:?}");
     assert!((0.0..1.0).contains(&place.depth) && element[1] < 2 && element[2] < 6);
     let around = place.angle.unwrap() / tube.sector.angle();
-    assert!((around - element[2] as f64).abs() < 1e-12, "{place}");
+    assert!((around - element[2] as f64).abs() < 1e-12, "{place:?}");
     assert!((jacobian - (1.0 - 0.1 / 0.075)).abs() < 1e-12, "{jacobian}");
 }
 
