@@ -164,7 +164,13 @@ fn nearly_cases_are_answered() {
                         case::advice(&plan);
                         plica::study::forecast(&plan);
                     }
-                    Err(error) => assert!(!error.problems.is_empty()),
+                    Err(error) => {
+                        assert!(!error.problems.is_empty());
+                        for problem in error.problems {
+                            let place = problem.span.unwrap();
+                            assert!(text.get(place).is_some(), "in the text");
+                        }
+                    }
                 }
             }
         },

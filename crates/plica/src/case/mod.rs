@@ -99,8 +99,6 @@ pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
 /// # Errors
 /// As [`read`]; a file that cannot be opened, or is not one of the case's tube, is a problem too.
 pub fn read_with(text: &str, name: &str, open: &Open<'_>) -> Result<Plan, CaseError> {
-    // The reader loses a value that does not end where the text ends without a line break.
-    let text = &format!("{text}\n");
     let (root, errors) = DeTable::parse_recoverable(text);
     let mut problems = Problems::default();
     let unreadable = unreadable::tell(text, root.get_ref(), &errors, &mut problems);
