@@ -3,6 +3,7 @@
 use crate::console;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use plica::case::{CaseError, Problem};
+use std::ops::Range;
 use std::path::Path;
 
 /// All problems of a case, and their number.
@@ -12,9 +13,22 @@ pub fn render(path: &Path, text: &str, error: &CaseError) -> String {
         false => Renderer::plain(),
     };
     let path = path.display().to_string();
+    let starts: Vec<usize> = text.match_indices('\n').map(|(at, _)| at + 1).collect();
     let mut lines: Vec<String> = Vec::new();
     for problem in &error.problems {
-        lines.push(show(&renderer, &path, text, problem));
+        // A problem of the whole file is shown at its end.
+        let span = problem.span.clone().unwrap_or(text.len()..text.len());
+        // Of a long text the lines that matter, with their number.
+        let before = starts.partition_point(|start| *start <= span.start);
+        let from = before.checked_sub(1).map_or(0, |line| starts[line]);
+        let after = starts.partition_point(|start| *start < span.end);
+        let to = starts.get(after).copied().unwrap_or(text.len());
+        let shown = Shown {
+            text: &text[from..to],
+            line: before + 1,
+            span: span.start - from..span.end - from,
+        };
+        lines.push(show(&renderer, &path, shown, problem));
         lines.push(String::new());
     }
     let count = match error.problems.len() {
@@ -25,16 +39,22 @@ pub fn render(path: &Path, text: &str, error: &CaseError) -> String {
     lines.join("\n")
 }
 
-fn show(renderer: &Renderer, path: &str, text: &str, problem: &Problem) -> String {
+/// A piece of a text: its lines, the number of the first, and the bytes of it that matter.
+struct Shown<'a> {
+    text: &'a str,
+    line: usize,
+    span: Range<usize>,
+}
+
+fn show(renderer: &Renderer, path: &str, shown: Shown<'_>, problem: &Problem) -> String {
     let title = match problem.key.as_str() {
         "" => problem.rule.clone(),
         key => format!("{key}: {}", problem.rule),
     };
-    // A problem of the whole file is shown at its end.
-    let span = problem.span.clone().unwrap_or(text.len()..text.len());
-    let snippet = Snippet::source(text)
+    let snippet = Snippet::source(shown.text)
+        .line_start(shown.line)
         .path(path)
-        .annotation(AnnotationKind::Primary.span(span));
+        .annotation(AnnotationKind::Primary.span(shown.span));
     let mut group = Level::ERROR.primary_title(title).element(snippet);
     if let Some(cure) = &problem.cure {
         group = group.element(Level::HELP.message(cure.as_str()));

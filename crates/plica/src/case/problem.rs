@@ -1,6 +1,7 @@
 //! What can be wrong with a case.
 
 use super::locate::locate;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
@@ -62,7 +63,9 @@ impl fmt::Display for CaseError {
 #[derive(Debug, Default)]
 pub(super) struct Problems {
     found: Vec<Problem>,
-    replaced: Vec<String>,
+    /// The keys of those.
+    keys: BTreeSet<String>,
+    replaced: BTreeSet<String>,
 }
 
 impl Problems {
@@ -84,10 +87,11 @@ impl Problems {
     /// The value of a key, or what is meant to be one, is not used. Something stands in for it, and rules that hold it against
     /// others would say nothing.
     pub fn replaced(&mut self, key: String) {
-        self.replaced.push(key);
+        self.replaced.insert(key);
     }
 
     fn add(&mut self, key: &str, rule: String, cure: Option<String>) -> &mut Problem {
+        self.keys.insert(key.to_owned());
         self.found.push(Problem {
             key: key.to_owned(),
             value: None,
@@ -112,9 +116,9 @@ impl Problems {
     /// rule about several keys is worth looking at only then.
     pub fn none_about(&self, keys: &[&str]) -> bool {
         let about = |key: &&str| {
-            let replaced = |other: &String| is_within(other, key) || is_within(key, other);
-            let found = |problem: &Problem| is_within(&problem.key, key);
-            self.found.iter().any(found) || self.replaced.iter().any(replaced)
+            any_within(&self.keys, key)
+                || any_within(&self.replaced, key)
+                || within_any(key, &self.replaced)
         };
         !keys.iter().any(about)
     }
@@ -139,16 +143,60 @@ impl Problems {
     }
 }
 
-/// Whether a key is another, or below it. Nothing but itself is within the case as a whole: a key that nobody knows, and that
-/// stands in no table, is about nothing else.
-fn is_within(key: &str, table: &str) -> bool {
-    match key.strip_prefix(table) {
-        Some(rest) => rest.is_empty() || !table.is_empty() && rest.starts_with(['.', '[']),
-        None => false,
-    }
+/// Whether some key is this one or below it. Nothing is below the case as a whole: a key that nobody knows, and that stands in no
+/// table, is about nothing else.
+fn any_within(keys: &BTreeSet<String>, table: &str) -> bool {
+    let below = |mark: char| {
+        let start = format!("{table}{mark}");
+        let next = keys.range(start.clone()..).next();
+        next.is_some_and(|key| key.starts_with(&start))
+    };
+    keys.contains(table) || !table.is_empty() && (below('.') || below('['))
+}
+
+/// Whether a key is one of these, or below one.
+fn within_any(key: &str, tables: &BTreeSet<String>) -> bool {
+    let mut marks = key.match_indices(['.', '[']);
+    tables.contains(key) || marks.any(|(end, _)| end > 0 && tables.contains(&key[..end]))
 }
 
 /// Whether a value is worth repeating: one line, and not the header of a table.
 fn short(value: &str) -> bool {
     value.chars().count() <= 60 && !value.contains('\n') && !value.starts_with("[[")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_problem_is_about() {
+        let mut problems = Problems::default();
+        problems.value("muscles.a.zone", "", None);
+        problems.key("stages[2].drive.b", "", None);
+        problems.replaced("mesh".to_owned());
+        problems.replaced("imperfections[1].of".to_owned());
+        for (key, none) in [
+            ("muscles.a.zone", false),
+            ("muscles.a", false),
+            ("muscles", false),
+            ("muscles.b", true),
+            ("muscles.a.zones", true),
+            // Found, not replaced: what is below is as written.
+            ("muscles.a.zone.below", true),
+            ("stages", false),
+            ("stages[1]", true),
+            ("stages[2].drive", false),
+            ("stages[2].drive.b.length_ratio", true),
+            ("mesh.degree", false),
+            ("meshes", true),
+            ("imperfections[1].of.muscle", false),
+            ("imperfections[1].amplitude", true),
+            ("imperfections[1]", false),
+            ("imperfections[10].of", true),
+            ("", true),
+        ] {
+            assert_eq!(problems.none_about(&[key]), none, "{key}");
+        }
+    }
 }
