@@ -285,3 +285,23 @@ fn sound_cases_run_or_end_with_a_reason() {
     assert!(refused < count, "{refused}");
     assert!(3 * ended[0] > count, "{ended:?}");
 }
+
+/// A scale that is none makes every number of a table so.
+#[test]
+fn a_number_that_is_none_ends_a_run_as_lost() {
+    let case = "[mesh]\ncontrol_points = { axial = 5, around = 8, thickness = 4 }\n[units]\nlength = 'mm'\nstress = 'kPa'\n\
+        [muscles.circular]\ndirection = 'circular'\nzone = [1.0, 2.0]\n[[stages]]\nsteps = 2\ndrive.circular.diameter_ratio = 0.95\n";
+    let mut plan = case::read(case, "none").unwrap();
+    plan.units.as_mut().unwrap().diameter = f64::NAN;
+    let path = std::env::temp_dir().join(format!("plica-none-{}", std::process::id()));
+    let mut directory = RunDirectory::create(&path, case, "", true).unwrap();
+    let ended = study::run(&plan, &mut directory, &mut Patience::default());
+    assert!(matches!(ended, Err(study::StudyError::NoNumber { .. })));
+    assert_eq!(directory.verdict(), "lost");
+    let manifest = std::fs::read_to_string(path.join("manifest.json")).unwrap();
+    assert!(
+        manifest.contains("NaN") && manifest.contains("of row 0"),
+        "{manifest}"
+    );
+    std::fs::remove_dir_all(path).unwrap();
+}

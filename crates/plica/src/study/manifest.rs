@@ -108,7 +108,7 @@ impl Manifest {
         self.close(ending.name(), ending.to_string(), rows);
     }
 
-    /// At an end that no tube comes to.
+    /// At an end that is a fault of the program: a number of a state is none.
     pub fn fail(&mut self, error: &StudyError, rows: &[Row]) {
         self.close("lost", error.to_string(), rows);
     }

@@ -97,8 +97,12 @@ fn lead(
     let rings = plan.mesh.rings(plan.symmetry);
     let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
     let mut record = Record::new(plan, &problem, directory);
-    let begun = match from {
-        None => begin(plan, &problem, &mut record, observer)?.map(|path| (path, None)),
+    let ending = match from {
+        None => match begin(plan, &problem, &mut record, observer) {
+            Ok(Ok(path)) => follow(plan, path, None, &mut record, observer),
+            Ok(Err(ending)) => Ok(ending),
+            Err(error) => Err(error),
+        },
         Some((checkpoint, rows)) => {
             record.restore(rows, observer);
             let stage = checkpoint.stage;
@@ -107,12 +111,8 @@ fn lead(
                 path: record.directory.path().to_owned(),
                 reasons: vec![why],
             })?;
-            Ok((path, stage))
+            follow(plan, path, stage, &mut record, observer)
         }
-    };
-    let ending = match begun {
-        Ok((path, stage)) => follow(plan, path, stage, &mut record, observer),
-        Err(ending) => Ok(ending),
     };
     let Record {
         rows, snapshots, ..
@@ -122,7 +122,6 @@ fn lead(
         directory.write_manifest(&manifest)?;
     }
     let ending = ending?;
-
     manifest.end(&ending, &rows);
     directory.write_manifest(&manifest)?;
     Ok(Summary::new(
@@ -200,14 +199,18 @@ fn follow(
                     } else {
                         let state = path.state();
                         Ending::Lost {
-                            phase: Phase::Stage(stage.name.clone()),
+                            phase: Phase::Stage {
+                                name: stage.name.clone(),
+                                step: n,
+                                steps: stage.steps,
+                            },
                             whereabouts: whereabouts(
                                 record.tube(),
                                 &error,
                                 Some((&state.load, &state.u)),
                             ),
                             error,
-                            scale: Scale::of(plan.units.as_ref()),
+                            scale: Scale::of(plan.units.as_ref()).into(),
                         }
                     });
                 }
@@ -239,7 +242,7 @@ fn begin<'a>(
         phase,
         whereabouts: whereabouts(&problem.tube, &error, None),
         error,
-        scale: Scale::of(plan.units.as_ref()),
+        scale: Scale::of(plan.units.as_ref()).into(),
     };
     let Some(start) = &plan.start else {
         let rest = plan.tube.rest();

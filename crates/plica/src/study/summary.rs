@@ -24,7 +24,7 @@ pub enum Ending {
         /// Where in the tube it is to be looked for.
         whereabouts: Vec<Whereabouts>,
         /// The units in which that is told.
-        scale: Scale,
+        scale: Box<Scale>,
     },
 }
 
@@ -35,8 +35,15 @@ pub enum Phase {
     Rest,
     /// On the way to equilibrium of the state that it starts from.
     Start,
-    /// In a stage of this name.
-    Stage(String),
+    /// On the way to a step of a stage.
+    Stage {
+        /// The stage's name.
+        name: String,
+        /// The step, from 1 on.
+        step: usize,
+        /// The steps of the stage.
+        steps: usize,
+    },
 }
 
 impl Ending {
@@ -70,9 +77,9 @@ impl fmt::Display for Ending {
                         f,
                         "the state that it starts from was not brought to equilibrium on this mesh ({error}); there is no first state. "
                     ),
-                    Phase::Stage(stage) => write!(
+                    Phase::Stage { name, step, steps } => write!(
                         f,
-                        "the tube could not be followed further in stage `{stage}` ({error}); the last good state is kept. "
+                        "the tube could not be followed further in stage `{name}`, step {step} of {steps} ({error}); the last good state is kept. "
                     ),
                 }?;
                 for there in whereabouts {
@@ -171,7 +178,7 @@ fn advice(phase: &Phase, error: &PathError<Inverted>) -> &'static str {
         Phase::Start => {
             return "Try a mesh nearer to that of the saved state, or more solver.newton_iterations or solver.relaxation_steps";
         }
-        Phase::Stage(_) => {}
+        Phase::Stage { .. } => {}
     }
     match error.tried.last().map(|(_, failure)| failure) {
         Some(Failure::StillMoving { .. }) => {
