@@ -25,6 +25,9 @@ fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<Stri
     for (name, png) in &pictures {
         directory.write(name, png).map_err(Failure::Study)?;
     }
+    if pictures.is_empty() {
+        return Ok(String::new());
+    }
     let names: Vec<&str> = pictures.iter().map(|(name, _)| name.as_str()).collect();
     Ok(format!("  {:<22} {}\n", "pictures", names.join(", ")))
 }

@@ -19,15 +19,21 @@ pub struct Look {
     pub factor: f64,
 }
 
+/// Pieces along a tube, at least.
+const ALONG: usize = 200;
+
 /// Position (z, x, y) and the value of the field.
 type Sampled = ([f64; 3], f64);
 
 impl Look {
     /// The near half taken away, coloured by strain energy density.
     pub fn half(tube: &SplineTube) -> Self {
+        // Long elements are curved.
+        let elements = tube.axial.elements();
+        let along = elements * ALONG.div_ceil(elements.max(1)).max(2);
         Self {
             opening: Opening {
-                points: [2 * tube.axial.elements() + 1, 97, 13],
+                points: [along + 1, 97, 13],
                 ..Opening::HALF
             },
             field: Field::EnergyDensity,

@@ -15,7 +15,7 @@ const WIDTH: usize = 1800;
 
 /// Pieces along a tube, and around its half where it is round, that are fine enough for that: a polygon is off a circle by a sixth of a
 /// pixel.
-const ALONG: usize = 300;
+const ALONG: usize = 200;
 const AROUND: usize = 48;
 
 /// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots; of a chosen state without one no more
@@ -109,7 +109,7 @@ fn cutaway(plan: &Plan, tube: &SplineTube, chosen: &[Wall<'_>], upwards: f64) ->
     };
     // A run does not wait for what is finer than its picture shows.
     let elements = tube.axial.elements();
-    look.opening.points[0] = elements * (ALONG / elements).clamp(1, 2) + 1;
+    look.opening.points[0] = elements * (ALONG / elements).max(1) + 1;
     if tube.sector.rings == 1 {
         look.opening.points[1] = AROUND + 1;
     }
