@@ -6,6 +6,9 @@ use plica::case::{CaseError, Problem};
 use std::ops::Range;
 use std::path::Path;
 
+/// So many problems are shown.
+const MOST: usize = 200;
+
 /// All problems of a case, and their number.
 pub fn render(path: &Path, text: &str, error: &CaseError) -> String {
     let renderer = match console::is_coloured() {
@@ -15,7 +18,7 @@ pub fn render(path: &Path, text: &str, error: &CaseError) -> String {
     let path = path.display().to_string();
     let starts: Vec<usize> = text.match_indices('\n').map(|(at, _)| at + 1).collect();
     let mut lines: Vec<String> = Vec::new();
-    for problem in &error.problems {
+    for problem in error.problems.iter().take(MOST) {
         // A problem of the whole file is shown at its end.
         let span = problem.span.clone().unwrap_or(text.len()..text.len());
         // Of a long text the lines that matter, with their number.
@@ -33,6 +36,7 @@ pub fn render(path: &Path, text: &str, error: &CaseError) -> String {
     }
     let count = match error.problems.len() {
         1 => "one problem".to_owned(),
+        n if n > MOST => format!("{n} problems, of which the first {MOST} are shown"),
         n => format!("{n} problems"),
     };
     lines.push(format!("{path}: {count}"));

@@ -1,6 +1,7 @@
 //! What a key of the case file is: its type, its default, its range, its meaning.
 
 use super::table::KEYS;
+use std::borrow::Cow;
 
 /// One key of the case file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,10 +161,15 @@ pub(super) fn children(path: &str) -> Vec<&'static str> {
     names
 }
 
-/// The path of a key below another.
+/// The path of a key below another. A name that is not one of letters stands in quotes, as in the text.
 pub(super) fn join(path: &str, name: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_<>".contains(c);
+    let name = match !name.is_empty() && name.chars().all(plain) {
+        true => Cow::from(name),
+        false => Cow::from(format!("\"{name}\"")),
+    };
     match path {
-        "" => name.to_owned(),
+        "" => name.into_owned(),
         _ => format!("{path}.{name}"),
     }
 }

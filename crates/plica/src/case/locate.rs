@@ -23,7 +23,7 @@ pub(super) fn locate(root: &Spanned<DeTable>, path: &str) -> Place {
         exact: true,
     };
     let mut table = Some(root.get_ref());
-    for step in path.split('.') {
+    for step in steps(path) {
         let (name, member) = split_member(step);
         let Some((key, value)) = table.and_then(|t| t.get_key_value(name)) else {
             place.exact = false;
@@ -49,8 +49,20 @@ pub(super) fn locate(root: &Spanned<DeTable>, path: &str) -> Place {
     place
 }
 
+/// The names on a path; one in quotes may have dots in it.
+fn steps(path: &str) -> impl Iterator<Item = &str> {
+    let mut quoted = false;
+    path.split(move |c| {
+        quoted ^= c == '"';
+        c == '.' && !quoted
+    })
+}
+
 /// `stages[2]` is the name `stages` and the member 2.
 fn split_member(step: &str) -> (&str, Option<usize>) {
+    if let Some(name) = step.strip_prefix('"') {
+        return (name.strip_suffix('"').unwrap_or(name), None);
+    }
     let member = |step: &str| -> Option<(usize, usize)> {
         let (name, rest) = step.split_once('[')?;
         let n = rest.strip_suffix(']')?.parse().ok()?;

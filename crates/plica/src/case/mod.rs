@@ -86,8 +86,8 @@ impl<'a> Wanted<'a> {
 /// none: the name of the file without its ending.
 ///
 /// # Errors
-/// All problems that were found, in the order of the text. Of a text that is not TOML throughout what can be read is held against
-/// the table of keys, and no further.
+/// All problems that were found, in the order of the text. Of a text that is not TOML, where keys cannot be told, what can be read is
+/// held against the table of keys, and no further.
 pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
     let none = |_: Wanted<'_>| Err(std::io::Error::from(std::io::ErrorKind::NotFound).into());
     read_with(text, name, &none)
@@ -99,22 +99,24 @@ pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
 /// # Errors
 /// As [`read`]; a file that cannot be opened, or is not one of the case's tube, is a problem too.
 pub fn read_with(text: &str, name: &str, open: &Open<'_>) -> Result<Plan, CaseError> {
-    let (root, errors) = DeTable::parse_recoverable(text);
     let mut problems = Problems::default();
+    let (mut root, mut errors) = DeTable::parse_recoverable(text);
+    let mended = unreadable::mended(text, &errors, &mut problems);
+    if let Some(mended) = &mended {
+        (root, errors) = DeTable::parse_recoverable(mended);
+    }
     let unreadable = unreadable::tell(text, root.get_ref(), &errors, &mut problems);
     // From here on the tree has the shape of a case, whatever is written.
     let mut shaped = root.clone();
     shape::check(shaped.get_mut(), &unreadable, &mut problems);
-    if !unreadable.is_empty() {
+    if unreadable.keys_lost {
         return Err(problems.located(text, &root));
     }
     let plan = match spec::Spec::deserialize(Deserializer::from(shaped)) {
         Ok(spec) => check::plan(&spec, name, open, &mut problems),
         Err(error) => {
-            if problems.is_empty() {
-                let place = error.span().unwrap_or(0..0);
-                problems.not_toml(error.message(), None, place);
-            }
+            let place = error.span().unwrap_or(0..0);
+            problems.not_toml(error.message(), None, place);
             return Err(problems.located(text, &root));
         }
     };

@@ -115,12 +115,13 @@ impl Problems {
     /// Whether nothing was found so far about these keys, or what is below them, and nothing stands in for a table around them; a
     /// rule about several keys is worth looking at only then.
     pub fn none_about(&self, keys: &[&str]) -> bool {
-        let about = |key: &&str| {
-            any_within(&self.keys, key)
-                || any_within(&self.replaced, key)
-                || within_any(key, &self.replaced)
-        };
+        let about = |key: &&str| any_within(&self.keys, key) || !self.is_as_written(key);
         !keys.iter().any(about)
+    }
+
+    /// Whether nothing stands in for a key, for what is below it, or for a table around it.
+    pub fn is_as_written(&self, key: &str) -> bool {
+        !any_within(&self.replaced, key) && !within_any(key, &self.replaced)
     }
 
     /// All of them, with their places in the text.

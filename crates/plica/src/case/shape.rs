@@ -14,8 +14,8 @@ use toml::de::{DeTable, DeValue};
 
 /// Finds everything that is wrong with single keys, and leaves a table that has the shape of a case.
 ///
-/// `unreadable` are the places in the text that are not TOML. Values around them are not looked at, and since what stands there may
-/// be anything, nothing is called missing.
+/// `unreadable` are the places in the text that are not TOML. Values around them are not looked at; where keys are lost, nothing is
+/// called missing.
 pub(super) fn check(root: &mut DeTable, unreadable: &Unreadable, problems: &mut Problems) {
     let mut walk = Walk {
         unreadable,
@@ -37,9 +37,13 @@ impl Walk<'_> {
         let written = table.len();
         // The keys that are there, if perhaps misspelt; and what cannot stay.
         let (mut there, mut unsound) = (vec![], vec![]);
+        // Whether what is no key is a table, where nobody knows what was meant.
+        let mut unknown = vec![];
         for (key, value) in table.iter_mut() {
             let name = key.get_ref().as_ref();
             if self.unreadable.touches(&key.span()) || self.unreadable.touches(&value.span()) {
+                self.problems.replaced(join(path, name));
+                there.push(name.to_owned());
                 unsound.push(name.to_owned());
                 continue;
             }
@@ -48,8 +52,18 @@ impl Walk<'_> {
             } else if names.contains(&"<name>") {
                 "<name>"
             } else {
-                there.extend(self.stranger(name, pattern, path, &names));
                 unsound.push(name.to_owned());
+                match self.stranger(name, pattern, path, &names) {
+                    Some(meant) => {
+                        // What it holds is looked at as if it was spelt right.
+                        self.value(&join(pattern, &meant), &join(path, name), value);
+                        there.push(meant);
+                    }
+                    None => unknown.push(matches!(
+                        value.get_ref(),
+                        DeValue::Table(_) | DeValue::Array(_)
+                    )),
+                }
                 continue;
             };
             there.push(name.to_owned());
@@ -59,11 +73,16 @@ impl Walk<'_> {
                 unsound.push(name.to_owned());
             }
         }
+        for is_table in &unknown {
+            self.may_be_meant(*is_table, pattern, path, &there);
+        }
         for name in unsound {
             table.remove(name.as_str());
         }
         if chooses(pattern) {
-            if written != 1 {
+            // What is no choice at all has been told.
+            let told = !unknown.is_empty() || !self.unreadable.is_empty();
+            if written != 1 && !told {
                 let rule = format!("must be exactly one of {}", names.join(", "));
                 self.problems.key(path, rule, None);
             }
@@ -74,7 +93,7 @@ impl Walk<'_> {
                 && let Given::Always(example) = key.given
                 && !table.contains_key(name)
             {
-                if self.unreadable.is_empty() && !there.iter().any(|one| one == name) {
+                if !self.unreadable.keys_lost && !there.iter().any(|one| one == name) {
                     let cure = match key.kind {
                         Kind::Tables => format!("write [[{name}]]"),
                         _ => format!("write {name} = {example}, say"),
@@ -98,18 +117,55 @@ impl Walk<'_> {
         names: &[&'static str],
     ) -> Option<String> {
         let (cure, meant) = meant(name, pattern, names);
-        // What was meant by it, one of the table's own keys, another table's, or anything here: it is not known what that would be.
-        let about = match meant {
-            Meant::Here(near) => join(path, near),
-            Meant::Elsewhere(owner) if !owner.contains(['<', '[']) => join(owner, name),
-            Meant::Elsewhere(_) | Meant::Unknown => path.to_owned(),
-        };
         let rule = "not a key of a case";
         self.problems.key(&join(path, name), rule, cure);
-        self.problems.replaced(about);
         match meant {
-            Meant::Here(near) => Some(near.to_owned()),
-            _ => None,
+            Meant::Here(near) => {
+                self.problems.replaced(join(path, near));
+                return Some(near.to_owned());
+            }
+            Meant::Elsewhere(owners) => {
+                // `wave` for `shape.wave`: then `shape` is not missing.
+                let below = |owner: &String| {
+                    let rest = owner
+                        .strip_prefix(pattern)?
+                        .trim_start_matches(['.', '[', ']']);
+                    let first = rest.split(['.', '[']).next()?;
+                    names.contains(&first).then(|| first.to_owned())
+                };
+                let own = owners
+                    .iter()
+                    .find_map(below)
+                    .filter(|_| !pattern.is_empty());
+                if own.is_some() {
+                    self.problems.replaced(path.to_owned());
+                    return own;
+                }
+                for owner in owners {
+                    // Of which member, or name, nobody knows.
+                    let table = owner.split(['<', '[']).next().unwrap_or_default();
+                    self.problems.replaced(match table == owner {
+                        true => join(&owner, name),
+                        false => table.trim_end_matches('.').to_owned(),
+                    });
+                }
+            }
+            Meant::Unknown => {}
+        }
+        None
+    }
+
+    /// Any key of a table that is not there may be what was meant by a name that is near none of them.
+    fn may_be_meant(&mut self, is_table: bool, pattern: &str, path: &str, there: &[String]) {
+        for name in children(pattern) {
+            let pattern = join(pattern, name);
+            let alike = match is_table {
+                true => !children(&pattern).is_empty(),
+                false => key(&pattern).is_some(),
+            };
+            if alike && !there.iter().any(|one| one == name) {
+                self.problems.replaced(join(path, name));
+            }
         }
     }
 
@@ -134,24 +190,41 @@ impl Walk<'_> {
                 }
                 return true;
             }
-            (value, Some(key)) => leaf(key, path, value),
-            (_, None) => {
-                let below = children(pattern);
-                let example = match below[..] {
-                    [only] if only != "<name>" => format!("[{path}.{only}]"),
-                    _ => format!("[{path}]"),
-                };
-                Err(Wrong::new(
-                    "must be a table",
-                    Some(format!("write {example}")),
-                ))
+            // A header that is not read makes one table out of many.
+            (
+                DeValue::Table(_),
+                Some(Key {
+                    kind: Kind::Tables, ..
+                }),
+            ) if !self.unreadable.is_empty() => {
+                return false;
             }
+            (value, Some(key)) => leaf(key, path, value),
+            (_, None) => Err(Wrong::new("must be a table", Some(as_table(pattern, path)))),
         };
         if let Err(Wrong { rule, cure }) = wrong {
             self.problems.value(path, rule, cure);
             return false;
         }
         true
+    }
+}
+
+/// How a table is written.
+fn as_table(pattern: &str, path: &str) -> String {
+    let below = children(pattern);
+    let name = path.rsplit('.').next().unwrap_or(path);
+    match below[..] {
+        // A muscle without a name.
+        _ if pattern == "muscles.<name>" && below.contains(&name) => {
+            "write [muscles.NAME], with a name for it".to_owned()
+        }
+        ["<name>"] => format!("write [{path}.NAME], with a name for it"),
+        [only, ..] if key(&join(pattern, only)).is_some() && !pattern.is_empty() => {
+            format!("write {name} = {{ {only} = ... }}, say")
+        }
+        [only] => format!("write [{path}.{only}]"),
+        _ => format!("write [{path}]"),
     }
 }
 
@@ -162,12 +235,11 @@ fn chooses(pattern: &str) -> bool {
 }
 
 /// What was meant by a name that is no key.
-#[derive(Clone, Copy)]
 enum Meant {
     /// A key of the same table.
     Here(&'static str),
-    /// A key of that name, of another table.
-    Elsewhere(&'static str),
+    /// A key of that name, of other tables.
+    Elsewhere(Vec<String>),
     /// Nobody knows.
     Unknown,
 }
@@ -188,17 +260,31 @@ fn meant(name: &str, pattern: &str, names: &[&'static str]) -> (Option<String>, 
         let meant = own.map_or(Meant::Unknown, |own| Meant::Here(own));
         return (Some(format!("did you mean {near}?")), meant);
     }
-    let elsewhere = KEYS.iter().find(|key| key.name() == name);
-    match elsewhere.and_then(|key| key.path.rsplit_once('.')) {
-        Some((owner, _)) => {
-            let cure = format!("it belongs to {owner}");
-            (Some(cure), Meant::Elsewhere(owner))
-        }
-        None => {
-            let cure = format!("known here: {}", names.join(", "));
-            (Some(cure), Meant::Unknown)
+    let owners = owners(name);
+    if owners.is_empty() {
+        let cure = format!("known here: {}", names.join(", "));
+        return (Some(cure), Meant::Unknown);
+    }
+    let cure = format!("it belongs to {}", owners.join(" or "));
+    (Some(cure), Meant::Elsewhere(owners))
+}
+
+/// The tables that have a key, or a table, of a name; the case as a whole is none.
+fn owners(name: &str) -> Vec<String> {
+    let mut owners: Vec<String> = vec![];
+    for key in KEYS {
+        let steps: Vec<&str> = key.path.split('.').collect();
+        let at = steps
+            .iter()
+            .position(|step| step.trim_end_matches("[]") == name);
+        if let Some(at) = at.filter(|at| *at > 0) {
+            let owner = steps[..at].join(".");
+            if !owners.contains(&owner) {
+                owners.push(owner);
+            }
         }
     }
+    owners
 }
 
 /// The rule that a value breaks, and a cure.
@@ -229,6 +315,8 @@ fn leaf(key: &Key, path: &str, value: &DeValue) -> Result<(), Wrong> {
             let x = number(value).unwrap_or_default();
             if !x.is_finite() {
                 return Err(Wrong::new("must be a finite number", try_default(key)));
+            } else if let Some(wrong) = too_long(value) {
+                return Err(wrong);
             } else if let Some(rule) = key.range.broken_by(x) {
                 return Err(Wrong::new(rule, try_default(key)));
             }
@@ -250,7 +338,7 @@ fn leaf(key: &Key, path: &str, value: &DeValue) -> Result<(), Wrong> {
             let numbers = pairs.flat_map(|pair| pair.iter()).map(|x| x.get_ref());
             finite(numbers, "[[x, s], ...]")?;
         }
-        _ => return Err(wrong_type(key, path)),
+        _ => return Err(wrong_type(key, path, value)),
     }
     Ok(())
 }
@@ -259,13 +347,18 @@ fn finite<'v, 'i: 'v>(
     mut values: impl Iterator<Item = &'v DeValue<'i>>,
     form: &str,
 ) -> Result<(), Wrong> {
-    if values.all(|x| number(x).is_some_and(f64::is_finite)) {
-        return Ok(());
+    let mut long = None;
+    let is_finite = |x: &DeValue| {
+        long = long.take().or_else(|| too_long(x));
+        number(x).is_some_and(f64::is_finite)
+    };
+    if values.all(is_finite) {
+        return long.map_or(Ok(()), Err);
     }
     Err(Wrong::new(format!("must be finite numbers {form}"), None))
 }
 
-fn wrong_type(key: &Key, path: &str) -> Wrong {
+fn wrong_type(key: &Key, path: &str, value: &DeValue) -> Wrong {
     let rule = match key.kind {
         Kind::Text => "must be text, in quotes".to_owned(),
         Kind::Switch => "must be true or false".to_owned(),
@@ -283,11 +376,34 @@ fn wrong_type(key: &Key, path: &str) -> Wrong {
             format!("must be one of {}", choices.join(", "))
         }
     };
+    let quoted = match (key.kind, value) {
+        (Kind::Number | Kind::Count, DeValue::String(text)) => {
+            let number = text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+            number.map(|x| format!("write {x}, without quotes"))
+        }
+        (Kind::Count, DeValue::Float(_)) => number(value)
+            .filter(|x| x.fract() == 0.0 && x.abs() < 1e9)
+            .map(|x| format!("write {x}")),
+        _ => None,
+    };
     let cure = match key.kind {
-        Kind::Tables => Some(format!("write [[{path}]]")),
+        _ if quoted.is_some() => quoted,
+        Kind::Tables if !path.contains('[') => Some(format!("write [[{path}]]")),
         _ => try_default(key).or_else(|| Some(format!("such as {}", key.example()))),
     };
     Wrong::new(rule, cure)
+}
+
+/// A whole number with too many digits to be read as one.
+fn too_long(value: &DeValue) -> Option<Wrong> {
+    let DeValue::Integer(n) = value else {
+        return None;
+    };
+    let rule = "has too many digits for a whole number";
+    let wrong = || Wrong::new(rule, Some("write it with a point".into()));
+    i64::from_str_radix(n.as_str(), n.radix())
+        .is_err()
+        .then(wrong)
 }
 
 /// The number that is written, of either type.

@@ -80,10 +80,49 @@ harmonics = 2
 wall_points = 101
 "#;
 
-/// The rich case and those that come along, by their names.
+/// A case in which nothing is as what stands in for it.
+const UNLIKE: &str = r#"
+symmetry = "none"
+[tube]
+length = 8.0
+[muscles.b]
+direction = "longitudinal"
+zone = [6.0, 7.0]
+[muscles.c]
+direction = "longitudinal"
+zone = [7.0, 7.5]
+[ends]
+colon = "free"
+ileum = "sliding"
+[mesh]
+control_points = { axial = 80, around = 16, thickness = 4 }
+[[stages]]
+name = "stage-2"
+drive.b.length_ratio = 1.2
+[[stages]]
+name = "stage-1"
+drive.c.length_ratio = 1.1
+drive.ileum.displacement = 0.2
+[[imperfections]]
+of = "geometry"
+amplitude = 0.01
+shape = { wave = { harmonic = 4, axial = "uniform" } }
+[[imperfections]]
+of = "ileum-end"
+direction = "axial"
+amplitude = 0.01
+shape = { wave = { harmonic = 3 } }
+[solver]
+scheme = "dragged"
+pseudo_time = { drag = 5.0 }
+"#;
+
+/// Those two and the cases that come along, by their names.
 fn cases() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
-    let mut cases = vec![("rich".to_owned(), RICH.to_owned())];
+    let mut cases: Vec<(String, String)> = [("rich", RICH), ("unlike", UNLIKE)]
+        .map(|(name, text)| (name.to_owned(), text.to_owned()))
+        .into();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
@@ -192,6 +231,9 @@ fn one_slip_is_one_message() {
             let text = toml::to_string(&case).unwrap();
             let told = read(&text, &name).expect_err(&what).problems;
             assert_eq!(told.len(), 1, "{name}, {what}: {told:#?}\n{text}");
+            let (path, _) = what.split_once(',').unwrap();
+            let about = told[0].key.starts_with(path);
+            assert!(about, "{name}, {what}: {told:?}");
             seen += 1;
         }
     }
@@ -250,6 +292,9 @@ fn one_slip_of_toml_is_one_message() {
                 let text = wrong.join("\n");
                 let told = read(&text, &name).expect_err(&slip).problems;
                 assert_eq!(told.len(), 1, "{name}, {slip}: {told:#?}");
+                let place = told[0].span.clone().unwrap().start;
+                let line = text[..place].matches('\n').count();
+                assert_eq!(line, n, "{name}, {slip}: {told:?}");
             }
         }
     }
@@ -284,33 +329,55 @@ fn slips_of_every_kind_are_told_together() {
         "solver.pseudo_time",
     ];
     assert_eq!(keys, expected);
-    // Where one value cannot be read, the others are held against the table of keys.
+    // The same where one value cannot be read.
     let broken = format!("title = none\n{text}");
     let problems = read(&broken, "case").unwrap_err().problems;
     let keys: Vec<&str> = problems.iter().map(|p| p.key.as_str()).collect();
+    assert_eq!(keys, [&[""], &expected[..]].concat());
+}
+
+#[test]
+fn names_with_dots_are_names() {
+    let text = "'tube.length' = 1\n'' = 2\n[tube]\nlength = 0.5\n[muscles.'a.b']\ndirection = 'circular'\nzone = [1, 2]\n[[stages]]\ndrive.ileum.displacement = 0.1\n";
+    let problems = read(text, "case").unwrap_err().problems;
+    let told: Vec<(&str, &str)> = problems
+        .iter()
+        .map(|p| (p.key.as_str(), &text[p.span.clone().unwrap()]))
+        .collect();
     let expected = [
-        "",
-        "tube.lenght",
-        "material.neo-hookean.poisson_ratio",
-        "muscles.b.zone",
-        "mesh.control_points.around",
-        "stages[1].drive.b.diameter_ratio",
-        "solver.halvings",
+        ("\"tube.length\"", "'tube.length'"),
+        ("\"\"", "''"),
+        ("muscles.\"a.b\"", "'a.b'"),
+        ("muscles.\"a.b\".zone", "[1, 2]"),
     ];
-    assert_eq!(keys, expected);
+    assert_eq!(told, expected);
+}
+
+#[test]
+fn where_keys_are_lost_the_others_are_held_against_the_table() {
+    let text = "title = ' '\n[tube\nlength = 3.0\n[mesh]\n[[stages]]\nsteps = 0\n";
+    let problems = read(text, "case").unwrap_err().problems;
+    let keys: Vec<&str> = problems.iter().map(|p| p.key.as_str()).collect();
+    assert_eq!(keys, ["title", "", "stages[1].steps"]);
 }
 
 #[test]
 fn bare_words_are_told_what_they_should_be() {
     for (word, cure) in [
-        ("thick", Some("write \"thick\"")),
+        ("thick", Some("write \"thick\" if it is a text")),
+        ("none", None),
+        ("1/3", None),
         ("True", Some("write true")),
         ("NaN", None),
-        ("fals", Some("write \"fals\"")),
+        ("fals", Some("write \"fals\" if it is a text")),
         ("3,5", Some("write the number with a point")),
+        (": 3.0", Some("write = for the colon")),
+        (" 3.0", Some("write = before the value")),
         ("3,", None),
     ] {
-        let text = format!("[tube]\nlength = {word}\n[[stages]]\n");
+        let sign = if word.contains("3.0") { "" } else { " = " };
+        let text =
+            format!("[tube]\nlength{sign}{word}\n[[stages]]\ndrive.ileum.displacement = 0.1\n");
         let problems = read(&text, "case").unwrap_err().problems;
         assert_eq!(problems.len(), 1, "{word}: {problems:?}");
         assert_eq!(problems[0].cure.as_deref(), cure, "{word}");

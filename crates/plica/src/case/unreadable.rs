@@ -1,99 +1,207 @@
 //! What of a text is not TOML: one mistake, one message.
 
+use super::keys::{Kind, key};
 use super::problem::Problems;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-/// The places in a text that are not TOML, in their order and apart.
+/// The places in a text that are not TOML.
 #[derive(Debug, Default)]
-pub(super) struct Unreadable(Vec<Range<usize>>);
+pub(super) struct Unreadable {
+    /// In their order, and apart.
+    places: Vec<Range<usize>>,
+    /// Whether it is not known which keys they belong to, so that any key may be there or not.
+    pub keys_lost: bool,
+}
 
 impl Unreadable {
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.places.is_empty()
     }
 
     /// Whether one of them lies in a place, or beside it.
     pub fn touches(&self, place: &Range<usize>) -> bool {
-        let next = self.0.partition_point(|one| one.end < place.start);
-        self.0.get(next).is_some_and(|one| one.start <= place.end)
+        let next = self.places.partition_point(|one| one.end < place.start);
+        self.places
+            .get(next)
+            .is_some_and(|one| one.start <= place.end)
     }
 
     fn add(&mut self, place: Range<usize>) {
-        match self.0.last_mut() {
+        match self.places.last_mut() {
             Some(last) if place.start <= last.end => last.end = last.end.max(place.end),
-            _ => self.0.push(place),
+            _ => self.places.push(place),
         }
     }
 }
 
+/// The text as it is meant, byte for byte in its place, if a key and its value have no `=` between them or a colon: that is told, and
+/// the rest can be read.
+pub(super) fn mended(text: &str, errors: &[Error], problems: &mut Problems) -> Option<String> {
+    let mut mended = text.as_bytes().to_vec();
+    let mut told = false;
+    for error in errors {
+        let Some(place) = error.span() else { continue };
+        let (Some(before), Some(there)) = (text.get(..place.start), text.get(place.start..)) else {
+            continue;
+        };
+        let is_value = !there.is_empty() && !there.starts_with(['\n', '\r', '#']);
+        if !error.message().starts_with("key with no value") || !is_value {
+            continue;
+        }
+        let key = before.trim_end_matches([' ', '\t']);
+        let (at, cure) = match key.strip_suffix(':') {
+            Some(key) => (key.len(), "write = for the colon"),
+            None if key.len() < before.len() => (place.start - 1, "write = before the value"),
+            None => continue,
+        };
+        mended[at] = b'=';
+        problems.not_toml("a key without =", Some(cure.into()), place);
+        told = true;
+    }
+    told.then(|| String::from_utf8(mended).ok()).flatten()
+}
+
 /// Tells what is not TOML, and returns the places of all that cannot be used.
 ///
-/// A value that does not end makes the reader stumble over all that follows: of the errors within one value the one that says so is
-/// told, where the value begins, or else the first. What follows a broken header would be read as another table's.
+/// The reader stumbles over what follows a mistake, too. Of the errors within one value one is told: that it does not end, where it
+/// begins, or else the first. Of the errors in one line outside of values the first is told. What follows a broken header would be
+/// read as another table's.
 pub(super) fn tell(
     text: &str,
     root: &DeTable,
     errors: &[Error],
     problems: &mut Problems,
 ) -> Unreadable {
-    let place = |error: &Error| error.span().unwrap_or(0..0);
-    let mut errors: Vec<(Range<usize>, &str)> = errors
-        .iter()
-        .map(|error| (place(error), error.message()))
-        .collect();
-    errors.sort_by_key(|(place, _)| place.start);
-    let mut unreadable = Unreadable::default();
-    for (place, _) in &errors {
-        let end = end_of_table(text, place.start).unwrap_or(place.end);
-        unreadable.add(place.start..end);
+    if errors.is_empty() {
+        return Unreadable::default();
     }
-    let is_endless = |message: &str| {
-        message.starts_with("unclosed array") || message.starts_with("unclosed inline")
-    };
     let mut values = vec![];
     whole_values(root, &mut values);
     values.sort_by_key(|value| value.start);
-    // What does not end may be found shorter than it is: it goes on to the end of the text.
-    if errors.iter().any(|(_, message)| is_endless(message))
-        && let Some(last) = values.last_mut()
-    {
-        last.end = text.len();
-    }
-    // Of the errors within one value the one that is told, by the place of the value.
+    let lines = Lines::of(text, &values);
+    let mut errors: Vec<(Range<usize>, &str)> = errors
+        .iter()
+        .map(|error| (error.span().unwrap_or(0..0), error.message()))
+        .collect();
+    errors.sort_by_key(|(place, _)| place.start);
+    let mut unreadable = Unreadable::default();
+    // Of every value, or line, that has an error the one that is told.
     let mut told: BTreeMap<usize, (Range<usize>, &str)> = BTreeMap::new();
     let mut broken_header = false;
     for (place, message) in errors {
+        unreadable.add(lines.unusable(&place));
         let next = values.partition_point(|value| value.start <= place.start);
         let within = |value: &&Range<usize>| place.end <= value.end;
-        let value = next
-            .checked_sub(1)
-            .and_then(|k| values.get(k))
-            .filter(within);
-        let Some(value) = value else {
-            // A header that does not end takes the next one's place, which then seems to be there already.
-            if !broken_header || message != "duplicate key" {
-                tell_one(text, place, message, problems);
+        let value = next.checked_sub(1).and_then(|k| values.get(k));
+        if let Some(value) = value.filter(within) {
+            let opens = text[value.start..].starts_with(['[', '{']);
+            let is_endless = ["unclosed array,", "unclosed inline table,"]
+                .iter()
+                .any(|start| message.starts_with(start));
+            unreadable.keys_lost |= is_endless || message.contains("multi-line");
+            if opens && is_endless {
+                told.insert(value.start, (value.start..value.start + 1, message));
+            } else {
+                told.entry(value.start).or_insert((place, message));
             }
-            broken_header |= message.starts_with("unclosed table");
             continue;
-        };
-        if is_endless(message) {
-            told.insert(value.start, (value.start..value.start + 1, message));
-        } else {
-            told.entry(value.start).or_insert((place, message));
         }
+        // A header that does not end takes the next one's place, which then seems to be there already.
+        let twice = message == "duplicate key";
+        let follows = twice || message.starts_with("cannot extend");
+        if !(broken_header && follows) {
+            let line = lines.start(place.start);
+            told.entry(line).or_insert((place.clone(), message));
+        }
+        let line = lines.start(place.start);
+        let first = values.partition_point(|value| value.start < line);
+        let of_line = values.get(first).map(|value| lines.start(value.start));
+        unreadable.keys_lost |= !twice && of_line != Some(line);
+        broken_header |= lines.is_header(place.start);
     }
+    // A value and the rest of its line are one mistake.
+    let mut last = None;
     for (place, message) in told.into_values() {
-        tell_one(text, place, message, problems);
+        let line = lines.start(place.start);
+        if last != Some(line) {
+            tell_one(text, place, message, problems);
+        }
+        last = Some(line);
     }
     unreadable
 }
 
+/// The lines of a text: where each begins, and whether it is the header of a table.
+struct Lines<'a> {
+    text: &'a str,
+    starts: Vec<usize>,
+    /// The lines that are headers, by their number.
+    headers: Vec<usize>,
+}
+
+impl<'a> Lines<'a> {
+    /// What begins like a header may be a line of a list.
+    fn of(text: &'a str, values: &[Range<usize>]) -> Self {
+        let breaks = text.match_indices('\n').map(|(at, _)| at + 1);
+        let starts: Vec<usize> = std::iter::once(0).chain(breaks).collect();
+        let within_value = |start: usize| {
+            let next = values.partition_point(|value| value.start < start);
+            let value = next.checked_sub(1).and_then(|k| values.get(k));
+            value.is_some_and(|value| start < value.end)
+        };
+        let is_header = |start: usize| {
+            let line = text[start..].trim_start_matches([' ', '\t']);
+            line.starts_with('[') && !within_value(start)
+        };
+        let headers = (0..starts.len()).filter(|&line| is_header(starts[line]));
+        Self {
+            text,
+            headers: headers.collect(),
+            starts,
+        }
+    }
+
+    fn number(&self, place: usize) -> usize {
+        self.starts.partition_point(|start| *start <= place) - 1
+    }
+
+    /// Where the line of a place begins.
+    fn start(&self, place: usize) -> usize {
+        self.starts[self.number(place)]
+    }
+
+    /// Whether a place lies in the header of a table.
+    fn is_header(&self, place: usize) -> bool {
+        self.headers.binary_search(&self.number(place)).is_ok()
+    }
+
+    /// What an error makes unusable: the lines it is in, and of a header all of its table.
+    fn unusable(&self, place: &Range<usize>) -> Range<usize> {
+        let (first, mut last) = (self.number(place.start), self.number(place.end));
+        if let Ok(header) = self.headers.binary_search(&first) {
+            let next = self.headers.get(header + 1);
+            last = last.max(next.map_or(self.starts.len(), |next| *next) - 1);
+        }
+        let end = self
+            .starts
+            .get(last + 1)
+            .map_or(self.text.len(), |next| next - 1);
+        self.starts[first]..end.max(place.end)
+    }
+}
+
 /// Tells one error, in words that a person who does not know TOML understands.
 fn tell_one(text: &str, place: Range<usize>, message: &str, problems: &mut Problems) {
+    if message == "duplicate key" {
+        let name = text.get(place.clone()).unwrap_or_default();
+        let cure = key(name)
+            .filter(|key| key.kind == Kind::Tables)
+            .map(|_| format!("write [[{name}]], each time"));
+        return problems.not_toml(&format!("{name} is there already"), cure, place);
+    }
     let (before, there) = text.split_at_checked(place.start).unwrap_or((text, ""));
     let is_digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
     let mut there = there.chars();
@@ -102,40 +210,28 @@ fn tell_one(text: &str, place: Range<usize>, message: &str, problems: &mut Probl
         && ["invalid boolean", "invalid float", "string values"]
             .iter()
             .any(|start| message.starts_with(start));
-    if bare_word {
+    if bare_word || message.starts_with("string values must be quoted") {
         let word = text.get(place.clone()).unwrap_or_default();
-        match word.to_lowercase().as_str() {
-            switch @ ("true" | "false") => {
-                let cure = format!("write {switch}");
-                problems.not_toml("not a word of TOML", Some(cure), place.clone());
+        let rule = "not a value: texts stand in quotes, numbers and true or false do not";
+        let cure = match word.to_lowercase().as_str() {
+            switch @ ("true" | "false") => Some(format!("write {switch}")),
+            "nan" | "inf" | "infinity" | "none" | "null" | "on" | "off" | "yes" | "no" => None,
+            word if !word
+                .chars()
+                .all(|c| c.is_alphanumeric() || "-_".contains(c)) =>
+            {
+                None
             }
-            "nan" | "inf" | "infinity" => {
-                problems.not_toml("must be a finite number", None, place.clone());
-            }
-            _ => {
-                let cure = format!("write \"{word}\"");
-                problems.not_toml("a word must stand in quotes", Some(cure), place.clone());
-            }
-        }
+            _ if !bare_word => None,
+            _ => Some(format!("write \"{word}\" if it is a text")),
+        };
+        problems.not_toml(rule, cure, place);
     } else if first == Some(',') && is_digit(before.chars().next_back()) && is_digit(there.next()) {
         let cure = "write the number with a point";
         problems.not_toml(message, Some(cure.into()), place);
     } else {
         problems.not_toml(message, None, place);
     }
-}
-
-/// If a place lies in the line of a header, where its table ends: before the next header.
-fn end_of_table(text: &str, place: usize) -> Option<usize> {
-    let start = text.get(..place)?.rfind('\n').map_or(0, |at| at + 1);
-    let mut lines = text[start..].split_inclusive('\n');
-    let is_header = |line: &&str| line.trim_start().starts_with('[');
-    let header = lines.next().filter(is_header)?;
-    let below: usize = lines
-        .take_while(|line| !is_header(line))
-        .map(str::len)
-        .sum();
-    Some((start + header.len() + below).saturating_sub(1))
 }
 
 /// The places of all values that are written in one piece, unlike tables with headers of their own.

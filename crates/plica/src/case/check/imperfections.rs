@@ -1,5 +1,6 @@
 //! The imperfections: of what, how large, and in harmonics that the run has.
 
+use super::super::keys::join;
 use super::super::problem::Problems;
 use super::super::spec::{self, Spec};
 use super::super::spelling::nearest;
@@ -15,6 +16,8 @@ use crate::tube::{
 
 /// Largest displacement, over the thickness of the wall.
 const LARGEST_DISPLACEMENT: f64 = 0.25;
+/// So many control points are a large mesh.
+const LARGE: usize = 1_000_000;
 /// Largest change of a muscle's activity.
 const LARGEST_CHANGE: f64 = 0.5;
 
@@ -65,7 +68,7 @@ fn part(
     let key = format!("{path}.of");
     if !matches!(written.of, spec::Part::ColonEnd | spec::Part::IleumEnd)
         && written.direction.is_some()
-        && problems.none_about(&[&key])
+        && problems.is_as_written(&key)
     {
         let rule = "only an imperfect end has a direction";
         let cure = Some("leave it out".into());
@@ -77,7 +80,7 @@ fn part(
         spec::Part::Geometry => Some(Part::Geometry),
         spec::Part::Muscle(name) => {
             let found = tube.muscles.iter().position(|muscle| muscle.name == *name);
-            if found.is_none() && problems.none_about(&[&format!("muscles.{name}")]) {
+            if found.is_none() && problems.none_about(&[&join("muscles", name)]) {
                 let names = || tube.muscles.iter().map(|muscle| muscle.name.as_str());
                 let cure = match nearest(name, names()) {
                     Some(near) => format!("did you mean \"{near}\"?"),
@@ -114,7 +117,11 @@ fn end(
             "hold it, with \"fixed\" in [ends]",
         )),
     };
-    if let Some((rule, cure)) = problem {
+    let direction = key.replace(".of", ".direction");
+    if let Some((rule, cure)) = problem
+        && problems.is_as_written(key)
+        && problems.is_as_written(&direction)
+    {
         problems.value(key, rule, Some(cure.into()));
     }
     Some(Part::End(end, push))
@@ -132,7 +139,10 @@ fn amplitude(
     let key = format!("{path}.amplitude");
     let of_key = format!("{path}.of");
     if matches!(of, Part::Muscle(_)) {
-        if written.amplitude.abs() > LARGEST_CHANGE && problems.none_about(&[&key, &of_key]) {
+        if written.amplitude.abs() > LARGEST_CHANGE
+            && problems.none_about(&[&key])
+            && problems.is_as_written(&of_key)
+        {
             let rule = format!(
                 "must be from -{LARGEST_CHANGE} to {LARGEST_CHANGE} (a fraction of the muscle's activity)"
             );
@@ -144,7 +154,8 @@ fn amplitude(
     let largest = LARGEST_DISPLACEMENT * tube.thickness;
     let amplitude = written.amplitude / diameter;
     if amplitude.abs() > largest
-        && problems.none_about(&[&key, &of_key, "tube.thickness", "tube.diameter"])
+        && problems.none_about(&[&key, "tube.thickness", "tube.diameter"])
+        && problems.is_as_written(&of_key)
     {
         let rule = format!(
             "must be at most a quarter of the wall's thickness, {}",
@@ -170,7 +181,7 @@ fn wave(
     let path = format!("{path}.shape.wave");
     check_harmonic(&format!("{path}.harmonic"), wave.harmonic, run, problems);
     let key = format!("{path}.axial");
-    if matches!(of, Part::End(..)) && wave.axial.is_some() && problems.none_about(&[&of_key]) {
+    if matches!(of, Part::End(..)) && wave.axial.is_some() && problems.is_as_written(&of_key) {
         nothing_along(&key, problems);
     }
     let axial = match wave.axial {
@@ -206,7 +217,7 @@ fn random(
     let harmonics = random.harmonics.unwrap_or(usual.min(told_apart));
     check_highest(&key, harmonics, run, problems);
     let end = matches!(of, Part::End(..));
-    if end && random.half_waves.is_some() && problems.none_about(&[&of_key]) {
+    if end && random.half_waves.is_some() && problems.is_as_written(&of_key) {
         nothing_along(&format!("{path}.half_waves"), problems);
     }
     let half_waves = random.half_waves.unwrap_or(usual);
@@ -238,12 +249,7 @@ fn mode(
     let Wanted::Mode(imperfection, file) = wanted else {
         return None;
     };
-    if !problems.none_about(&[&key, &format!("{path}.of")]) {
-        return None;
-    }
-    if of != Part::Geometry {
-        let rule = "only an imperfect geometry can have the shape of a mode";
-        problems.key(&key, rule, Some("write of = \"geometry\"".into()));
+    if !problems.is_as_written(&key) {
         return None;
     }
     let read = open(wanted).and_then(|state| Ok((state.mode()?, state)));
@@ -256,6 +262,13 @@ fn mode(
             return None;
         }
     };
+    if of != Part::Geometry {
+        if problems.is_as_written(&format!("{path}.of")) {
+            let rule = "only an imperfect geometry can have the shape of a mode";
+            problems.key(&key, rule, Some("write of = \"geometry\"".into()));
+        }
+        return None;
+    }
     let n = mode.harmonic;
     let about_others = ["symmetry", "tube.length", "tube.thickness", "tube.diameter"];
     if problems.none_about(&about_others) {
@@ -355,7 +368,13 @@ pub(super) fn check_wall(
     let Some(last) = tube.imperfections.iter().rposition(of_geometry) else {
         return;
     };
-    if !problems.none_about(&["imperfections", "tube", "mesh", "symmetry"]) {
+    // Elements are denser in the zones of the muscles.
+    if !problems.none_about(&["imperfections", "tube", "mesh", "symmetry", "muscles"]) {
+        return;
+    }
+    // On a large mesh it takes long: first what is told at once.
+    let large = mesh.axial * mesh.thickness * mesh.rings(symmetry) > LARGE;
+    if large && !problems.is_empty() {
         return;
     }
     if let Some(at) = folded(tube, mesh, symmetry) {
@@ -369,18 +388,16 @@ pub(super) fn check_wall(
 
 /// Whether the wall can take the targets of the stages where an imperfect muscle is strongest.
 pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
-    let about = [
-        "imperfections",
-        "muscles",
-        "stages",
-        "start",
-        "tube.length",
-        "tube.diameter",
-    ];
-    if !problems.none_about(&about) {
+    if !problems.none_about(&["imperfections", "start", "tube.length", "tube.diameter"]) {
         return;
     }
     for (m, muscle) in tube.muscles.iter().enumerate() {
+        let drives = (1..=stages.len()).map(|i| format!("stages[{i}].drive.{}", muscle.name));
+        let mut about: Vec<String> = drives.collect();
+        about.push(format!("muscles.{}", muscle.name));
+        if about.iter().any(|key| !problems.none_about(&[key])) {
+            continue;
+        }
         let own = |i: &&Imperfection| i.of == Part::Muscle(m);
         let strongest = 1.0
             + tube

@@ -1,5 +1,6 @@
 //! The muscles: their names, zones and profiles.
 
+use super::super::keys::join;
 use super::super::problem::Problems;
 use super::super::spec::{self, Spec};
 use super::stages::{ENDS, WALLS};
@@ -10,7 +11,7 @@ use crate::activation::{Direction, Muscle, Profile};
 pub(super) fn muscles(spec: &Spec, length: f64, problems: &mut Problems) -> Vec<Muscle> {
     let mut muscles: Vec<Muscle> = Vec::new();
     for (name, muscle) in &spec.muscles {
-        let path = format!("muscles.{name}");
+        let path = join("muscles", name);
         check_name(&path, name, problems);
         let key = format!("{path}.zone");
         let zone = zone(&key, spec, muscle.zone, length, problems);
@@ -19,21 +20,21 @@ pub(super) fn muscles(spec: &Spec, length: f64, problems: &mut Problems) -> Vec<
             spec::Direction::Circular => Direction::Circular,
             spec::Direction::Longitudinal => Direction::Longitudinal,
         };
+        // A zone outside the tube, or in one that is not known, may overlap another none the less.
+        let written = |name: &str| spec.muscles[name].zone.map(|z| z / spec.tube.diameter);
+        let clear = |path: &str, problems: &Problems| {
+            problems.is_as_written(&format!("{path}.direction"))
+                && problems.none_about(&[&format!("{path}.zone")])
+        };
+        let ([from, to], own) = (written(name), clear(&path, problems));
         let rival = muscles.iter().find(|other| {
-            other.direction == direction
-                && zone[0] < other.zone[1] - ROUNDING
-                && other.zone[0] < zone[1] - ROUNDING
+            let [its_from, its_to] = written(&other.name);
+            own && other.direction == direction
+                && from < its_to - ROUNDING
+                && its_from < to - ROUNDING
+                && clear(&join("muscles", &other.name), problems)
         });
-        if let Some(rival) = rival
-            && problems.none_about(&[
-                &key,
-                &format!("{path}.direction"),
-                &format!("muscles.{}.zone", rival.name),
-                &format!("muscles.{}.direction", rival.name),
-                "tube.length",
-                "tube.diameter",
-            ])
-        {
+        if let Some(rival) = rival {
             let rule = format!(
                 "overlaps the zone of {}, a muscle of the same direction",
                 rival.name

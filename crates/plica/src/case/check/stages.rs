@@ -1,5 +1,6 @@
 //! The stages: what they drive, and whether a tube can follow.
 
+use super::super::keys::join;
 use super::super::problem::Problems;
 use super::super::spec::{self, Drive, Spec};
 use super::super::spelling::nearest;
@@ -12,6 +13,8 @@ use crate::tube::{Load, Part, Push, Support, Tube};
 pub(super) const ENDS: [&str; 2] = ["colon", "ileum"];
 /// The names of the walls, in the order of the load.
 pub(super) const WALLS: [&str; 2] = ["inner-wall", "outer-wall"];
+/// So many names are told where one of them may be meant.
+const SOME: usize = 12;
 /// Largest pressure, in E.
 const LARGEST_PRESSURE: f64 = 10.0;
 /// Smallest stress-free stretch that a wall is asked to take.
@@ -33,11 +36,15 @@ pub(super) fn stages(
         let name = stage.name.clone();
         let name = name.unwrap_or_else(|| format!("stage-{}", i + 1));
         let key = format!("{path}.name");
-        if stages.iter().any(|other| other.name == name) && problems.none_about(&[&key]) {
+        let other = stages.iter().position(|other| other.name == name);
+        if let Some(other) = other
+            && problems.is_as_written(&key)
+            && problems.is_as_written(&format!("stages[{}].name", other + 1))
+        {
             problems.value(&key, "another stage has this name already", None);
         }
         for (target, drive) in &stage.drive {
-            let key = format!("{path}.drive.{target}");
+            let key = join(&format!("{path}.drive"), target);
             apply(&key, target, drive, spec, tube, &mut load, problems);
         }
         stages.push(Stage {
@@ -51,17 +58,30 @@ pub(super) fn stages(
 
 /// What must hold for all stages together.
 pub(super) fn check_whole(tube: &Tube, begin: &Load, stages: &[Stage], problems: &mut Problems) {
-    let about = ["stages", "muscles", "start", "tube.length", "tube.diameter"];
-    if !problems.none_about(&about) {
-        return;
-    }
-    if stages.iter().all(|stage| stage.load == *begin) {
+    let of_all = |what: &str| {
+        (1..=stages.len())
+            .map(|i| format!("stages[{i}].drive{what}"))
+            .collect()
+    };
+    let none_about = |keys: Vec<String>, problems: &Problems| {
+        keys.iter().all(|key| problems.none_about(&[key])) && problems.is_as_written("start")
+    };
+    let nothing = stages.iter().all(|stage| stage.load == *begin);
+    if nothing && problems.is_as_written("stages") && none_about(of_all(""), problems) {
         let cure = "write drive.NAME.diameter_ratio = 0.25 in a stage, NAME being a muscle's";
         problems.key(
             "stages",
             "nothing is driven in any stage to anything but where it begins",
             Some(cure.into()),
         );
+    }
+    let moved: Vec<String> = ENDS
+        .iter()
+        .flat_map(|end| -> Vec<String> { of_all(&format!(".{end}")) })
+        .chain(["tube.length", "tube.diameter"].map(String::from))
+        .collect();
+    if !none_about(moved, problems) {
+        return;
     }
     for (i, stage) in stages.iter().enumerate() {
         let [colon, ileum] = stage.load.ends;
@@ -131,22 +151,27 @@ fn apply(
     load: &mut Load,
     problems: &mut Problems,
 ) {
-    let muscle = format!("muscles.{name}");
+    let muscle = join("muscles", name);
     let Some(driven) = Driven::find(name, tube) else {
         if !problems.none_about(&[&muscle]) {
-            return;
+            return problems.replaced(path.to_owned());
         }
         let muscles = || tube.muscles.iter().map(|m| m.name.as_str());
         let names = || muscles().chain(ENDS).chain(WALLS);
         let cure = match nearest(name, names()) {
             Some(near) => format!("did you mean {near}?"),
             None => {
-                let names = names().collect::<Vec<_>>().join(", ");
-                format!("add [muscles.{name}], or drive {names}")
+                let some: Vec<&str> = names().take(SOME).collect();
+                let more = if names().count() > SOME { ", …" } else { "" };
+                format!("add [muscles.{name}], or drive {}{more}", some.join(", "))
             }
         };
         return problems.key(path, "there is no muscle of this name", Some(cure));
     };
+    if !matches!(driven, Driven::Muscle(..)) && spec.muscles.contains_key(name) {
+        // A muscle of a name that it cannot have.
+        return problems.replaced(path.to_owned());
+    }
     let targets = driven.targets();
     let written = [
         ("diameter_ratio", drive.diameter_ratio),
@@ -164,7 +189,8 @@ fn apply(
         let Some(value) = value else { continue };
         let key = format!("{path}.{target}");
         if !targets.contains(&target) {
-            if !problems.none_about(&[&format!("{muscle}.direction")]) {
+            if !problems.is_as_written(&format!("{muscle}.direction")) {
+                problems.replaced(key);
                 continue;
             }
             let rule = format!("not a target of {}", driven.words());
@@ -268,7 +294,7 @@ pub(super) fn check_stretch(
     tube: &Tube,
     problems: &mut Problems,
 ) {
-    let own = format!("muscles.{}", muscle.name);
+    let own = join("muscles", &muscle.name);
     if !problems.none_about(&[key, &own, "tube.length", "tube.diameter"]) {
         return;
     }
