@@ -32,10 +32,7 @@ pub(super) fn imperfections(
     let (mut imperfections, mut modes) = (vec![], vec![]);
     for (i, written) in spec.imperfections.iter().enumerate() {
         let path = format!("imperfections[{}]", i + 1);
-        // Shapes of a part that does not exist cannot be told.
-        let Some(of) = part(&path, written, tube, problems) else {
-            continue;
-        };
+        let (of, is_there) = part(&path, written, tube, problems);
         let amplitude = amplitude(&path, written, of, spec, tube, problems);
         let shape = match &written.shape {
             spec::Shape::Wave(written) => wave(&path, *written, of, spec, tube, run, problems),
@@ -49,22 +46,24 @@ pub(super) fn imperfections(
                 shape
             }
         };
-        imperfections.push(Imperfection {
-            of,
-            amplitude,
-            shape,
-        });
+        if is_there {
+            imperfections.push(Imperfection {
+                of,
+                amplitude,
+                shape,
+            });
+        }
     }
     (imperfections, modes)
 }
 
-/// What is imperfect, if it can be.
+/// What is imperfect, and whether the tube has it; if not, one of its kind.
 fn part(
     path: &str,
     written: &spec::Imperfection,
     tube: &Tube,
     problems: &mut Problems,
-) -> Option<Part> {
+) -> (Part, bool) {
     let key = format!("{path}.of");
     if !matches!(written.of, spec::Part::ColonEnd | spec::Part::IleumEnd)
         && written.direction.is_some()
@@ -75,9 +74,15 @@ fn part(
         problems.key(&format!("{path}.direction"), rule, cure);
     }
     match &written.of {
-        spec::Part::ColonEnd => end(&key, written, End::Colon, tube.ends[0], problems),
-        spec::Part::IleumEnd => end(&key, written, End::Ileum, tube.ends[1], problems),
-        spec::Part::Geometry => Some(Part::Geometry),
+        spec::Part::ColonEnd => {
+            let end = end(&key, written, End::Colon, tube.ends[0], problems);
+            (end, true)
+        }
+        spec::Part::IleumEnd => {
+            let end = end(&key, written, End::Ileum, tube.ends[1], problems);
+            (end, true)
+        }
+        spec::Part::Geometry => (Part::Geometry, true),
         spec::Part::Muscle(name) => {
             let found = tube.muscles.iter().position(|muscle| muscle.name == *name);
             if found.is_none() && problems.none_about(&[&join("muscles", name)]) {
@@ -89,7 +94,7 @@ fn part(
                 let rule = "there is no muscle of this name";
                 problems.value(&format!("{key}.muscle"), rule, Some(cure));
             }
-            found.map(Part::Muscle)
+            (Part::Muscle(found.unwrap_or_default()), found.is_some())
         }
     }
 }
@@ -101,7 +106,7 @@ fn end(
     end: End,
     support: Support,
     problems: &mut Problems,
-) -> Option<Part> {
+) -> Part {
     let push = match written.direction {
         Some(spec::Push::Axial) => Push::Axial,
         Some(spec::Push::Across) | None => Push::Across,
@@ -124,7 +129,7 @@ fn end(
     {
         problems.value(key, rule, Some(cure.into()));
     }
-    Some(Part::End(end, push))
+    Part::End(end, push)
 }
 
 /// The amplitude, in D if it is a length.

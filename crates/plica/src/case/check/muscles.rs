@@ -23,13 +23,15 @@ pub(super) fn muscles(spec: &Spec, length: f64, problems: &mut Problems) -> Vec<
         // A zone outside the tube, or in one that is not known, may overlap another none the less.
         let written = |name: &str| spec.muscles[name].zone.map(|z| z / spec.tube.diameter);
         let clear = |path: &str, problems: &Problems| {
-            problems.is_as_written(&format!("{path}.direction"))
-                && problems.none_about(&[&format!("{path}.zone")])
+            let is_as_written = |what| problems.is_as_written(&format!("{path}.{what}"));
+            is_as_written("direction") && is_as_written("zone")
         };
         let ([from, to], own) = (written(name), clear(&path, problems));
         let rival = muscles.iter().find(|other| {
             let [its_from, its_to] = written(&other.name);
-            own && other.direction == direction
+            own && from < to
+                && its_from < its_to
+                && other.direction == direction
                 && from < its_to - ROUNDING
                 && its_from < to - ROUNDING
                 && clear(&join("muscles", &other.name), problems)
