@@ -13,8 +13,8 @@ pub(super) fn nearest<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) 
     let distance = |candidate: &str| {
         let candidate = plain(candidate);
         // Names may be long, and many.
-        let letters = candidate.chars().count();
-        if letters.abs_diff(written.chars().count()) > slips && !candidate.starts_with(&written) {
+        let longer = candidate.chars().count().abs_diff(letters) > slips;
+        if longer && !candidate.starts_with(&written) {
             return usize::MAX;
         }
         if candidate == written {
@@ -26,21 +26,15 @@ pub(super) fn nearest<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) 
         }
         strsim::damerau_levenshtein(&written, &candidate)
     };
-    let near = words
+    let near: Vec<(usize, &str)> = words
         .into_iter()
         .map(|candidate| (distance(candidate), candidate))
-        .filter(|&(d, _)| d <= slips);
-    let (nearest, near) = near.fold(
-        (None, 0),
-        |(best, count): (Option<(usize, &str)>, _), next| match best {
-            Some((least, _)) if least < next.0 => (best, count),
-            Some((least, _)) if least == next.0 => (best, count + 1),
-            _ => (Some(next), 1),
-        },
-    );
+        .filter(|&(d, _)| d <= slips)
+        .collect();
+    let &(least, nearest) = near.iter().min_by_key(|(d, _)| *d)?;
+    let as_near = near.iter().filter(|(d, _)| *d == least).count();
     // A few letters are as near to one unit as to another.
-    let plain = |&(d, _): &(usize, &str)| d == 0 || letters > 3 || near == 1;
-    nearest.filter(plain).map(|(_, candidate)| candidate)
+    (least == 0 || letters > 3 || as_near == 1).then_some(nearest)
 }
 
 #[cfg(test)]
@@ -56,5 +50,16 @@ mod tests {
         assert_eq!(nearest("poisson-ratio", words), Some("poisson_ratio"));
         assert_eq!(nearest("colour", words), None);
         assert_eq!(nearest("", words), None);
+    }
+
+    #[test]
+    fn units_are_not_guessed_from_a_letter() {
+        let (lengths, stresses) = (["m", "cm", "mm", "um"], ["Pa", "kPa", "MPa"]);
+        assert_eq!(nearest("MM", lengths), Some("mm"));
+        assert_eq!(nearest("µm", lengths), Some("um"));
+        assert_eq!(nearest("nm", lengths), None);
+        assert_eq!(nearest("kpa", stresses), Some("kPa"));
+        assert_eq!(nearest("mpa", stresses), Some("MPa"));
+        assert_eq!(nearest("GPa", stresses), None);
     }
 }

@@ -30,6 +30,8 @@ pub enum Field {
 
 /// Energy densities below this, in E, are what rounding leaves of a wall without stress.
 const NOTHING: f64 = 1e-12;
+/// Stresses, in E, and displacements, in D, below this are the same.
+const ROUNDING: f64 = 1e-12;
 
 impl Field {
     /// All of them.
@@ -82,8 +84,8 @@ impl Field {
         match self {
             Self::EnergyDensity if sample.energy_density < NOTHING => 0.0,
             Self::EnergyDensity => sample.energy_density,
-            Self::VonMises => sample.von_mises(),
-            Self::Pressure => -(s[0][0] + s[1][1] + s[2][2]) / 3.0,
+            Self::VonMises => above_rounding(sample.von_mises()),
+            Self::Pressure => above_rounding(-(s[0][0] + s[1][1] + s[2][2]) / 3.0),
             Self::VolumeChange => sample.jacobian,
             Self::LargestStretch => sample.stretches()[0].0,
             Self::SmallestStretch => sample.stretches()[2].0,
@@ -91,7 +93,7 @@ impl Field {
             Self::GrownAround => sample.grown[1],
             Self::Displacement => {
                 let moved = [0, 1, 2].map(|i| sample.position[i] - sample.reference[i]);
-                moved.iter().map(|x| x * x).sum::<f64>().sqrt()
+                above_rounding(moved.iter().map(|x| x * x).sum::<f64>().sqrt())
             }
         }
     }
@@ -127,4 +129,9 @@ impl Field {
             }
         }
     }
+}
+
+/// A number, or zero where it is what rounding leaves of a wall at rest.
+fn above_rounding(x: f64) -> f64 {
+    if x.abs() < ROUNDING { 0.0 } else { x }
 }

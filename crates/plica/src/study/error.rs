@@ -24,7 +24,7 @@ pub enum StudyError {
         source: SavedStateError,
     },
     /// The directory holds a run already.
-    #[error("{} holds a run already; give another directory with --out, or --overwrite it", .0.display())]
+    #[error("{} holds a run already; go on with it by --resume, give another directory with --out, or --overwrite it", .0.display())]
     Occupied(PathBuf),
     /// Another process is at work in the directory.
     #[error(
@@ -70,6 +70,9 @@ pub enum StudyError {
         .0.display()
     )]
     NotARun(PathBuf),
+    /// It is no directory.
+    #[error("{} is not a directory; give that of a run, runs/NAME or what --out said", .0.display())]
+    NoDirectory(PathBuf),
     /// The directory holds no run.
     #[error("{} holds no run of plica (no manifest.json that says so)", .0.display())]
     NoRun(PathBuf),

@@ -152,6 +152,9 @@ impl RunDirectory {
                 source,
             })
         };
+        if path.exists() && !path.is_dir() {
+            return Err(StudyError::NoDirectory(path.to_owned()));
+        }
         fs::read_dir(path).map_err(|source| StudyError::File {
             path: path.to_owned(),
             source,
