@@ -323,7 +323,7 @@ fn leaf(key: &Key, path: &str, value: &DeValue) -> Result<(), Wrong> {
         }
         (Kind::Word(words), DeValue::String(word)) => {
             if !words.contains(&word.as_ref()) {
-                return Err(Wrong::new(one_of(words), word_meant(key, words, word)));
+                return Err(Wrong::new(one_of(key, words), word_meant(key, words, word)));
             }
         }
         (Kind::Zone, DeValue::Array(ends)) if ends.len() == 2 => {
@@ -364,17 +364,11 @@ fn wrong_type(key: &Key, path: &str, value: &DeValue) -> Wrong {
         Kind::Switch => "must be true or false".to_owned(),
         Kind::Count => "must be a whole number".to_owned(),
         Kind::Number => "must be a number".to_owned(),
-        Kind::Word(words) => one_of(words),
+        Kind::Word(words) => one_of(key, words),
         Kind::Zone => "must be [from, to], two numbers".to_owned(),
         Kind::Points => "must be a list of points [x, s]".to_owned(),
         Kind::Tables => "must be a list of tables".to_owned(),
-        Kind::Choice => {
-            let choices: Vec<String> = children(key.path)
-                .iter()
-                .map(|name| format!("{{ {name} = ... }}"))
-                .collect();
-            format!("must be one of {}", choices.join(", "))
-        }
+        Kind::Choice => one_of(key, &[]),
     };
     let quoted = match (key.kind, value) {
         (Kind::Number | Kind::Count, DeValue::String(text)) => {
@@ -418,9 +412,12 @@ fn number(value: &DeValue) -> Option<f64> {
     }
 }
 
-fn one_of(words: &[&str]) -> String {
-    let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
-    format!("must be one of {}", quoted.join(", "))
+fn one_of(key: &Key, words: &[&str]) -> String {
+    let words = words.iter().map(|word| format!("\"{word}\""));
+    let choices = children(key.path).into_iter();
+    let choices = choices.map(|name| format!("{{ {name} = ... }}"));
+    let all: Vec<String> = words.chain(choices).collect();
+    format!("must be one of {}", all.join(", "))
 }
 
 fn word_meant(key: &Key, words: &[&str], word: &str) -> Option<String> {

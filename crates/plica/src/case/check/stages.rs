@@ -93,7 +93,10 @@ pub(super) fn check_whole(tube: &Tube, begin: &Load, stages: &[Stage], problems:
             );
             let (low, high) = (ENDS_APART.start(), ENDS_APART.end());
             let cure = format!("stay between {low} and {high}");
-            problems.key(&format!("stages[{}].drive", i + 1), rule, Some(cure));
+            let before = i.checked_sub(1).map_or(begin, |j| &stages[j].load);
+            let end = usize::from(ileum.displacement != before.ends[1].displacement);
+            let key = format!("stages[{}].drive.{}.displacement", i + 1, ENDS[end]);
+            problems.value(&key, rule, Some(cure));
             return;
         }
     }

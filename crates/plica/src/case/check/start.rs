@@ -99,7 +99,11 @@ fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Option<Load
                     "is under a {kind} muscle {name} driven to {ratio}, and this case has none of \
                      that name and direction"
                 );
-                problems.value(KEY, rule, Some(format!("add [muscles.{name}]")));
+                let cure = match tube.muscles.iter().any(|m| m.name == *name) {
+                    true => format!("write direction = \"{kind}\" in [muscles.{name}]"),
+                    false => format!("add [muscles.{name}]"),
+                };
+                problems.value(KEY, rule, Some(cure));
             }
         }
         if let Some(m) = tube.muscles.iter().position(|m| same(&m)) {
