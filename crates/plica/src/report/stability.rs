@@ -11,6 +11,8 @@ use crate::tube::Tube;
 use std::cell::RefCell;
 use std::collections::HashMap;
 
+/// So many states are marked one by one.
+const FEW: usize = 25;
 /// Width of every picture, in pixels.
 const WIDTH: usize = 1800;
 /// Printed width of the charts and of the page, in points.
@@ -100,6 +102,8 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
         }
         curves.push(Curve {
             label: name(n),
+            // Between few states a line says less than they do.
+            dots: points.len() <= FEW,
             points,
             colour: n + 1,
             ..Curve::default()
