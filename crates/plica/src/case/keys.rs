@@ -161,9 +161,9 @@ pub(super) fn children(path: &str) -> Vec<&'static str> {
     names
 }
 
-/// The path of a key below another. A name that is not one of letters stands in quotes, as in the text.
+/// The path of a key below another. A name stands in quotes where it must in TOML.
 pub(super) fn join(path: &str, name: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_<>".contains(c);
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_<>".contains(c);
     let name = match !name.is_empty() && name.chars().all(plain) {
         true => Cow::from(name),
         false => Cow::from(format!("\"{name}\"")),

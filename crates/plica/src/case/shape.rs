@@ -37,14 +37,15 @@ impl Walk<'_> {
         let written = table.len();
         // The keys that are there, if perhaps misspelt; and what cannot stay.
         let (mut there, mut unsound) = (vec![], vec![]);
-        // Whether what is no key is a table, where nobody knows what was meant.
-        let mut unknown = vec![];
+        // Whether a name was told already; whether what nobody knows is a table.
+        let (mut told, mut unknown) = (false, vec![]);
         for (key, value) in table.iter_mut() {
             let name = key.get_ref().as_ref();
             if self.unreadable.touches(&key.span()) || self.unreadable.touches(&value.span()) {
                 self.problems.replaced(join(path, name));
                 there.push(name.to_owned());
                 unsound.push(name.to_owned());
+                told = true;
                 continue;
             }
             let below = if name != "<name>" && names.contains(&name) {
@@ -53,13 +54,23 @@ impl Walk<'_> {
                 "<name>"
             } else {
                 unsound.push(name.to_owned());
+                told = true;
                 match self.stranger(name, pattern, path, &names) {
-                    Some(meant) => {
+                    Meant::Here(near) => {
                         // What it holds is looked at as if it was spelt right.
-                        self.value(&join(pattern, &meant), &join(path, name), value);
-                        there.push(meant);
+                        self.value(&join(pattern, near), &join(path, name), value);
+                        there.push(near.to_owned());
                     }
-                    None => unknown.push(matches!(
+                    Meant::Elsewhere(owners) => {
+                        let below =
+                            |owner: &&String| !pattern.is_empty() && owner.starts_with(pattern);
+                        let only = owners.first().filter(|_| owners.len() == 1);
+                        if let Some(owner) = owners.iter().find(below).or(only) {
+                            self.value(&join(owner, name), &join(path, name), value);
+                        }
+                        there.extend(self.belongs(name, pattern, path, &owners));
+                    }
+                    Meant::Unknown => unknown.push(matches!(
                         value.get_ref(),
                         DeValue::Table(_) | DeValue::Array(_)
                     )),
@@ -81,9 +92,11 @@ impl Walk<'_> {
         }
         if chooses(pattern) {
             // What is no choice at all has been told.
-            let told = !unknown.is_empty() || !self.unreadable.is_empty();
             if written != 1 && !told {
-                let rule = format!("must be exactly one of {}", names.join(", "));
+                let rule = match key(pattern) {
+                    Some(key) => one_of(key),
+                    None => format!("must be exactly one of {}", names.join(", ")),
+                };
                 self.problems.key(path, rule, None);
             }
             return written == 1 && table.len() == 1;
@@ -108,49 +121,47 @@ impl Walk<'_> {
         true
     }
 
-    /// A name that is no key of a table; the key of that table that was meant, if there is one.
-    fn stranger(
+    /// A name that is no key of a table, and what was meant by it.
+    fn stranger(&mut self, name: &str, pattern: &str, path: &str, names: &[&'static str]) -> Meant {
+        let (cure, meant) = meant(name, pattern, names);
+        let rule = "not a key of a case";
+        self.problems.key(&join(path, name), rule, cure);
+        if let Meant::Here(near) = meant {
+            self.problems.replaced(join(path, near));
+        }
+        meant
+    }
+
+    /// What a name stands for that belongs to other tables: if one of them is below this table, the key that leads there, which is then
+    /// not missing (`wave` for `shape.wave`).
+    fn belongs(
         &mut self,
         name: &str,
         pattern: &str,
         path: &str,
-        names: &[&'static str],
+        owners: &[String],
     ) -> Option<String> {
-        let (cure, meant) = meant(name, pattern, names);
-        let rule = "not a key of a case";
-        self.problems.key(&join(path, name), rule, cure);
-        match meant {
-            Meant::Here(near) => {
-                self.problems.replaced(join(path, near));
-                return Some(near.to_owned());
-            }
-            Meant::Elsewhere(owners) => {
-                // `wave` for `shape.wave`: then `shape` is not missing.
-                let below = |owner: &String| {
-                    let rest = owner
-                        .strip_prefix(pattern)?
-                        .trim_start_matches(['.', '[', ']']);
-                    let first = rest.split(['.', '[']).next()?;
-                    names.contains(&first).then(|| first.to_owned())
-                };
-                let own = owners
-                    .iter()
-                    .find_map(below)
-                    .filter(|_| !pattern.is_empty());
-                if own.is_some() {
-                    self.problems.replaced(path.to_owned());
-                    return own;
-                }
-                for owner in owners {
-                    // Of which member, or name, nobody knows.
-                    let table = owner.split(['<', '[']).next().unwrap_or_default();
-                    self.problems.replaced(match table == owner {
-                        true => join(&owner, name),
-                        false => table.trim_end_matches('.').to_owned(),
-                    });
-                }
-            }
-            Meant::Unknown => {}
+        let names = children(pattern);
+        let below = |owner: &String| {
+            let rest = owner.strip_prefix(pattern)?;
+            let first = rest
+                .trim_start_matches(['.', '[', ']'])
+                .split(['.', '['])
+                .next()?;
+            names.contains(&first).then(|| first.to_owned())
+        };
+        let own = owners.iter().find_map(below);
+        if let Some(own) = own.filter(|_| !pattern.is_empty()) {
+            self.problems.replaced(path.to_owned());
+            return Some(own);
+        }
+        for owner in owners {
+            // Of which member, or name, nobody knows.
+            let table = owner.split(['<', '[']).next().unwrap_or_default();
+            self.problems.replaced(match table == owner {
+                true => join(owner, name),
+                false => table.trim_end_matches('.').to_owned(),
+            });
         }
         None
     }
@@ -196,11 +207,26 @@ impl Walk<'_> {
                 Some(Key {
                     kind: Kind::Tables, ..
                 }),
-            ) if !self.unreadable.is_empty() => {
+            ) if self.unreadable.headers_lost => {
                 return false;
             }
             (value, Some(key)) => leaf(key, path, value),
-            (_, None) => Err(Wrong::new("must be a table", Some(as_table(pattern, path)))),
+            (_, None) if pattern == "muscles.<name>" && is_below(pattern, path) => {
+                if self.problems.is_as_written("muscles") {
+                    let cure = "write [muscles.NAME]";
+                    self.problems
+                        .key("muscles", "a muscle needs a name", Some(cure.into()));
+                    self.problems.replaced("muscles".to_owned());
+                }
+                return false;
+            }
+            (value, None) => {
+                let many = matches!(value, DeValue::Array(_));
+                Err(Wrong::new(
+                    "must be a table",
+                    Some(as_table(pattern, path, many)),
+                ))
+            }
         };
         if let Err(Wrong { rule, cure }) = wrong {
             self.problems.value(path, rule, cure);
@@ -210,21 +236,30 @@ impl Walk<'_> {
     }
 }
 
-/// How a table is written.
-fn as_table(pattern: &str, path: &str) -> String {
+/// Whether the last name of a path is a key of a table, and not of the one around it.
+fn is_below(pattern: &str, path: &str) -> bool {
+    let name = path.rsplit('.').next().unwrap_or(path);
+    children(pattern).contains(&name)
+}
+
+/// How a table is written, in the place of a value or of `many` tables.
+fn as_table(pattern: &str, path: &str, many: bool) -> String {
     let below = children(pattern);
     let name = path.rsplit('.').next().unwrap_or(path);
+    // A member of a list has no header of its own.
+    let header = !path.contains('[');
     match below[..] {
-        // A muscle without a name.
-        _ if pattern == "muscles.<name>" && below.contains(&name) => {
-            "write [muscles.NAME], with a name for it".to_owned()
+        _ if many && header => format!("write [{path}]"),
+        _ if pattern.ends_with(".<name>") && below.contains(&name) => {
+            format!("write NAME.{name}, with the name of what it is for")
         }
-        ["<name>"] => format!("write [{path}.NAME], with a name for it"),
+        ["<name>"] if header => format!("write [{path}.NAME]"),
+        ["<name>"] => format!("write {name}.NAME = {{ ... }}"),
         [only, ..] if key(&join(pattern, only)).is_some() && !pattern.is_empty() => {
             format!("write {name} = {{ {only} = ... }}, say")
         }
-        [only] => format!("write [{path}.{only}]"),
-        _ => format!("write [{path}]"),
+        [only] if header => format!("write [{path}.{only}]"),
+        _ => format!("write {name} = {{ ... }}"),
     }
 }
 
@@ -315,15 +350,15 @@ fn leaf(key: &Key, path: &str, value: &DeValue) -> Result<(), Wrong> {
             let x = number(value).unwrap_or_default();
             if !x.is_finite() {
                 return Err(Wrong::new("must be a finite number", try_default(key)));
-            } else if let Some(wrong) = too_long(value) {
-                return Err(wrong);
             } else if let Some(rule) = key.range.broken_by(x) {
                 return Err(Wrong::new(rule, try_default(key)));
+            } else if let Some(wrong) = too_long(value) {
+                return Err(wrong);
             }
         }
         (Kind::Word(words), DeValue::String(word)) => {
             if !words.contains(&word.as_ref()) {
-                return Err(Wrong::new(one_of(key, words), word_meant(key, words, word)));
+                return Err(Wrong::new(one_of(key), word_meant(key, words, word)));
             }
         }
         (Kind::Zone, DeValue::Array(ends)) if ends.len() == 2 => {
@@ -364,16 +399,20 @@ fn wrong_type(key: &Key, path: &str, value: &DeValue) -> Wrong {
         Kind::Switch => "must be true or false".to_owned(),
         Kind::Count => "must be a whole number".to_owned(),
         Kind::Number => "must be a number".to_owned(),
-        Kind::Word(words) => one_of(key, words),
+        Kind::Word(_) => one_of(key),
         Kind::Zone => "must be [from, to], two numbers".to_owned(),
         Kind::Points => "must be a list of points [x, s]".to_owned(),
         Kind::Tables => "must be a list of tables".to_owned(),
-        Kind::Choice => one_of(key, &[]),
+        Kind::Choice => one_of(key),
     };
     let quoted = match (key.kind, value) {
         (Kind::Number | Kind::Count, DeValue::String(text)) => {
-            let number = text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
-            number.map(|x| format!("write {x}, without quotes"))
+            let text = text.trim();
+            let whole = |x: &f64| key.kind == Kind::Number || x.fract() == 0.0;
+            let number = text.parse().ok().filter(|x: &f64| x.is_finite());
+            number
+                .filter(whole)
+                .map(|_| format!("write {text}, without quotes"))
         }
         (Kind::Count, DeValue::Float(_)) => number(value)
             .filter(|x| x.fract() == 0.0 && x.abs() < 1e9)
@@ -394,7 +433,11 @@ fn too_long(value: &DeValue) -> Option<Wrong> {
         return None;
     };
     let rule = "has too many digits for a whole number";
-    let wrong = || Wrong::new(rule, Some("write it with a point".into()));
+    let cure = match n.radix() {
+        10 => "write it with a point",
+        _ => "write it in decimal, with a point",
+    };
+    let wrong = || Wrong::new(rule, Some(cure.into()));
     i64::from_str_radix(n.as_str(), n.radix())
         .is_err()
         .then(wrong)
@@ -412,7 +455,12 @@ fn number(value: &DeValue) -> Option<f64> {
     }
 }
 
-fn one_of(key: &Key, words: &[&str]) -> String {
+/// All that a key may be, words and tables that stand for a choice.
+fn one_of(key: &Key) -> String {
+    let words = match key.kind {
+        Kind::Word(words) => words,
+        _ => &[],
+    };
     let words = words.iter().map(|word| format!("\"{word}\""));
     let choices = children(key.path).into_iter();
     let choices = choices.map(|name| format!("{{ {name} = ... }}"));

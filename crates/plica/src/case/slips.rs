@@ -301,6 +301,52 @@ fn one_slip_of_toml_is_one_message() {
 }
 
 #[test]
+fn a_key_one_table_too_high_is_one_message() {
+    let material = "[material]\nyoungs_modulus = 50\npoisson_ratio = 0.4\n";
+    for (text, keys) in [
+        (
+            material,
+            &["material.youngs_modulus", "material.poisson_ratio"][..],
+        ),
+        ("[mesh]\naxial = 40\n", &["mesh.axial"]),
+        ("[mesh]\naxial = 'x'\n", &["mesh.axial", "mesh.axial"]),
+        ("[solver]\nramp = 4\n", &["solver.ramp"]),
+        (
+            "[muscles.a]\ndirection = 'circular'\nzone = [0.5, 1.0]\nedge = 0.2\n",
+            &["muscles.a.edge"],
+        ),
+        (
+            "[[imperfections]]\nof = 'geometry'\namplitude = 1e-3\nwave = { harmonic = 0 }\n",
+            &["imperfections[1].wave"],
+        ),
+        (
+            "[[imperfections]]\nof = 'geometry'\namplitude = 1e-3\nshape = { harmonic = 0 }\n",
+            &["imperfections[1].shape.harmonic"],
+        ),
+        (
+            "[muscles]\ndirection = 'circular'\nzone = [0.5, 1.0]\n",
+            &["muscles"],
+        ),
+    ] {
+        let text = format!("{text}[[stages]]\ndrive.ileum.displacement = 0.1\n");
+        let problems = read(&text, "case").unwrap_err().problems;
+        let told: Vec<&str> = problems.iter().map(|p| p.key.as_str()).collect();
+        assert_eq!(told, keys, "{text}");
+    }
+}
+
+#[test]
+fn what_is_there_twice_is_told_each_time() {
+    let text = "[tube]\nlength = 3.0\n[mesh]\ndegree = 3\ndegree = 2\n[[stages]]\ndrive.ileum.displacement = 0.1\n\
+        [tube]\nlength = 4.0\n[output]\npictures = true\npictures = false\n[mesh]\n";
+    let problems = read(text, "case").unwrap_err().problems;
+    let lines = problems
+        .iter()
+        .map(|p| text[..p.span.clone().unwrap().start].matches('\n').count() + 1);
+    assert_eq!(lines.collect::<Vec<_>>(), [5, 8, 12, 13], "{problems:?}");
+}
+
+#[test]
 fn slips_of_every_kind_are_told_together() {
     let text = "\
         [tube]\nlenght = 5.0\n\
@@ -370,8 +416,12 @@ fn bare_words_are_told_what_they_should_be() {
         ("True", Some("write true")),
         ("NaN", None),
         ("fals", Some("write \"fals\" if it is a text")),
+        ("3,500", None),
         ("3,5", Some("write the number with a point")),
         (": 3.0", Some("write = for the colon")),
+        (" : 3.0", Some("write = for the colon")),
+        (":3.0", Some("write = for the colon")),
+        (" in D = 3.0", Some("write length_in_D")),
         (" 3.0", Some("write = before the value")),
         ("3,", None),
     ] {

@@ -14,13 +14,11 @@ pub(super) struct Unreadable {
     places: Vec<Range<usize>>,
     /// Whether it is not known which keys they belong to, so that any key may be there or not.
     pub keys_lost: bool,
+    /// Whether a header is broken, so that what follows seems to be of other tables.
+    pub headers_lost: bool,
 }
 
 impl Unreadable {
-    pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
-    }
-
     /// Whether one of them lies in a place, or beside it.
     pub fn touches(&self, place: &Range<usize>) -> bool {
         let next = self.places.partition_point(|one| one.end < place.start);
@@ -37,29 +35,43 @@ impl Unreadable {
     }
 }
 
-/// The text as it is meant, byte for byte in its place, if a key and its value have no `=` between them or a colon: that is told, and
-/// the rest can be read.
+/// The text as it is meant, byte for byte in its place, if there is a colon in the place of `=`, or nothing before what is plainly a
+/// value: that is told, and the rest can be read.
 pub(super) fn mended(text: &str, errors: &[Error], problems: &mut Problems) -> Option<String> {
     let mut mended = text.as_bytes().to_vec();
-    let mut told = false;
+    let mut places = BTreeMap::new();
     for error in errors {
         let Some(place) = error.span() else { continue };
         let (Some(before), Some(there)) = (text.get(..place.start), text.get(place.start..)) else {
             continue;
         };
-        let is_value = !there.is_empty() && !there.starts_with(['\n', '\r', '#']);
-        if !error.message().starts_with("key with no value") || !is_value {
-            continue;
-        }
-        let key = before.trim_end_matches([' ', '\t']);
-        let (at, cure) = match key.strip_suffix(':') {
-            Some(key) => (key.len(), "write = for the colon"),
-            None if key.len() < before.len() => (place.start - 1, "write = before the value"),
-            None => continue,
+        let (key, message) = (before.trim_end_matches([' ', '\t']), error.message());
+        let no_value = message.starts_with("key with no value");
+        let colon = |there: &str| there.starts_with(':') && !there.starts_with(":=");
+        let plainly = |c: char| c.is_ascii_digit() || "+-.\"'[{".contains(c);
+        let is_value = || {
+            let line = there.lines().next().unwrap_or_default();
+            let word = line.trim_end();
+            (line.starts_with(plainly) && !line.starts_with("->")
+                || ["true", "false"].contains(&word))
+                && !line.trim_start_matches(['"', '\'']).contains('=')
         };
+        let (at, cure) =
+            if colon(there) && (no_value || message.starts_with("invalid unquoted key")) {
+                (place.start, "write = for the colon")
+            } else if no_value && key.ends_with(':') {
+                (key.len() - 1, "write = for the colon")
+            } else if no_value && key.len() < before.len() && is_value() {
+                (place.start - 1, "write = before the value")
+            } else {
+                continue;
+            };
         mended[at] = b'=';
+        places.entry(at).or_insert((place, cure));
+    }
+    let told = !places.is_empty();
+    for (place, cure) in places.into_values() {
         problems.not_toml("a key without =", Some(cure.into()), place);
-        told = true;
     }
     told.then(|| String::from_utf8(mended).ok()).flatten()
 }
@@ -90,7 +102,8 @@ pub(super) fn tell(
     let mut unreadable = Unreadable::default();
     // Of every value, or line, that has an error the one that is told.
     let mut told: BTreeMap<usize, (Range<usize>, &str)> = BTreeMap::new();
-    let mut broken_header = false;
+    // As far as what is said within a table is only a consequence of its header.
+    let mut hidden = 0;
     for (place, message) in errors {
         unreadable.add(lines.unusable(&place));
         let next = values.partition_point(|value| value.start <= place.start);
@@ -112,15 +125,18 @@ pub(super) fn tell(
         // A header that does not end takes the next one's place, which then seems to be there already.
         let twice = message == "duplicate key";
         let follows = twice || message.starts_with("cannot extend");
-        if !(broken_header && follows) {
-            let line = lines.start(place.start);
+        let (line, header) = (lines.start(place.start), lines.is_header(place.start));
+        let consequence = place.start < hidden || header && unreadable.headers_lost;
+        if !(follows && consequence) {
             told.entry(line).or_insert((place.clone(), message));
         }
-        let line = lines.start(place.start);
+        if header {
+            hidden = lines.unusable(&place).end;
+            unreadable.headers_lost |= !follows;
+        }
         let first = values.partition_point(|value| value.start < line);
         let of_line = values.get(first).map(|value| lines.start(value.start));
         unreadable.keys_lost |= !twice && of_line != Some(line);
-        broken_header |= lines.is_header(place.start);
     }
     // A value and the rest of its line are one mistake.
     let mut last = None;
@@ -212,6 +228,9 @@ fn tell_one(text: &str, place: Range<usize>, message: &str, problems: &mut Probl
             .any(|start| message.starts_with(start));
     if bare_word || message.starts_with("string values must be quoted") {
         let word = text.get(place.clone()).unwrap_or_default();
+        if word.is_empty() {
+            return problems.not_toml("a value is missing", None, place);
+        }
         let rule = "not a value: texts stand in quotes, numbers and true or false do not";
         let cure = match word.to_lowercase().as_str() {
             switch @ ("true" | "false") => Some(format!("write {switch}")),
@@ -226,12 +245,28 @@ fn tell_one(text: &str, place: Range<usize>, message: &str, problems: &mut Probl
             _ => Some(format!("write \"{word}\" if it is a text")),
         };
         problems.not_toml(rule, cure, place);
-    } else if first == Some(',') && is_digit(before.chars().next_back()) && is_digit(there.next()) {
+    } else if message.starts_with("key with no value") && blank_key(text, place.start).is_some() {
+        let cure = blank_key(text, place.start).map(|key| format!("write {key}"));
+        problems.not_toml("a key has no blanks", cure, place);
+    } else if first == Some(',')
+        && is_digit(before.chars().next_back())
+        && is_digit(there.clone().next())
+        && there.take_while(char::is_ascii_digit).count() != 3
+    {
         let cure = "write the number with a point";
         problems.not_toml(message, Some(cure.into()), place);
     } else {
         problems.not_toml(message, None, place);
     }
+}
+
+/// The key in a line that has blanks in it, without them.
+fn blank_key(text: &str, place: usize) -> Option<String> {
+    let start = text.get(..place)?.rfind('\n').map_or(0, |at| at + 1);
+    let (key, _) = text[start..].lines().next()?.split_once('=')?;
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_. \t".contains(c);
+    let words: Vec<&str> = key.split_whitespace().collect();
+    (key.chars().all(plain) && words.len() > 1).then(|| words.join("_"))
 }
 
 /// The places of all values that are written in one piece, unlike tables with headers of their own.

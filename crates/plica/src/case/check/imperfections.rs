@@ -89,7 +89,7 @@ fn part(
                 let names = || tube.muscles.iter().map(|muscle| muscle.name.as_str());
                 let cure = match nearest(name, names()) {
                     Some(near) => format!("did you mean \"{near}\"?"),
-                    None => format!("add [muscles.{name}]"),
+                    None => format!("add [{}]", join("muscles", name)),
                 };
                 let rule = "there is no muscle of this name";
                 problems.value(&format!("{key}.muscle"), rule, Some(cure));
@@ -397,12 +397,6 @@ pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Prob
         return;
     }
     for (m, muscle) in tube.muscles.iter().enumerate() {
-        let drives = (1..=stages.len()).map(|i| format!("stages[{i}].drive.{}", muscle.name));
-        let mut about: Vec<String> = drives.collect();
-        about.push(format!("muscles.{}", muscle.name));
-        if about.iter().any(|key| !problems.none_about(&[key])) {
-            continue;
-        }
         let own = |i: &&Imperfection| i.of == Part::Muscle(m);
         let strongest = 1.0
             + tube
@@ -411,12 +405,21 @@ pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Prob
                 .filter(own)
                 .map(|i| i.amplitude.abs())
                 .sum::<f64>();
+        if strongest == 1.0 {
+            continue;
+        }
+        let drives = (1..=stages.len()).map(|i| format!("stages[{i}].drive.{}", muscle.name));
+        let mut about: Vec<String> = drives.collect();
+        about.push(format!("muscles.{}", muscle.name));
+        if about.iter().any(|key| !problems.none_about(&[key])) {
+            continue;
+        }
         let smallest = stages
             .iter()
             .map(|stage| muscle.smallest_stretch(stage.load.muscles[m], tube.length))
             .fold(1.0, f64::min);
         let smallest = 1.0 - strongest * (1.0 - smallest);
-        if strongest > 1.0 && smallest < SMALLEST_STRETCH {
+        if smallest < SMALLEST_STRETCH {
             let last = tube
                 .imperfections
                 .iter()

@@ -20,33 +20,6 @@ pub(super) fn muscles(spec: &Spec, length: f64, problems: &mut Problems) -> Vec<
             spec::Direction::Circular => Direction::Circular,
             spec::Direction::Longitudinal => Direction::Longitudinal,
         };
-        // A zone outside the tube, or in one that is not known, may overlap another none the less.
-        let written = |name: &str| spec.muscles[name].zone.map(|z| z / spec.tube.diameter);
-        let clear = |path: &str, problems: &Problems| {
-            let is_as_written = |what| problems.is_as_written(&format!("{path}.{what}"));
-            is_as_written("direction") && is_as_written("zone")
-        };
-        let ([from, to], own) = (written(name), clear(&path, problems));
-        let rival = muscles.iter().find(|other| {
-            let [its_from, its_to] = written(&other.name);
-            own && from < to
-                && its_from < its_to
-                && other.direction == direction
-                && from < its_to - ROUNDING
-                && its_from < to - ROUNDING
-                && clear(&join("muscles", &other.name), problems)
-        });
-        if let Some(rival) = rival {
-            let rule = format!(
-                "overlaps the zone of {}, a muscle of the same direction",
-                rival.name
-            );
-            problems.value(
-                &key,
-                rule,
-                Some("let one end where the other begins".into()),
-            );
-        }
         muscles.push(Muscle {
             name: name.clone(),
             direction,
@@ -54,7 +27,41 @@ pub(super) fn muscles(spec: &Spec, length: f64, problems: &mut Problems) -> Vec<
             profile,
         });
     }
+    check_overlaps(spec, problems);
     muscles
+}
+
+/// Whether zones of muscles of one direction overlap. One outside the tube, or in one that is not known, may do so none the less.
+fn check_overlaps(spec: &Spec, problems: &mut Problems) {
+    let mut zones: [Vec<(f64, f64, usize, &str)>; 2] = Default::default();
+    for (i, (name, muscle)) in spec.muscles.iter().enumerate() {
+        let path = join("muscles", name);
+        let is_as_written = |what| problems.is_as_written(&format!("{path}.{what}"));
+        let [from, to] = muscle.zone.map(|z| z / spec.tube.diameter);
+        if from < to && is_as_written("direction") && is_as_written("zone") {
+            zones[muscle.direction as usize].push((from, to, i, name));
+        }
+    }
+    for mut zones in zones {
+        zones.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
+        // Of those before, the one that goes farthest.
+        let mut farthest: Option<(f64, f64, usize, &str)> = None;
+        for zone in zones {
+            if let Some(other) = farthest.filter(|other| zone.0 < other.1 - ROUNDING) {
+                let (first, second) = match other.2 < zone.2 {
+                    true => (other.3, zone.3),
+                    false => (zone.3, other.3),
+                };
+                let key = format!("{}.zone", join("muscles", second));
+                let rule = format!("overlaps the zone of {first}, a muscle of the same direction");
+                let cure = "let one end where the other begins";
+                problems.value(&key, rule, Some(cure.into()));
+            }
+            if farthest.is_none_or(|other| zone.1 > other.1) {
+                farthest = Some(zone);
+            }
+        }
+    }
 }
 
 fn check_name(path: &str, name: &str, problems: &mut Problems) {

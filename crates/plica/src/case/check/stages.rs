@@ -8,6 +8,7 @@ use super::tube::tidy;
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
 use crate::tube::{Load, Part, Push, Support, Tube};
+use std::collections::HashMap;
 
 /// The names of the ends, in the order of the load.
 pub(super) const ENDS: [&str; 2] = ["colon", "ileum"];
@@ -15,6 +16,8 @@ pub(super) const ENDS: [&str; 2] = ["colon", "ileum"];
 pub(super) const WALLS: [&str; 2] = ["inner-wall", "outer-wall"];
 /// So many names are told where one of them may be meant.
 const SOME: usize = 12;
+/// So many problems are many.
+const MANY: usize = 200;
 /// Largest pressure, in E.
 const LARGEST_PRESSURE: f64 = 10.0;
 /// Smallest stress-free stretch that a wall is asked to take.
@@ -31,13 +34,20 @@ pub(super) fn stages(
 ) -> Vec<Stage> {
     let mut stages: Vec<Stage> = Vec::new();
     let mut load = begin.clone();
+    let mut names: HashMap<String, usize> = HashMap::new();
+    let muscles: HashMap<&str, usize> = tube
+        .muscles
+        .iter()
+        .map(|m| m.name.as_str())
+        .zip(0..)
+        .collect();
     for (i, stage) in spec.stages.iter().enumerate() {
         let path = format!("stages[{}]", i + 1);
         let name = stage.name.clone();
         let name = name.unwrap_or_else(|| format!("stage-{}", i + 1));
         let key = format!("{path}.name");
-        let other = stages.iter().position(|other| other.name == name);
-        if let Some(other) = other
+        let other = *names.entry(name.clone()).or_insert(i);
+        if other < i
             && problems.is_as_written(&key)
             && problems.is_as_written(&format!("stages[{}].name", other + 1))
         {
@@ -45,7 +55,15 @@ pub(super) fn stages(
         }
         for (target, drive) in &stage.drive {
             let key = join(&format!("{path}.drive"), target);
-            apply(&key, target, drive, spec, tube, &mut load, problems);
+            let driven = Driven::find(target, tube, &muscles);
+            apply(
+                (&key, target, driven),
+                drive,
+                spec,
+                tube,
+                &mut load,
+                problems,
+            );
         }
         stages.push(Stage {
             name,
@@ -86,18 +104,19 @@ pub(super) fn check_whole(tube: &Tube, begin: &Load, stages: &[Stage], problems:
     for (i, stage) in stages.iter().enumerate() {
         let [colon, ileum] = stage.load.ends;
         let apart = 1.0 + (ileum.displacement - colon.displacement) / tube.length;
-        if !ENDS_APART.contains(&apart) {
+        let before = i.checked_sub(1).map_or(begin, |j| &stages[j].load);
+        let [was, will] = [before, &stage.load].map(|load| load.ends.map(|end| end.displacement));
+        if !ENDS_APART.contains(&apart) && (i == 0 || was != will) {
             let rule = format!(
                 "leaves the ends at {} times their distance at rest",
                 tidy(apart)
             );
             let (low, high) = (ENDS_APART.start(), ENDS_APART.end());
             let cure = format!("stay between {low} and {high}");
-            let before = i.checked_sub(1).map_or(begin, |j| &stages[j].load);
-            let end = usize::from(ileum.displacement != before.ends[1].displacement);
+            let moved = [0, 1].map(|end| (will[end] - was[end]).abs());
+            let end = usize::from(moved[1] >= moved[0]);
             let key = format!("stages[{}].drive.{}.displacement", i + 1, ENDS[end]);
             problems.value(&key, rule, Some(cure));
-            return;
         }
     }
 }
@@ -114,14 +133,14 @@ enum Driven {
 }
 
 impl Driven {
-    fn find(name: &str, tube: &Tube) -> Option<Self> {
+    fn find(name: &str, tube: &Tube, muscles: &HashMap<&str, usize>) -> Option<Self> {
         if let Some(end) = ENDS.iter().position(|&end| end == name) {
             return Some(Self::End(end));
         }
         if let Some(wall) = WALLS.iter().position(|&wall| wall == name) {
             return Some(Self::Wall(wall));
         }
-        let m = tube.muscles.iter().position(|m| m.name == name)?;
+        let m = *muscles.get(name)?;
         Some(Self::Muscle(m, tube.muscles[m].direction))
     }
 
@@ -146,8 +165,7 @@ impl Driven {
 
 /// Puts what a stage says about one muscle or end into the load.
 fn apply(
-    path: &str,
-    name: &str,
+    (path, name, driven): (&str, &str, Option<Driven>),
     drive: &Drive,
     spec: &Spec,
     tube: &Tube,
@@ -155,18 +173,23 @@ fn apply(
     problems: &mut Problems,
 ) {
     let muscle = join("muscles", name);
-    let Some(driven) = Driven::find(name, tube) else {
+    let Some(driven) = driven else {
         if !problems.none_about(&[&muscle]) {
             return problems.replaced(path.to_owned());
         }
         let muscles = || tube.muscles.iter().map(|m| m.name.as_str());
         let names = || muscles().chain(ENDS).chain(WALLS);
-        let cure = match nearest(name, names()) {
+        // Nobody reads on among so many.
+        let near = match problems.len() < MANY {
+            true => nearest(name, names()),
+            false => None,
+        };
+        let cure = match near {
             Some(near) => format!("did you mean {near}?"),
             None => {
                 let some: Vec<&str> = names().take(SOME).collect();
                 let more = if names().count() > SOME { ", …" } else { "" };
-                format!("add [muscles.{name}], or drive {}{more}", some.join(", "))
+                format!("add [{muscle}], or drive {}{more}", some.join(", "))
             }
         };
         return problems.key(path, "there is no muscle of this name", Some(cure));

@@ -1,5 +1,6 @@
 //! The state that a case starts from, and the load it brings.
 
+use super::super::keys::join;
 use super::super::problem::Problems;
 use super::super::spec::Spec;
 use super::super::{Open, Wanted};
@@ -101,7 +102,7 @@ fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Option<Load
                 );
                 let cure = match tube.muscles.iter().any(|m| m.name == *name) {
                     true => format!("write direction = \"{kind}\" in [muscles.{name}]"),
-                    false => format!("add [muscles.{name}]"),
+                    false => format!("add [{}]", join("muscles", name)),
                 };
                 problems.value(KEY, rule, Some(cure));
             }
