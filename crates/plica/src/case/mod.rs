@@ -3,7 +3,8 @@
 //!
 //! A case passes four doors, each in its own file:
 //!
-//! 1. `toml` reads the text;
+//! 1. `toml` reads the text, as it is meant where that leaves no doubt (`mended`); what it cannot
+//!    read is told once each (`unreadable`);
 //! 2. `shape` holds every key, type and range against the table [`KEYS`], and has something sound stand
 //!    in for what is wrong, so that one mistake does not hide another;
 //! 3. `spec` is the case as written, in plain structs;
@@ -33,7 +34,11 @@ mod check;
 mod difference;
 mod edit;
 mod keys;
+mod leaf;
+mod lines;
 mod locate;
+mod meant;
+mod mended;
 mod problem;
 mod reference;
 mod schema;
@@ -101,7 +106,7 @@ pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
 pub fn read_with(text: &str, name: &str, open: &Open<'_>) -> Result<Plan, CaseError> {
     let mut problems = Problems::default();
     let (mut root, mut errors) = DeTable::parse_recoverable(text);
-    let mended = unreadable::mended(text, &errors, &mut problems);
+    let mended = mended::mended(text, &errors, &mut problems);
     if let Some(mended) = &mended {
         (root, errors) = DeTable::parse_recoverable(mended);
     }

@@ -1,6 +1,7 @@
 //! What of a text is not TOML: one mistake, one message.
 
 use super::keys::{Kind, key};
+use super::lines::Lines;
 use super::problem::Problems;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -33,47 +34,6 @@ impl Unreadable {
             _ => self.places.push(place),
         }
     }
-}
-
-/// The text as it is meant, byte for byte in its place, if there is a colon in the place of `=`, or nothing before what is plainly a
-/// value: that is told, and the rest can be read.
-pub(super) fn mended(text: &str, errors: &[Error], problems: &mut Problems) -> Option<String> {
-    let mut mended = text.as_bytes().to_vec();
-    let mut places = BTreeMap::new();
-    for error in errors {
-        let Some(place) = error.span() else { continue };
-        let (Some(before), Some(there)) = (text.get(..place.start), text.get(place.start..)) else {
-            continue;
-        };
-        let (key, message) = (before.trim_end_matches([' ', '\t']), error.message());
-        let no_value = message.starts_with("key with no value");
-        let colon = |there: &str| there.starts_with(':') && !there.starts_with(":=");
-        let plainly = |c: char| c.is_ascii_digit() || "+-.\"'[{".contains(c);
-        let is_value = || {
-            let line = there.lines().next().unwrap_or_default();
-            let word = line.trim_end();
-            (line.starts_with(plainly) && !line.starts_with("->")
-                || ["true", "false"].contains(&word))
-                && !line.trim_start_matches(['"', '\'']).contains('=')
-        };
-        let (at, cure) =
-            if colon(there) && (no_value || message.starts_with("invalid unquoted key")) {
-                (place.start, "write = for the colon")
-            } else if no_value && key.ends_with(':') {
-                (key.len() - 1, "write = for the colon")
-            } else if no_value && key.len() < before.len() && is_value() {
-                (place.start - 1, "write = before the value")
-            } else {
-                continue;
-            };
-        mended[at] = b'=';
-        places.entry(at).or_insert((place, cure));
-    }
-    let told = !places.is_empty();
-    for (place, cure) in places.into_values() {
-        problems.not_toml("a key without =", Some(cure.into()), place);
-    }
-    told.then(|| String::from_utf8(mended).ok()).flatten()
 }
 
 /// Tells what is not TOML, and returns the places of all that cannot be used.
@@ -148,65 +108,6 @@ pub(super) fn tell(
         last = Some(line);
     }
     unreadable
-}
-
-/// The lines of a text: where each begins, and whether it is the header of a table.
-struct Lines<'a> {
-    text: &'a str,
-    starts: Vec<usize>,
-    /// The lines that are headers, by their number.
-    headers: Vec<usize>,
-}
-
-impl<'a> Lines<'a> {
-    /// What begins like a header may be a line of a list.
-    fn of(text: &'a str, values: &[Range<usize>]) -> Self {
-        let breaks = text.match_indices('\n').map(|(at, _)| at + 1);
-        let starts: Vec<usize> = std::iter::once(0).chain(breaks).collect();
-        let within_value = |start: usize| {
-            let next = values.partition_point(|value| value.start < start);
-            let value = next.checked_sub(1).and_then(|k| values.get(k));
-            value.is_some_and(|value| start < value.end)
-        };
-        let is_header = |start: usize| {
-            let line = text[start..].trim_start_matches([' ', '\t']);
-            line.starts_with('[') && !within_value(start)
-        };
-        let headers = (0..starts.len()).filter(|&line| is_header(starts[line]));
-        Self {
-            text,
-            headers: headers.collect(),
-            starts,
-        }
-    }
-
-    fn number(&self, place: usize) -> usize {
-        self.starts.partition_point(|start| *start <= place) - 1
-    }
-
-    /// Where the line of a place begins.
-    fn start(&self, place: usize) -> usize {
-        self.starts[self.number(place)]
-    }
-
-    /// Whether a place lies in the header of a table.
-    fn is_header(&self, place: usize) -> bool {
-        self.headers.binary_search(&self.number(place)).is_ok()
-    }
-
-    /// What an error makes unusable: the lines it is in, and of a header all of its table.
-    fn unusable(&self, place: &Range<usize>) -> Range<usize> {
-        let (first, mut last) = (self.number(place.start), self.number(place.end));
-        if let Ok(header) = self.headers.binary_search(&first) {
-            let next = self.headers.get(header + 1);
-            last = last.max(next.map_or(self.starts.len(), |next| *next) - 1);
-        }
-        let end = self
-            .starts
-            .get(last + 1)
-            .map_or(self.text.len(), |next| next - 1);
-        self.starts[first]..end.max(place.end)
-    }
 }
 
 /// Tells one error, in words that a person who does not know TOML understands.
