@@ -1,5 +1,6 @@
 //! The lines of a text, and which of them are headers of tables.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// The lines of a text: where each begins, and whether it is the header of a table.
@@ -44,6 +45,41 @@ impl<'a> Lines<'a> {
     /// Whether a place lies in the header of a table.
     pub fn is_header(&self, place: usize) -> bool {
         self.headers.binary_search(&self.number(place)).is_ok()
+    }
+
+    /// The bytes of a place's line, its end aside.
+    pub fn of_place(&self, place: usize) -> Range<usize> {
+        let line = self.number(place);
+        let next = self.starts.get(line + 1);
+        self.starts[line]..next.map_or(self.text.len(), |next| next - 1)
+    }
+
+    /// The path of a key that stands in the line of a place.
+    pub fn path(&self, place: usize, key: &str) -> String {
+        let line = self.number(place);
+        let content = |line: usize| self.text[self.of_place(self.starts[line])].trim();
+        // Of a list of tables, the last member so far.
+        let mut lists: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut table = String::new();
+        for &header in self.headers.iter().take_while(|header| **header <= line) {
+            let name = content(header).trim_matches(['[', ']', ' ', '\t']);
+            if content(header).starts_with("[[") {
+                *lists.entry(name).or_default() += 1;
+            }
+            let (first, rest) = match name.split_once('.') {
+                Some((first, rest)) => (first, Some(rest)),
+                None => (name, None),
+            };
+            let member = |n: &usize| format!("{first}[{n}]");
+            table = lists.get(first).map_or(first.to_owned(), member);
+            if let Some(rest) = rest {
+                table = format!("{table}.{rest}");
+            }
+        }
+        match table.as_str() {
+            "" => key.to_owned(),
+            _ => format!("{table}.{key}"),
+        }
     }
 
     /// What an error makes unusable: the lines it is in, and of a header all of its table.

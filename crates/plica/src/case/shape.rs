@@ -106,7 +106,9 @@ impl Walk<'_> {
                 && let Given::Always(example) = key.given
                 && !table.contains_key(name)
             {
-                if !self.unreadable.keys_lost && !there.iter().any(|one| one == name) {
+                let replaced = !self.problems.is_as_written(&join(path, name));
+                let there = replaced || there.iter().any(|one| one == name);
+                if !self.unreadable.keys_lost && !there {
                     let cure = match key.kind {
                         Kind::Tables => format!("write [[{name}]]"),
                         _ => format!("write {name} = {example}, say"),

@@ -347,6 +347,38 @@ fn what_is_there_twice_is_told_each_time() {
 }
 
 #[test]
+fn slips_of_toml_hide_nothing_where_the_keys_are_known() {
+    for (text, told) in [
+        ("[ends]\ncolon = fre\nileum = 'fixd'\n", &[2, 3][..]),
+        ("ends = { colon = fre, ileum = fixd }\n", &[1, 1]),
+        ("[output]\npictures\nharmonics = 'x'\n", &[2, 3]),
+        ("[tube]\nlength\nthickness = 0.7\n", &[2, 3]),
+        ("[tube]\nlength = -3\n[tube]\nthickness = 'x'\n", &[2, 3, 4]),
+        ("[muscles.a]\ndirection\nzone = [2.0, 1.0]\n", &[2, 3]),
+        (
+            "[[imperfections]]\nof\namplitude = 'x'\nshape = { wave = { harmonic = 0 } }\n",
+            &[2, 3],
+        ),
+        (
+            "[mesh.control_points]\naxial = 2\naround = 12 34\n",
+            &[2, 3],
+        ),
+    ] {
+        let text = format!("{text}[[stages]]\ndrive.ileum.displacement = 0.1\nsteps = 0\n");
+        let problems = read(&text, "case").unwrap_err().problems;
+        let lines = problems
+            .iter()
+            .map(|p| text[..p.span.clone().unwrap().start].matches('\n').count() + 1);
+        let last = text.lines().count();
+        assert_eq!(
+            lines.collect::<Vec<_>>(),
+            [told, &[last]].concat(),
+            "{text}{problems:?}"
+        );
+    }
+}
+
+#[test]
 fn slips_of_every_kind_are_told_together() {
     let text = "\
         [tube]\nlenght = 5.0\n\

@@ -65,7 +65,16 @@ pub(super) fn tell(
     // As far as what is said within a table is only a consequence of its header.
     let mut hidden = 0;
     for (place, message) in errors {
-        unreadable.add(lines.unusable(&place));
+        let twice = message == "duplicate key";
+        let header = lines.is_header(place.start);
+        let is_list = || {
+            let name = text.get(place.clone()).unwrap_or_default();
+            key(name).is_some_and(|key| key.kind == Kind::Tables)
+        };
+        // Of a table that is there twice all can be read.
+        if !(twice && header) || is_list() {
+            unreadable.add(lines.unusable(&place));
+        }
         let next = values.partition_point(|value| value.start <= place.start);
         let within = |value: &&Range<usize>| place.end <= value.end;
         let value = next.checked_sub(1).and_then(|k| values.get(k));
@@ -76,16 +85,19 @@ pub(super) fn tell(
                 .any(|start| message.starts_with(start));
             unreadable.keys_lost |= is_endless || message.contains("multi-line");
             if opens && is_endless {
+                // What was found in it so far is what follows it in the text.
+                told.retain(|at, _| !value.contains(at));
                 told.insert(value.start, (value.start..value.start + 1, message));
+            } else if is_bare(message) {
+                told.insert(place.start, (place, message));
             } else {
                 told.entry(value.start).or_insert((place, message));
             }
             continue;
         }
         // A header that does not end takes the next one's place, which then seems to be there already.
-        let twice = message == "duplicate key";
         let follows = twice || message.starts_with("cannot extend");
-        let (line, header) = (lines.start(place.start), lines.is_header(place.start));
+        let line = lines.start(place.start);
         let consequence = place.start < hidden || header && unreadable.headers_lost;
         if !(follows && consequence) {
             told.entry(line).or_insert((place.clone(), message));
@@ -102,12 +114,19 @@ pub(super) fn tell(
     let mut last = None;
     for (place, message) in told.into_values() {
         let line = lines.start(place.start);
-        if last != Some(line) {
+        if last != Some(line) || is_bare(message) {
             tell_one(text, place, message, problems);
         }
         last = Some(line);
     }
     unreadable
+}
+
+/// Whether a word stands for a value, which leaves no doubt where the next one begins.
+fn is_bare(message: &str) -> bool {
+    ["invalid boolean", "invalid float", "string values"]
+        .iter()
+        .any(|start| message.starts_with(start))
 }
 
 /// Tells one error, in words that a person who does not know TOML understands.
@@ -123,10 +142,7 @@ fn tell_one(text: &str, place: Range<usize>, message: &str, problems: &mut Probl
     let is_digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
     let mut there = there.chars();
     let first = there.next();
-    let bare_word = first.is_some_and(char::is_alphabetic)
-        && ["invalid boolean", "invalid float", "string values"]
-            .iter()
-            .any(|start| message.starts_with(start));
+    let bare_word = first.is_some_and(char::is_alphabetic) && is_bare(message);
     if bare_word || message.starts_with("string values must be quoted") {
         let word = text.get(place.clone()).unwrap_or_default();
         if word.is_empty() {
@@ -146,9 +162,6 @@ fn tell_one(text: &str, place: Range<usize>, message: &str, problems: &mut Probl
             _ => Some(format!("write \"{word}\" if it is a text")),
         };
         problems.not_toml(rule, cure, place);
-    } else if message.starts_with("key with no value") && blank_key(text, place.start).is_some() {
-        let cure = blank_key(text, place.start).map(|key| format!("write {key}"));
-        problems.not_toml("a key has no blanks", cure, place);
     } else if first == Some(',')
         && is_digit(before.chars().next_back())
         && is_digit(there.clone().next())
@@ -159,15 +172,6 @@ fn tell_one(text: &str, place: Range<usize>, message: &str, problems: &mut Probl
     } else {
         problems.not_toml(message, None, place);
     }
-}
-
-/// The key in a line that has blanks in it, without them.
-fn blank_key(text: &str, place: usize) -> Option<String> {
-    let start = text.get(..place)?.rfind('\n').map_or(0, |at| at + 1);
-    let (key, _) = text[start..].lines().next()?.split_once('=')?;
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_. \t".contains(c);
-    let words: Vec<&str> = key.split_whitespace().collect();
-    (key.chars().all(plain) && words.len() > 1).then(|| words.join("_"))
 }
 
 /// The places of all values that are written in one piece, unlike tables with headers of their own.
