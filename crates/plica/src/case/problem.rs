@@ -65,6 +65,7 @@ pub(super) struct Problems {
     found: Vec<Problem>,
     /// The keys of those.
     keys: BTreeSet<String>,
+    /// Keys whose values are not used.
     replaced: BTreeSet<String>,
 }
 

@@ -38,9 +38,9 @@ impl Unreadable {
 
 /// Tells what is not TOML, and returns the places of all that cannot be used.
 ///
-/// The reader stumbles over what follows a mistake, too. Of the errors within one value one is told: that it does not end, where it
-/// begins, or else the first. Of the errors in one line outside of values the first is told. What follows a broken header would be
-/// read as another table's.
+/// The reader stumbles over what follows a mistake, too. Of a value that does not end, that alone is told, where it begins; of another
+/// every word that stands for a value, and of other errors the first. Of the errors in one line outside of values the first is told.
+/// What follows a broken header would be read as another table's.
 pub(super) fn tell(
     text: &str,
     root: &DeTable,
@@ -60,7 +60,7 @@ pub(super) fn tell(
         .collect();
     errors.sort_by_key(|(place, _)| place.start);
     let mut unreadable = Unreadable::default();
-    // Of every value, or line, that has an error the one that is told.
+    // What is told of every value, or line, that has errors, by its place.
     let mut told: BTreeMap<usize, (Range<usize>, &str)> = BTreeMap::new();
     // As far as what is said within a table is only a consequence of its header.
     let mut hidden = 0;
