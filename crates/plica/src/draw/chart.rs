@@ -2,10 +2,11 @@
 //!
 //! Curves are drawn in the order of their points, so a wall that folds over itself comes out as it is.
 
-use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen, Place};
+use super::canvas::{Anchor, Canvas, INK, Pen, Place};
 use super::colour::{line_colour, mix};
 use super::frame::Frame;
 use super::inset::Inset;
+use super::text::{CAPITAL, fitting};
 use super::ticks::{Ticks, power_of_ten};
 use super::{DrawError, Image};
 
@@ -90,7 +91,7 @@ pub struct Chart {
     pub width_pt: f64,
 }
 
-/// Pixels per point of what is drawn as lines: sizes of letters are whole numbers of them.
+/// Pixels per point of pictures in what is drawn as lines.
 const SVG_PIXELS: f64 = 5.0;
 
 impl Default for Chart {
@@ -140,12 +141,9 @@ impl Chart {
     }
 
     fn page(&self, width_px: usize) -> Result<Canvas, DrawError> {
-        // Any page measures a text; this one is thrown away.
-        let ruler = Canvas::new(self.width_pt, self.width_pt, width_px)?;
-        let legend = self.legend_rows(&ruler);
-        let names = self.rule_rows(&ruler)?;
+        let legend = self.legend_rows();
+        let names = self.rule_rows()?;
         let (frame, x, y) = self.frame(
-            &ruler,
             legend.len(),
             names.iter().map(|n| n.1 + 1).max().unwrap_or(0),
         )?;
@@ -153,7 +151,7 @@ impl Chart {
         let tail = if self.x_label.is_empty() { 20.0 } else { 35.0 };
         let mut canvas = Canvas::new(self.width_pt, frame.bottom() + tail, width_px)?;
         if !self.title.is_empty() {
-            let title = canvas.fitting(&self.title, TITLE, self.width_pt - frame.left - 4.0);
+            let title = fitting(&self.title, TITLE, self.width_pt - frame.left - 4.0);
             canvas.text((frame.left, 13.0), &title, TITLE, Anchor::Start, INK);
         }
         self.draw_legend(&mut canvas, &frame, &legend);
@@ -208,7 +206,8 @@ impl Chart {
         );
         let y_title = with_exponent(&self.y_label, y.exponent);
         if !y_title.is_empty() {
-            canvas.text_upward((9.0, frame.top + frame.height / 2.0), &y_title, TITLE)?;
+            let place = (9.0 + TITLE * CAPITAL / 2.0, frame.top + frame.height / 2.0);
+            canvas.text_upward(place, &y_title, TITLE);
         }
         Ok(())
     }

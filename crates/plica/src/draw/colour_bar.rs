@@ -1,9 +1,10 @@
 //! The colour bar of a cut-away: its ends, ticks and title.
 
 use super::DrawError;
-use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen};
+use super::canvas::{Anchor, Canvas, INK, Pen};
 use super::cutaway::{Cutaway, SIDE, TEXT, TITLE};
 use super::range::{INTERVALS, Spanned};
+use super::text::{CAPITAL, text_width};
 use super::ticks::{power_of_ten, short, ticks};
 
 impl Cutaway {
@@ -38,7 +39,7 @@ impl Cutaway {
             (true, true) => format!("{} to {}", told(scale.least), told(scale.largest)),
         };
         let (left, tip, height) = (SIDE + 8.0, 7.0, 8.0);
-        let room = end - left - tip - 4.0 - canvas.text_width(&note, TEXT);
+        let room = end - left - tip - 4.0 - text_width(&note, TEXT);
         let width = room.clamp(40.0, 240.0);
         let strip = 0.5;
         let count = (width / strip) as usize;

@@ -3,11 +3,12 @@
 //! The tubes lie with z to the right and the colon end left, seen from the front and a little above; x points up and y
 //! towards the viewer. All panels share scale, place along z and colours.
 
-use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen};
+use super::canvas::{Anchor, Canvas, INK, Pen};
 use super::colour::{Map, mix};
 use super::light::dot;
 use super::range::Range;
 use super::raster::{Surface, View, render};
+use super::text::{CAPITAL, fitting};
 use super::{DrawError, Image};
 
 pub(super) const TITLE: f64 = 9.0;
@@ -147,7 +148,7 @@ impl Cutaway {
         }
         let mut canvas = Canvas::new(self.width_pt, bottom + 44.0, width_px)?;
         if !self.title.is_empty() {
-            let title = canvas.fitting(&self.title, TITLE, self.width_pt - 2.0 * SIDE);
+            let title = fitting(&self.title, TITLE, self.width_pt - 2.0 * SIDE);
             canvas.text((SIDE, 13.0), &title, TITLE, Anchor::Start, INK);
         }
         let margin = 2.0; // points around a tube, for the line at its edge

@@ -1,8 +1,9 @@
 //! The frame of a chart: which part of the plane it shows, and where on the page.
 
 use super::DrawError;
-use super::canvas::{Canvas, Place};
+use super::canvas::Place;
 use super::chart::{Chart, ROW, TEXT};
+use super::text::text_width;
 use super::ticks::{Ticks, ticks};
 
 /// The least width of a frame, over that of the page: two ticks find room.
@@ -66,7 +67,6 @@ impl Chart {
     /// The frame below a legend of `legend` rows and `names` rows of names of rules, and the ticks of x and y.
     pub(super) fn frame(
         &self,
-        ruler: &Canvas,
         legend: usize,
         names: usize,
     ) -> Result<(Frame, Ticks, Ticks), DrawError> {
@@ -82,7 +82,7 @@ impl Chart {
         let widest = y_ticks
             .labels
             .iter()
-            .map(|t| ruler.text_width(t, TEXT))
+            .map(|t| text_width(t, TEXT))
             .fold(0.0, f64::max);
         let left = widest + if self.y_label.is_empty() { 12.0 } else { 24.0 };
         let mut width = (self.width_pt - left - 12.0).max(self.width_pt * 0.2);
@@ -162,8 +162,7 @@ mod tests {
             }],
             ..Chart::default()
         };
-        let ruler = Canvas::new(500.0, 500.0, 500).unwrap();
-        let (frame, ..) = chart.frame(&ruler, 0, 0).unwrap();
+        let (frame, ..) = chart.frame(0, 0).unwrap();
         let (x0, y0) = frame.place((0.0, 0.0));
         let (x1, y1) = frame.place((1.0, 1.0));
         assert!((x1 - x0 - (y0 - y1)).abs() < 1e-9);

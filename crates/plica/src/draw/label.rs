@@ -47,10 +47,10 @@ pub(super) fn pieces(text: &str) -> Vec<Piece> {
             '_' if letters.next_if_eq(&'{').is_some() => (run.italic, Level::Lower),
             '^' if letters.next_if_eq(&'{').is_some() => (run.italic, Level::Upper),
             '}' if run.level != Level::Line => (run.italic, Level::Line),
-            // kuva would read dollars as mathematics of its own
-            '$' => continue,
             _ => {
-                run.text.push(letter);
+                // A line is a line, and XML knows no others.
+                run.text
+                    .push(if letter.is_control() { ' ' } else { letter });
                 continue;
             }
         };

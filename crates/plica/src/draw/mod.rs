@@ -14,7 +14,9 @@
 //! | [`colour`] | two even maps for fields, Okabe and Ito's palette for lines |
 //! | `ticks` | round numbers for axes |
 //! | [`label`] | `*z*/*D*`, `*L*_{max}`, `10^{−3}`; the same as HTML and as plain text |
-//! | `canvas` | lines and texts on a page measured in points; the one file that names kuva |
+//! | `canvas` | a page measured in points, and the marks on it |
+//! | `text`, `letters` | a label set in runs; their glyphs, from the fonts that come along |
+//! | `paint`, `vector` | a page as pixels, and as SVG |
 //! | [`image`] | pixels, and PNG in and out |
 //! | `animation` | pictures that follow each other |
 //!
@@ -38,18 +40,20 @@ pub mod chart;
 pub mod colour;
 mod colour_bar;
 pub mod cutaway;
-mod dashes;
 mod frame;
 pub mod image;
-mod inked;
 pub mod inset;
 pub mod label;
+mod letters;
 mod light;
 mod notes;
+mod paint;
 mod range;
 pub mod raster;
 pub mod section;
+mod text;
 mod ticks;
+mod vector;
 
 pub use animation::{REST, animation};
 pub use chart::{Chart, Curve, Marker, Rule, Stroke};

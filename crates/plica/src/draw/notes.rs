@@ -1,15 +1,16 @@
 //! What is written around and into a chart: legend, names of rules, markers.
 
 use super::DrawError;
-use super::canvas::{Anchor, CAPITAL, Canvas, INK, Pen, Place};
+use super::canvas::{Anchor, Canvas, INK, Pen, Place};
 use super::chart::{Chart, Curve, ROW, Rule, TEXT, pen};
 use super::colour::line_colour;
 use super::frame::Frame;
 use super::label::pieces;
+use super::text::{CAPITAL, text_width};
 
 impl Chart {
     /// The named curves, in rows that fit the page, each with its distance from the row's start.
-    pub(super) fn legend_rows(&self, ruler: &Canvas) -> Vec<Vec<(&Curve, f64)>> {
+    pub(super) fn legend_rows(&self) -> Vec<Vec<(&Curve, f64)>> {
         let named: Vec<&Curve> = self
             .curves
             .iter()
@@ -18,7 +19,7 @@ impl Chart {
         let mut rows: Vec<Vec<(&Curve, f64)>> = Vec::new();
         let mut used = f64::INFINITY;
         for curve in named {
-            let width = 22.0 + ruler.text_width(&curve.label, TEXT) + 14.0;
+            let width = 22.0 + text_width(&curve.label, TEXT) + 14.0;
             if used + width > self.width_pt - 50.0 {
                 rows.push(Vec::new());
                 used = 0.0;
@@ -63,12 +64,12 @@ impl Chart {
     }
 
     /// For each rule in view its row above the frame, the lowest where its name meets no other.
-    pub(super) fn rule_rows(&self, ruler: &Canvas) -> Result<Vec<(&Rule, usize)>, DrawError> {
+    pub(super) fn rule_rows(&self) -> Result<Vec<(&Rule, usize)>, DrawError> {
         let (x, _) = self.ranges()?;
         let mut taken: Vec<(usize, f64, f64)> = Vec::new();
         let mut placed = Vec::new();
         for rule in self.rules.iter().filter(|r| (x.0..=x.1).contains(&r.at)) {
-            let half = ruler.text_width(&rule.label, TEXT) / 2.0 + 4.0;
+            let half = text_width(&rule.label, TEXT) / 2.0 + 4.0;
             let at = (rule.at - x.0) / (x.1 - x.0) * (self.width_pt - 60.0);
             let meets = |row: &usize| {
                 taken
@@ -122,7 +123,7 @@ impl Chart {
                 continue;
             }
             canvas.disc((x, y), 2.6, line_colour(marker.colour), 0.9);
-            let width = canvas.text_width(&marker.label, TEXT);
+            let width = text_width(&marker.label, TEXT);
             let height = TEXT * CAPITAL;
             // Left edge and baseline of the label: above, right, left, below, then the corners.
             let (near, right, before) = (x - width / 2.0, x + 6.0, x - 6.0 - width);
@@ -185,6 +186,6 @@ impl Chart {
 
 /// Where the name of a rule is centred, so that it stays on the page, and half its width.
 fn span(canvas: &Canvas, label: &str, across: f64) -> (f64, f64) {
-    let half = canvas.text_width(label, TEXT) / 2.0;
-    (across.min(canvas.width - half - 2.0).max(half + 2.0), half)
+    let half = text_width(label, TEXT) / 2.0;
+    (across.min(canvas.size.0 - half - 2.0).max(half + 2.0), half)
 }

@@ -1,0 +1,159 @@
+//! A page as pixels; the one file that names tiny-skia.
+
+use super::canvas::{Area, Canvas, Mark, Place, Rectangle};
+use super::letters::Edge;
+use super::{DrawError, Image};
+use tiny_skia::{
+    Color, FillRule, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash,
+    Transform,
+};
+
+impl Canvas {
+    /// The page as pixels.
+    pub fn finish(self) -> Result<Image, DrawError> {
+        let [width, height] = self.pixels.map(|side| side as u32);
+        let too_large = || DrawError::Backend(format!("no page of {width} x {height} pixels"));
+        let mut page = Pixmap::new(width, height).ok_or_else(too_large)?;
+        page.fill(Color::WHITE);
+        let zoom = self.pixels_per_point() as f32;
+        let on_page = Transform::from_scale(zoom, zoom);
+        let mut clip: Option<Mask> = None;
+        for mark in &self.marks {
+            match mark {
+                Mark::Line { places, pen } => {
+                    let stroke = Stroke {
+                        width: pen.width as f32,
+                        line_join: LineJoin::Round,
+                        dash: StrokeDash::new(vec![pen.dash.0 as f32, pen.dash.1 as f32], 0.0),
+                        ..Stroke::default()
+                    };
+                    if let Some(path) = joined(places, false) {
+                        page.stroke_path(&path, &ink(pen.colour), &stroke, on_page, clip.as_ref());
+                    }
+                }
+                Mark::Area { area, colour } => {
+                    let path = match area {
+                        Area::Disc {
+                            middle: (x, y),
+                            radius,
+                        } => PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32),
+                        Area::Rectangle(rectangle) => path_of(rectangle),
+                        Area::Polygon(corners) => joined(corners, true),
+                    };
+                    if let Some(path) = path {
+                        page.fill_path(
+                            &path,
+                            &ink(*colour),
+                            FillRule::Winding,
+                            on_page,
+                            clip.as_ref(),
+                        );
+                    }
+                }
+                Mark::Text {
+                    runs,
+                    start,
+                    upward,
+                    colour,
+                } => {
+                    let mut path = PathBuilder::new();
+                    for run in runs {
+                        let at = |[x, y]: [f64; 2]| {
+                            (
+                                (run.at.0 + x * run.size) as f32,
+                                (run.at.1 - y * run.size) as f32,
+                            )
+                        };
+                        trace(&mut path, &run.letters.edges(), at);
+                    }
+                    let (x, y) = (start.0 as f32, start.1 as f32);
+                    let turn = if *upward { -90.0 } else { 0.0 };
+                    let placed = on_page.pre_translate(x, y).pre_rotate(turn);
+                    if let Some(path) = path.finish() {
+                        page.fill_path(
+                            &path,
+                            &ink(*colour),
+                            FillRule::Winding,
+                            placed,
+                            clip.as_ref(),
+                        );
+                    }
+                }
+                Mark::Clip(within) => {
+                    clip = match within.as_ref().and_then(path_of) {
+                        Some(path) => {
+                            let mut mask = Mask::new(width, height).ok_or_else(too_large)?;
+                            mask.fill_path(&path, FillRule::Winding, true, on_page);
+                            Some(mask)
+                        }
+                        None => None,
+                    };
+                }
+            }
+        }
+        let pixels = page.data().chunks_exact(4);
+        let mut image = Image {
+            width: self.pixels[0],
+            height: self.pixels[1],
+            pixels: pixels.map(|p| [p[0], p[1], p[2]]).collect(),
+        };
+        for stamp in &self.stamps {
+            image.stamp(&stamp.picture, stamp.at[0], stamp.at[1]);
+        }
+        Ok(image)
+    }
+}
+
+fn ink([r, g, b]: [u8; 3]) -> Paint<'static> {
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(r, g, b, 255);
+    paint
+}
+
+/// Places joined in their order; nothing of fewer than two.
+fn joined(places: &[Place], close: bool) -> Option<Path> {
+    let mut path = PathBuilder::with_capacity(places.len() + 1, places.len());
+    for (i, (x, y)) in places.iter().enumerate() {
+        let (x, y) = (*x as f32, *y as f32);
+        if i == 0 {
+            path.move_to(x, y);
+        } else {
+            path.line_to(x, y);
+        }
+    }
+    if close {
+        path.close();
+    }
+    path.finish()
+}
+
+fn path_of(rectangle: &Rectangle) -> Option<Path> {
+    let (x, y) = rectangle.corner;
+    let [x, y, width, height] = [x, y, rectangle.width, rectangle.height].map(|v| v as f32);
+    Rect::from_xywh(x, y, width, height).map(PathBuilder::from_rect)
+}
+
+/// Goes along the edges of letters.
+fn trace(path: &mut PathBuilder, edges: &[Edge], at: impl Fn([f64; 2]) -> (f32, f32)) {
+    for edge in edges {
+        match *edge {
+            Edge::Start(p) => {
+                let (x, y) = at(p);
+                path.move_to(x, y);
+            }
+            Edge::Line(p) => {
+                let (x, y) = at(p);
+                path.line_to(x, y);
+            }
+            Edge::Quadratic(points) => {
+                let [(x1, y1), (x, y)] = points.map(&at);
+                path.quad_to(x1, y1, x, y);
+            }
+            Edge::Cubic(points) => {
+                let [(x1, y1), (x2, y2), (x, y)] = points.map(&at);
+                path.cubic_to(x1, y1, x2, y2, x, y);
+            }
+            Edge::Close => path.close(),
+        }
+    }
+}
