@@ -7,9 +7,9 @@ use super::canvas::{Anchor, Canvas, INK, Pen};
 use super::colour::{Map, mix};
 use super::light::dot;
 use super::range::Range;
-use super::raster::{Surface, View, render};
+use super::raster::{View, render};
 use super::text::{CAPITAL, fitting};
-use super::{DrawError, Image};
+use super::{DrawError, Image, Surface};
 
 pub(super) const TITLE: f64 = 9.0;
 pub(super) const TEXT: f64 = 8.0;

@@ -1,11 +1,11 @@
 //! Small tubes inside a chart, each with a line to the point of the curve that it belongs to.
 
-use super::DrawError;
 use super::canvas::{Canvas, Pen};
 use super::chart::Chart;
 use super::cutaway::{Cutaway, Panel};
 use super::frame::Frame;
-use super::raster::{Surface, View, render};
+use super::raster::{View, render};
+use super::{DrawError, Surface};
 
 /// A small tube inside a chart, coloured as those of a [`Cutaway`]; all of a chart share their colours.
 #[derive(Clone, Debug, Default)]

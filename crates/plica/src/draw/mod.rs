@@ -9,7 +9,8 @@
 //! | [`Range`] | which values the colours of a field span |
 //! | `colour_bar` | the bar beneath the cut-aways |
 //! | [`section`] | the surfaces of a tube cut open along its axis, from any wall mapping |
-//! | [`raster`] | shaded surfaces: a z-buffer with smooth normals |
+//! | [`Surface`] | a grid of points that carries a field |
+//! | [`raster`], `samples` | shaded surfaces: their triangles; a z-buffer, and what light it makes of pixels |
 //! | `light` | how bright a point of a surface is |
 //! | [`colour`] | two even maps for fields, Okabe and Ito's palette for lines |
 //! | `ticks` | round numbers for axes |
@@ -50,7 +51,9 @@ mod notes;
 mod paint;
 mod range;
 pub mod raster;
+mod samples;
 pub mod section;
+mod surface;
 mod text;
 mod ticks;
 mod vector;
@@ -62,8 +65,8 @@ pub use cutaway::{Cutaway, Panel};
 pub use image::Image;
 pub use inset::Inset;
 pub use range::{Range, Spanned};
-pub use raster::Surface;
 pub use section::Opening;
+pub use surface::{Sides, Surface};
 pub use ticks::short;
 
 /// Why a picture could not be drawn.

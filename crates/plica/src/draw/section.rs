@@ -6,7 +6,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::Surface;
+use super::light::{dot, minus};
+use super::{Sides, Surface};
 
 /// The part of the wall that stays, and how finely it is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +38,9 @@ impl Opening {
             grid(around, through, |s, t| wall(0.0, eta(s), t)),
             grid(around, through, |s, t| wall(1.0, eta(s), t)),
         ];
+        if let [outer, inner, ..] = &mut surfaces[..] {
+            face_outwards(outer, inner);
+        }
         if last - first < TAU - 1e-9 {
             surfaces.push(grid(along, through, |s, t| wall(s, first, t)));
             surfaces.push(grid(along, through, |s, t| wall(s, last, t)));
@@ -66,6 +70,20 @@ pub fn grid(columns: usize, rows: usize, at: impl Fn(f64, f64) -> ([f64; 3], f64
         rows,
         points,
         values,
+        sides: Sides::Both,
+    }
+}
+
+/// Outer and inner wall are seen from outside the wall alone, unless it is turned over somewhere.
+fn face_outwards(outer: &mut Surface, inner: &mut Surface) {
+    // Along × around points inwards.
+    let is_sound = |surface: &Surface| {
+        let through = outer.points.iter().zip(&inner.points);
+        let mut normals = through.zip(surface.normals());
+        normals.all(|((outer, inner), normal)| dot(minus(*outer, *inner), normal) < 0.0)
+    };
+    if is_sound(outer) && is_sound(inner) {
+        (outer.sides, inner.sides) = (Sides::Back, Sides::Front);
     }
 }
 
@@ -90,6 +108,10 @@ mod tests {
         );
         let half = Opening::HALF.surfaces(tube);
         assert_eq!(half.len(), 6);
+        assert_eq!((half[0].sides, half[1].sides), (Sides::Back, Sides::Front));
+        // Inside out, nothing is said.
+        let turned = Opening::HALF.surfaces(|zeta, eta, xi| tube(zeta, eta, 1.0 - xi));
+        assert_eq!(turned[0].sides, Sides::Both);
         assert!(half.iter().all(|s| s.check().is_ok()));
         assert!(
             half.iter().flat_map(|s| &s.points).all(|p| p[1] < 1e-12),
