@@ -5,6 +5,9 @@ use super::DrawError;
 /// The longest side a picture may have, in pixels.
 pub const MAX_SIDE: usize = 8_000;
 
+/// How hard files are packed, up to 9: at 6, a shaded tube is a tenth smaller and takes two and a half times as long.
+const PACKED: u8 = 3;
+
 /// A picture of 8-bit sRGB pixels, row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
@@ -74,6 +77,10 @@ impl Image {
                     continue;
                 }
                 let ground = &mut self.pixels[below as usize * self.width + across as usize];
+                if *ground == [255; 3] {
+                    *ground = *ink;
+                    continue;
+                }
                 for (g, &i) in ground.iter_mut().zip(ink) {
                     *g = ((u16::from(*g) * u16::from(i) + 127) / 255) as u8;
                 }
@@ -135,6 +142,8 @@ impl Image {
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_deflate_compression(png::DeflateCompression::Level(PACKED));
+        encoder.set_filter(png::Filter::Adaptive);
         if width_mm > 0.0 {
             let per_metre = (self.width as f64 / width_mm * 1000.0).round() as u32;
             let unit = png::Unit::Meter;
