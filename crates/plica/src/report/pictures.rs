@@ -11,12 +11,12 @@ use crate::study::{Plan, Row, Scale, Snapshot, Summary};
 use rayon::prelude::*;
 
 /// Width of every picture, in pixels.
-const WIDTH: usize = 1800;
+const WIDTH: usize = 1200;
 
 /// Pieces along a tube, and around its half where it is round, that are fine enough for that: a polygon is off a circle by a sixth of a
 /// pixel.
-const ALONG: usize = 200;
-const AROUND: usize = 48;
+const ALONG: usize = 160;
+const AROUND: usize = 40;
 
 /// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots; of a chosen state without one no more
 /// than its energy.
