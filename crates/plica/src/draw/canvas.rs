@@ -5,7 +5,7 @@
 use super::text::{Run, line};
 use super::{DrawError, Image};
 
-/// Farther from the corner, in points, nothing is drawn.
+/// Lines end where they are farther from the corner, in points.
 const FAR: f64 = 1e5;
 /// Ink of axes and texts.
 pub(super) const INK: [u8; 3] = [34, 34, 34];
@@ -120,7 +120,14 @@ impl Canvas {
     }
 
     fn fill(&mut self, area: Area, colour: [u8; 3]) {
-        self.marks.push(Mark::Area { area, colour });
+        let is_finite = match &area {
+            Area::Disc { middle: (x, y), .. } => (x + y).is_finite(),
+            Area::Rectangle(area) => (area.corner.0 + area.corner.1).is_finite(),
+            Area::Polygon(corners) => corners.iter().all(|(x, y)| (x + y).is_finite()),
+        };
+        if is_finite {
+            self.marks.push(Mark::Area { area, colour });
+        }
     }
 
     /// A filled disc; a white rim lifts it off the lines beneath.

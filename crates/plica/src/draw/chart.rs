@@ -295,7 +295,7 @@ mod tests {
             "width=\"300.00pt\"",
             "rotate(-90)",
             "less &lt; more",
-            "clip-0",
+            "url(#clip-",
             "<path d=",
         ] {
             assert!(svg.contains(part), "{part}");

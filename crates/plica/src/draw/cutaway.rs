@@ -72,7 +72,7 @@ pub struct Cutaway {
     pub toward: [f64; 3],
     /// Points that every panel makes room for beside its own: of all pictures of an animation.
     pub room: Vec<[f64; 3]>,
-    /// Samples along either side of a pixel, 1 to 4: 2 are smooth, 3 are finer and take twice the time.
+    /// Samples along either side of a pixel, 1 to 4: 2 are smooth, 3 are finer and take longer.
     pub samples: usize,
     /// Length of the bar that tells the scale, in units of D, and what stands beneath it.
     pub bar: (f64, String),

@@ -48,9 +48,9 @@ pub(super) fn pieces(text: &str) -> Vec<Piece> {
             '^' if letters.next_if_eq(&'{').is_some() => (run.italic, Level::Upper),
             '}' if run.level != Level::Line => (run.italic, Level::Line),
             _ => {
-                // A line is a line, and XML knows no others.
-                run.text
-                    .push(if letter.is_control() { ' ' } else { letter });
+                // A line is a line, and XML has no place for these.
+                let is_letter = !letter.is_control() && !matches!(letter, '\u{fffe}' | '\u{ffff}');
+                run.text.push(if is_letter { letter } else { ' ' });
                 continue;
             }
         };
@@ -125,6 +125,7 @@ mod tests {
             ]
         );
         assert_eq!(pieces("plain_text }")[0].text, "plain_text }");
+        assert_eq!(pieces("a\u{1}b\nc\u{ffff}$")[0].text, "a b c $");
     }
 
     #[test]

@@ -80,14 +80,15 @@ impl Canvas {
                     }
                 }
                 Mark::Clip(within) => {
-                    clip = match within.as_ref().and_then(path_of) {
-                        Some(path) => {
-                            let mut mask = Mask::new(width, height).ok_or_else(too_large)?;
+                    clip = None;
+                    if let Some(within) = within {
+                        // Of a rectangle that is none, nothing shows.
+                        let mut mask = Mask::new(width, height).ok_or_else(too_large)?;
+                        if let Some(path) = path_of(within) {
                             mask.fill_path(&path, FillRule::Winding, true, on_page);
-                            Some(mask)
                         }
-                        None => None,
-                    };
+                        clip = Some(mask);
+                    }
                 }
             }
         }

@@ -1,8 +1,8 @@
 //! Shaded surfaces: a z-buffer, a light, and a fine dark line at edges.
 //!
 //! Parallel projection, so that lengths compare across the picture. A light from above the viewer's left shoulder falls
-//! on both sides of a surface. It is worked out at the points of a surface and goes evenly over its triangles in between; light, not sRGB bytes,
-//! is averaged over the samples of a pixel.
+//! on both sides of a surface. How much of it a point throws back is worked out at the points of the surface and changes
+//! evenly over its triangles; light, not sRGB bytes, is averaged over the samples of a pixel.
 
 use super::colour::Map;
 use super::light::{Lamp, Shader, cross, dot, minus, unit};
@@ -189,6 +189,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::Opening;
 
     const WHITE: [u8; 3] = [255; 3];
 
@@ -266,6 +267,72 @@ mod tests {
             r > 2 * b,
             "the yellow end of the map lies in front: {r}, {b}"
         );
+    }
+
+    #[test]
+    fn what_a_body_hides_need_not_be_drawn() {
+        let neck = |zeta: f64| 0.3 * (-(12.0 * (zeta - 0.4)).powi(2)).exp();
+        for kept in [(3.1, 6.2), (0.0, std::f64::consts::TAU)] {
+            let opening = Opening {
+                kept,
+                points: [60, 40, 4],
+            };
+            let body = opening.surfaces(|zeta, eta, xi| {
+                let r = 0.4 - neck(zeta) + 0.1 * xi;
+                let z = 2.0 * zeta + 0.5 * neck(zeta);
+                ([r * eta.cos(), r * eta.sin(), z], zeta)
+            });
+            assert_eq!(body[0].sides, Sides::Back);
+            let mut whole = body.clone();
+            for surface in &mut whole {
+                surface.sides = Sides::Both;
+            }
+            for toward in [
+                [0.4, 1.0, -0.3],
+                [0.3, -1.0, 0.2],
+                [1.0, 0.2, 0.9],
+                [0.1, 0.2, -1.0],
+            ] {
+                let [right, up, toward] = View::axes(toward);
+                let view = View {
+                    right,
+                    up,
+                    toward,
+                    corner: (-1.5, 1.5),
+                    scale: 70.0,
+                    size: (300, 210),
+                };
+                let drawn =
+                    |surfaces| render(surfaces, &view, (0.0, 1.0), Map::Viridis, 2).unwrap();
+                let (one, other) = (drawn(&body), drawn(&whole));
+                assert!(one.pixels.iter().filter(|p| **p != WHITE).count() > 3000);
+                let off = one.pixels.iter().zip(&other.pixels).filter(|(a, b)| a != b);
+                assert!(off.count() < 3);
+            }
+        }
+    }
+
+    #[test]
+    fn light_falls_on_the_side_that_is_seen() {
+        // Tilted, so that light from the left and above tells its sides apart.
+        let tilted = |slope: f64| {
+            let mut surface = square(2.0, 18.0, 0.0, 0.5);
+            for point in &mut surface.points {
+                point[2] = slope * point[0];
+            }
+            surface
+        };
+        let turned = |mut surface: Surface| {
+            surface.points.swap(0, 1);
+            surface.points.swap(2, 3);
+            surface
+        };
+        let seen = |surface| render(&[surface], &view(), (0.0, 1.0), Map::Viridis, 2).unwrap();
+        let bright = |image: Image| image.pixels[10 * 20 + 10][1];
+        let [lit, same] = [tilted(0.8), turned(tilted(0.8))].map(|s| bright(seen(s)));
+        assert!(lit.abs_diff(same) < 2, "{lit} {same}");
+        let away = bright(seen(tilted(-0.8)));
+        assert!(lit > away + 8, "{lit} {away}");
     }
 
     #[test]

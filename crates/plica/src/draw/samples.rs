@@ -15,7 +15,7 @@ const DIM: f32 = 0.12;
 /// Number for pixels that show several surfaces.
 const SEVERAL: u16 = u16::MAX;
 
-/// The nearest whole number to one from 0 to 2³¹: what `as` does, without its care for all others.
+/// The nearest whole number to one from 0 to 2³¹, the even one of two: without the care of `as` for all others.
 #[inline(always)]
 fn nearest_whole(x: f64) -> usize {
     /// Beyond it, numbers are whole.
@@ -50,7 +50,8 @@ pub(super) fn double_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
 /// The rows of samples that a triangle may cover in a picture so high; none if it has no area, or no place.
 pub(super) fn rows([a, b, c]: [[f64; 3]; 3], height: usize) -> Option<Range<usize>> {
     let double_area = double_area([a, b, c]);
-    if double_area == 0.0 || !double_area.is_finite() || !(a[2] + b[2] + c[2]).is_finite() {
+    // What is thinner than that shows nowhere.
+    if double_area.abs() < 1e-9 || !double_area.is_finite() || !(a[2] + b[2] + c[2]).is_finite() {
         return None;
     }
     let (top, bottom) = (a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
@@ -58,7 +59,7 @@ pub(super) fn rows([a, b, c]: [[f64; 3]; 3], height: usize) -> Option<Range<usiz
     (first < end).then_some(first..end)
 }
 
-/// What the samples of a strip hold. What is hidden is never lit.
+/// What the samples of a strip hold. What is hidden gets no colour.
 #[derive(Default)]
 pub(super) struct Samples {
     width: usize,
@@ -80,7 +81,7 @@ struct Shown {
     high: f32,
 }
 
-/// A quantity that is even over a triangle: at the corner of the picture, and what it grows by a sample to the right and down.
+/// A quantity that changes evenly over a triangle: at its first corner, and what it grows by a sample to the right and down.
 type Plane = [f32; 3];
 
 impl Samples {
@@ -380,8 +381,8 @@ struct Lit<'a> {
     /// First row of the strip.
     top: usize,
     number: u32,
-    /// The origin of the planes.
-    at: [f32; 2],
+    /// Where the first corner lies: close to it, differences have all digits.
+    at: [f64; 2],
     shade: Plane,
     body: Plane,
     gloss: Plane,
@@ -411,8 +412,8 @@ impl<'a> Lit<'a> {
             self.turn_to(number);
         }
         let (x, y) = (
-            x as f32 + 0.5 - self.at[0],
-            (y + self.top) as f32 + 0.5 - self.at[1],
+            (x as f64 + 0.5 - self.at[0]) as f32,
+            ((y + self.top) as f64 + 0.5 - self.at[1]) as f32,
         );
         let on = |plane: &Plane| plane[0] + x * plane[1] + y * plane[2];
         shader.light(on(&self.shade), on(&self.body), on(&self.gloss))
@@ -439,7 +440,7 @@ impl<'a> Lit<'a> {
                 ((to_c * bx - to_b * cx) * per_area) as f32,
             ]
         };
-        self.at = [a[0] as f32, a[1] as f32];
+        self.at = [a[0], a[1]];
         self.shade = plane(corners.map(|corner| corner.shade));
         self.body = plane(corners.map(|corner| corner.lit[side][0]));
         self.gloss = plane(corners.map(|corner| corner.lit[side][1]));

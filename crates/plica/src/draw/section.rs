@@ -74,7 +74,7 @@ pub fn grid(columns: usize, rows: usize, at: impl Fn(f64, f64) -> ([f64; 3], f64
     }
 }
 
-/// Outer and inner wall are seen from outside the wall alone, unless it is turned over somewhere.
+/// Outer and inner wall are seen from outside the wall alone, unless it is turned over at a point of theirs.
 fn face_outwards(outer: &mut Surface, inner: &mut Surface) {
     // Along × around points inwards.
     let is_sound = |surface: &Surface| {

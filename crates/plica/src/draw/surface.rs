@@ -10,7 +10,7 @@ pub struct Surface {
     pub columns: usize,
     /// Number of rows.
     pub rows: usize,
-    /// `rows * columns` points, row after row, in units of D; a quadrilateral with a point that is
+    /// `rows * columns` points, row after row, in units of D; a triangle with a point that is
     /// not finite is left out.
     pub points: Vec<[f64; 3]>,
     /// The field at the points; NaN is drawn grey.

@@ -27,7 +27,7 @@ impl Canvas {
         let paper = element::Rectangle::new().set("fill", "#ffffff");
         page.append(paper.set("width", "100%").set("height", "100%"));
         // What is drawn between two clips is a group.
-        let (mut group, mut clips) = (Group::new(), 0);
+        let mut group = Group::new();
         for mark in &self.marks {
             match mark {
                 Mark::Line { places, pen } => group.append(line(places, *pen)),
@@ -45,8 +45,10 @@ impl Canvas {
                 Mark::Clip(within) => {
                     page.append(std::mem::replace(&mut group, Group::new()));
                     if let Some(within) = within {
-                        let id = format!("clip-{clips}");
-                        clips += 1;
+                        // Of several charts in one document, equal names are equal rectangles.
+                        let (x, y) = within.corner;
+                        let id = [x, y, within.width, within.height].map(length).join("-");
+                        let id = format!("clip-{id}");
                         group = group.set("clip-path", format!("url(#{id})"));
                         page.append(ClipPath::new().set("id", id).add(rectangle(within)));
                     }
@@ -132,8 +134,10 @@ fn text(runs: &[Run], (x, y): Place, upward: bool) -> Group {
         text.assign("x", length(run.at.0));
         text.assign("y", length(run.at.1));
         text.assign("font-size", length(run.size));
-        text.assign("textLength", length(run.width()));
-        text.assign("lengthAdjust", "spacingAndGlyphs");
+        if run.width() > 0.0 {
+            text.assign("textLength", length(run.width()));
+            text.assign("lengthAdjust", "spacingAndGlyphs");
+        }
         if run.italic {
             text.assign("font-style", "italic");
         }

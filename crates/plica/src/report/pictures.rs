@@ -10,7 +10,7 @@ use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Panel, Rule};
 use crate::study::{Plan, Row, Scale, Snapshot, Summary};
 use rayon::prelude::*;
 
-/// Width of every picture, in pixels.
+/// Width of the pictures of a run, in pixels: a first look, for which somebody waits.
 const WIDTH: usize = 1200;
 
 /// Pieces along a tube, and around its half where it is round, that are fine enough for that: a polygon is off a circle by a sixth of a
