@@ -3,8 +3,9 @@
 //! The fonts are DejaVu Sans, upright and oblique, and are part of the program: a picture looks the same on every machine.
 
 use harfrust::font::glyph::outline::{DrawMemory, DrawOptions, PathElement};
-use harfrust::{Buffer, Font, GlyphId, ShapeOptions, ShaperFont, shape};
+use harfrust::{Buffer, Direction, Font, GlyphId, ShapeOptions, ShaperFont, shape};
 use std::sync::LazyLock;
+use unicode_bidi::BidiInfo;
 
 static UPRIGHT: LazyLock<Option<Font>> = LazyLock::new(|| Font::new(dejavu::sans::regular(), 0));
 static OBLIQUE: LazyLock<Option<Font>> = LazyLock::new(|| Font::new(dejavu::sans::oblique(), 0));
@@ -52,22 +53,40 @@ impl Letters {
         let Some((font, per_size)) = font(italic) else {
             return letters;
         };
+        // Parts that are read leftward stand between others that are not: numbers, names.
+        let bidi = BidiInfo::new(text, None);
+        for paragraph in &bidi.paragraphs {
+            let (levels, parts) = bidi.visual_runs(paragraph, paragraph.range.clone());
+            for part in parts {
+                let leftward = levels[part.start].is_rtl();
+                letters.extend(&text[part], leftward, font, per_size);
+            }
+        }
+        letters
+    }
+
+    /// Sets a part that is read one way behind what stands there.
+    fn extend(&mut self, part: &str, leftward: bool, font: &Font, per_size: f64) {
         let mut buffer = Buffer::new();
-        buffer.push_str(text);
+        buffer.push_str(part);
+        buffer.set_direction(if leftward {
+            Direction::RightToLeft
+        } else {
+            Direction::LeftToRight
+        });
         buffer.guess_segment_properties();
         if shape(&ShaperFont::new(font), &mut buffer, ShapeOptions::new()).is_err() {
-            return letters;
+            return;
         }
         for (info, position) in buffer.glyph_infos().iter().zip(buffer.glyph_positions()) {
             let [across, up, advance] = [position.x_offset, position.y_offset, position.x_advance]
                 .map(|units| f64::from(units) / per_size);
-            letters.glyphs.push(Glyph {
+            self.glyphs.push(Glyph {
                 number: info.glyph_id,
-                at: (letters.width + across, up),
+                at: (self.width + across, up),
             });
-            letters.width += advance;
+            self.width += advance;
         }
-        letters
     }
 
     /// The edges of all letters, counter-clockwise around their ink or the other way, after each other.
@@ -131,6 +150,14 @@ mod tests {
         assert!(width(" ") > 0.2);
         // DejaVu kerns this pair.
         assert!(width("AV") < width("A") + width("V") - 0.03);
+        // Numbers in a text that is read leftward are not turned around.
+        let numbers = |text| {
+            let letters = Letters::set(text, false);
+            letters.glyphs.iter().map(|g| g.number).collect::<Vec<_>>()
+        };
+        let (mixed, plain) = (numbers("אב 123"), numbers("123"));
+        assert_eq!(mixed[..3], plain[..]);
+        assert_eq!(mixed[4..], [numbers("ב"), numbers("א")].concat());
         // An accent of its own takes no room.
         assert!((width("e\u{301}") - width("e")).abs() < 1e-12);
     }

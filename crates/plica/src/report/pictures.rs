@@ -109,7 +109,7 @@ fn cutaway(plan: &Plan, tube: &SplineTube, chosen: &[Wall<'_>], upwards: f64) ->
     };
     // A run does not wait for what is finer than its picture shows.
     let elements = tube.axial.elements();
-    look.opening.points[0] = elements * (ALONG / elements).max(1) + 1;
+    look.opening.points[0] = elements * ALONG.div_ceil(elements.max(1)) + 1;
     if tube.sector.rings == 1 {
         look.opening.points[1] = AROUND + 1;
     }
