@@ -141,10 +141,19 @@ fn text(runs: &[Run], (x, y): Place, upward: bool) -> Group {
         if run.italic {
             text.assign("font-style", "italic");
         }
-        text.append(Text::new(&run.text));
+        text.append(Text::new(kept(&run.text)));
         label.append(text);
     }
     label
+}
+
+/// A text whose spaces at its ends count everywhere: as such that do not break.
+fn kept(text: &str) -> String {
+    let inner = text.trim_matches(' ');
+    let before = text.len() - text.trim_start_matches(' ').len();
+    let after = text.len() - before - inner.len();
+    let hard = |count: usize| "\u{a0}".repeat(count);
+    hard(before) + inner + &hard(after)
 }
 
 fn picture(stamp: &Stamp, per_point: f64) -> Result<element::Image, DrawError> {
@@ -158,4 +167,16 @@ fn picture(stamp: &Stamp, per_point: f64) -> Result<element::Image, DrawError> {
         .set("height", points(stamp.picture.height as f64))
         .set("style", "mix-blend-mode:multiply")
         .set("href", format!("data:image/png;base64,{png}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::kept;
+
+    #[test]
+    fn spaces_at_the_ends_are_kept() {
+        assert_eq!(kept(" a b  "), "\u{a0}a b\u{a0}\u{a0}");
+        assert_eq!(kept("  "), "\u{a0}\u{a0}");
+        assert_eq!(kept(""), "");
+    }
 }
