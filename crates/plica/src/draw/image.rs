@@ -88,50 +88,6 @@ impl Image {
         }
     }
 
-    /// The picture turned a quarter to the left, so that a line of text reads upward.
-    #[must_use]
-    pub fn turned_left(&self) -> Self {
-        let mut pixels = Vec::with_capacity(self.pixels.len());
-        for column in (0..self.width).rev() {
-            for row in 0..self.height {
-                pixels.push(self.pixels[row * self.width + column]);
-            }
-        }
-        Self {
-            width: self.height,
-            height: self.width,
-            pixels,
-        }
-    }
-
-    /// The picture at 1/`factor` of its size, each pixel the mean of a square; a remainder at the edges is dropped.
-    #[must_use]
-    pub fn reduced(&self, factor: usize) -> Self {
-        let factor = factor.max(1);
-        let (width, height) = (self.width / factor, self.height / factor);
-        let count = (factor * factor) as u32;
-        let mut pixels = Vec::with_capacity(width * height);
-        for row in 0..height {
-            for column in 0..width {
-                let mut sum = [0u32; 3];
-                for y in 0..factor {
-                    let start = (row * factor + y) * self.width + column * factor;
-                    for pixel in &self.pixels[start..start + factor] {
-                        for (s, &c) in sum.iter_mut().zip(pixel) {
-                            *s += u32::from(c);
-                        }
-                    }
-                }
-                pixels.push(sum.map(|s| ((s + count / 2) / count) as u8));
-            }
-        }
-        Self {
-            width,
-            height,
-            pixels,
-        }
-    }
-
     /// The picture as the bytes of a PNG file; `width_mm` sets the size it prints at.
     ///
     /// # Errors
@@ -197,12 +153,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn png_round_trip_and_quarter_turn() {
+    fn png_round_trip() {
         let mut image = Image::white(20.0, 30.0).unwrap();
         image.pixels[19] = [10, 20, 30]; // top right
         let back = Image::from_png(&image.to_png(100.0).unwrap()).unwrap();
         assert_eq!(back, image);
-        assert_eq!(image.turned_left().pixels[0], [10, 20, 30]);
     }
 
     #[test]
