@@ -54,7 +54,7 @@ fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
     if stages.is_empty() {
         stages.extend(found.stations.last().map(|station| station.stage.as_str()));
     }
-    let image = |stage| Image::from_png(&chart(plan, found, stage).png(WIDTH)?);
+    let image = |stage| chart(plan, found, stage).image(WIDTH);
     let images = stages
         .into_iter()
         .map(image)
@@ -212,11 +212,7 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
         width_pt: PAGE,
         ..Cutaway::default()
     };
-    let images = [cutaway.png(WIDTH)?, meridian.amplitudes().png(WIDTH)?];
-    let images = images
-        .iter()
-        .map(|png| Image::from_png(png))
-        .collect::<Result<Vec<_>, _>>()?;
+    let images = [cutaway.image(WIDTH)?, meridian.amplitudes().image(WIDTH)?];
     Image::stacked(&images)?.to_png(PAGE * 25.4 / 72.0)
 }
 
