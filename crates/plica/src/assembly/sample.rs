@@ -5,8 +5,10 @@ use super::kinematics::{Columns, Vector, turn};
 use super::stress_free::Departure;
 use super::tables::Around;
 use crate::material::{Law, Material};
+use crate::spline::Values;
 use crate::tensor::Tensor2;
 use crate::tube::Load;
+use fearless_simd::{Level, dispatch};
 
 /// A material point, by its reference position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +72,12 @@ impl SplineTube {
     /// the nearest element. Where the resistance to a change of volume is integrated apart, its energy is that
     /// of the nearest of its points through the wall, and so is its stress: between them volume is not what the wall resists.
     pub fn sample(&self, load: &Load, u: &[f64], at: Point) -> Sample {
+        // Where the machine can multiply and add at once, calling a function for it would take most of the time.
+        dispatch!(Level::new(), _simd => self.sample_at(load, u, at))
+    }
+
+    #[inline(always)]
+    fn sample_at(&self, load: &Load, u: &[f64], at: Point) -> Sample {
         let sample = self.sample_here(load, u, at);
         let Some(volume) = &self.volume else {
             return sample;
@@ -91,6 +99,7 @@ impl SplineTube {
     }
 
     /// The same of what is integrated here.
+    #[inline(always)]
     fn sample_here(&self, load: &Load, u: &[f64], at: Point) -> Sample {
         let (axial, wall) = (self.axial.evaluate(at.z), self.wall.evaluate(at.radius));
         let alpha = self.sector.angle();
@@ -101,41 +110,25 @@ impl SplineTube {
         let first_ring = (element as i64).rem_euclid(rings as i64) as usize;
         let point = Around::at(&self.sector, &self.circle, s, 1.0);
 
-        // Value, and gradients over ζ, s and R.
-        let displaced = |u: &[f64]| -> (Vector<f64>, [Vector<f64>; 3]) {
-            let (mut value, mut g) = ([0.0; 3], [[0.0; 3]; 3]);
-            for (a, (n, dn)) in axial.value.iter().zip(&axial.slope).enumerate() {
-                for (c, (m, dm)) in wall.value.iter().zip(&wall.slope).enumerate() {
-                    for (r, slot) in point.slots.iter().enumerate() {
-                        let row = axial.element + a;
-                        let place = |i: usize| {
-                            row * self.row_size()
-                                + ((wall.element + c) * 3 + i) * rings
-                                + (first_ring + r) % rings
-                        };
-                        let u = [0, 1, 2].map(|i| u[place(i)]);
-                        value = turn(slot, 0, u.map(|x| n * m * x), value);
-                        g[0] = turn(slot, 0, u.map(|x| dn * m * x), g[0]);
-                        g[1] = turn(slot, 1, u.map(|x| n * m * x), g[1]);
-                        g[2] = turn(slot, 0, u.map(|x| n * dm * x), g[2]);
-                    }
-                }
-            }
-            (value, g)
+        let near = Near {
+            axial,
+            wall,
+            point,
+            first_ring,
         };
-
-        let (value, gradients) = displaced(u);
+        let point = &near.point;
+        let (value, gradients) = self.displaced(u, &near);
         let (theta_z, theta_t) = self.tube.stretches_at(at.z, at.angle, load);
         let (inverse_along, inverse_around) = (1.0 / theta_z, 1.0 / theta_t);
         let departure = self.imperfect.as_ref().map(|imperfect| {
-            let columns = Columns::new(&point, at.radius, 1.0, 1.0);
-            let (_, gradients) = displaced(&imperfect.displacement);
-            let A = columns.elastic(&point, at.radius, gradients);
+            let columns = Columns::new(point, at.radius, 1.0, 1.0);
+            let (_, gradients) = self.displaced(&imperfect.displacement, &near);
+            let A = columns.elastic(point, at.radius, gradients);
             Departure::of(A, inverse_along, inverse_around)
         });
-        let columns = Columns::new(&point, at.radius, inverse_along, inverse_around);
+        let columns = Columns::new(point, at.radius, inverse_along, inverse_around);
         let columns = columns.measured_from(departure);
-        let Fe = columns.elastic(&point, at.radius, gradients);
+        let Fe = columns.elastic(point, at.radius, gradients);
         let reference = [at.z, at.radius * point.circle.0, at.radius * point.circle.1];
         let position = [0, 1, 2].map(|i| reference[i] + value[i]);
         // From the element's frame to the laboratory.
@@ -155,6 +148,43 @@ impl SplineTube {
             element_angle: element * alpha,
             elastic: Fe,
         }
+    }
+}
+
+/// What control points do at a point.
+struct Near {
+    axial: Values,
+    wall: Values,
+    point: Around,
+    /// Of the element around the tube.
+    first_ring: usize,
+}
+
+impl SplineTube {
+    /// A displacement, and its gradients over ζ, s and R, in the element's frame.
+    #[inline(always)]
+    fn displaced(&self, u: &[f64], near: &Near) -> (Vector<f64>, [Vector<f64>; 3]) {
+        let Near { axial, wall, .. } = near;
+        let rings = self.sector.rings;
+        let (mut value, mut g) = ([0.0; 3], [[0.0; 3]; 3]);
+        for (a, (n, dn)) in axial.value.iter().zip(&axial.slope).enumerate() {
+            for (c, (m, dm)) in wall.value.iter().zip(&wall.slope).enumerate() {
+                for (r, slot) in near.point.slots.iter().enumerate() {
+                    let row = axial.element + a;
+                    let place = |i: usize| {
+                        row * self.row_size()
+                            + ((wall.element + c) * 3 + i) * rings
+                            + (near.first_ring + r) % rings
+                    };
+                    let u = [0, 1, 2].map(|i| u[place(i)]);
+                    value = turn(slot, 0, u.map(|x| n * m * x), value);
+                    g[0] = turn(slot, 0, u.map(|x| dn * m * x), g[0]);
+                    g[1] = turn(slot, 1, u.map(|x| n * m * x), g[1]);
+                    g[2] = turn(slot, 0, u.map(|x| n * dm * x), g[2]);
+                }
+            }
+        }
+        (value, g)
     }
 }
 
