@@ -5,9 +5,11 @@
 //! evenly over its triangles; light, not sRGB bytes, is averaged over the samples of a pixel.
 
 use super::colour::Map;
-use super::light::{Lamp, Shader, cross, dot, minus, unit};
-use super::samples::{Samples, double_area, rows};
-use super::{DrawError, Image, Sides, Surface};
+use super::light::{Shader, cross, minus, unit};
+use super::pixels::Pixels;
+use super::samples::{Samples, rows};
+use super::scene::Scene;
+use super::{DrawError, Image, Surface};
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
@@ -63,8 +65,8 @@ pub fn render(
     let (width, height) = (image.width, STRIP * samples);
     // Of every strip its triangles, those just above and below it too: edges look there.
     let mut strips: Vec<Vec<u32>> = vec![vec![]; image.height.div_ceil(STRIP)];
-    for (number, corners) in scene.triangles.iter().enumerate() {
-        let Some(rows) = rows(scene.places(*corners), size.1) else {
+    for (number, triangle) in scene.triangles.iter().enumerate() {
+        let Some(rows) = rows(scene.places(triangle.corners), size.1) else {
             continue;
         };
         let first = rows.start.saturating_sub(samples) / height;
@@ -75,12 +77,12 @@ pub fn render(
     }
     let pixels = image.pixels.par_chunks_mut(STRIP * width);
     let strips = pixels.zip(strips).enumerate();
-    strips.for_each_init(Samples::default, |buffer, (k, (pixels, own))| {
+    strips.for_each_init(<(Samples, Pixels)>::default, |room, (k, (pixels, own))| {
         let top = (k * height).saturating_sub(samples);
         let bottom = ((k + 1) * height + samples).min(size.1);
-        buffer.begin(size.0, top..bottom);
+        room.0.begin(size.0, top..bottom);
         let from = k * height - top;
-        dispatch!(Level::new(), _simd => strip(buffer, pixels, from, &own, samples, &scene, &shader));
+        dispatch!(Level::new(), _simd => strip(room, pixels, from, &own, samples, &scene, &shader));
     });
     Ok(image)
 }
@@ -88,108 +90,31 @@ pub fn render(
 /// Draws the pixels of a strip, which begin with a row of its samples, from its own triangles.
 #[inline(always)]
 fn strip(
-    buffer: &mut Samples,
+    (samples, room): &mut (Samples, Pixels),
     pixels: &mut [[u8; 3]],
     from: usize,
     own: &[u32],
-    samples: usize,
+    per_side: usize,
     scene: &Scene,
     shader: &Shader,
 ) {
     for &number in own {
-        let corners = scene.triangles[number as usize];
-        buffer.triangle(scene.places(corners), number);
+        let corners = scene.triangles[number as usize].corners;
+        samples.triangle(scene.places(corners), scene.name(number));
     }
-    match samples {
-        1 => buffer.resolve::<1>(pixels, from, scene, shader),
-        2 => buffer.resolve::<2>(pixels, from, scene, shader),
-        3 => buffer.resolve::<3>(pixels, from, scene, shader),
-        _ => buffer.resolve::<4>(pixels, from, scene, shader),
-    }
-}
-
-/// All triangles by their corners.
-#[derive(Default)]
-pub(super) struct Scene {
-    pub corners: Vec<Corner>,
-    pub triangles: Vec<[u32; 3]>,
-    /// Of every triangle, the number of its surface plus one.
-    pub surface: Vec<u16>,
-}
-
-/// A corner of a triangle.
-#[derive(Clone, Copy)]
-pub(super) struct Corner {
-    /// Place on the page and depth towards the viewer, in samples.
-    pub place: [f64; 3],
-    /// Which shade it has.
-    pub shade: f32,
-    /// How it is lit where the viewer sees the side that its normal points to, and where the other.
-    pub lit: [[f32; 2]; 2],
-}
-
-impl Scene {
-    fn of(
-        surfaces: &[Surface],
-        view: &View,
-        samples: usize,
-        shader: &Shader,
-    ) -> Result<Self, DrawError> {
-        let mut scene = Self::default();
-        let scale = view.scale * samples as f64;
-        let lamp = Lamp::default();
-        for (number, surface) in surfaces.iter().enumerate() {
-            surface.check()?;
-            if surface.columns < 2 || surface.rows < 2 {
-                continue;
-            }
-            let id = (number % usize::from(u16::MAX - 1)) as u16 + 1;
-            let first = scene.corners.len();
-            let points = surface.points.iter().zip(surface.normals());
-            let corners = points.zip(&surface.values).map(|((&p, n), &value)| {
-                let across = (dot(p, view.right) - view.corner.0) * scale;
-                let down = (view.corner.1 - dot(p, view.up)) * scale;
-                let normal = [view.right, view.up, view.toward].map(|axis| dot(n, axis));
-                Corner {
-                    place: [across, down, dot(p, view.toward) * scale],
-                    shade: shader.shade(value),
-                    lit: [lamp.on(normal), lamp.on(normal.map(|c| -c))],
-                }
-            });
-            scene.corners.extend(corners);
-            for row in 0..surface.rows - 1 {
-                for column in 0..surface.columns - 1 {
-                    let i = first + row * surface.columns + column;
-                    let (a, b, c, d) = (i, i + 1, i + surface.columns, i + surface.columns + 1);
-                    for corners in [[a, b, d], [a, d, c]] {
-                        let corners = corners.map(|corner| corner as u32);
-                        let area = double_area(scene.places(corners));
-                        let is_hidden = match surface.sides {
-                            Sides::Both => false,
-                            // Corners go around the normal; on the page, whose rows run down, against the clock.
-                            Sides::Front => area > 0.0,
-                            Sides::Back => area < 0.0,
-                        };
-                        if !is_hidden {
-                            scene.triangles.push(corners);
-                            scene.surface.push(id);
-                        }
-                    }
-                }
-            }
-        }
-        Ok(scene)
-    }
-
-    fn places(&self, corners: [u32; 3]) -> [[f64; 3]; 3] {
-        corners.map(|corner| self.corners[corner as usize].place)
+    match per_side {
+        1 => room.resolve::<1>(samples, pixels, from, scene, shader),
+        2 => room.resolve::<2>(samples, pixels, from, scene, shader),
+        3 => room.resolve::<3>(samples, pixels, from, scene, shader),
+        _ => room.resolve::<4>(samples, pixels, from, scene, shader),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::Opening;
+    use crate::draw::light::dot;
+    use crate::draw::{Opening, Sides};
 
     const WHITE: [u8; 3] = [255; 3];
 
