@@ -9,7 +9,7 @@ use super::light::dot;
 use super::range::Range;
 use super::raster::{View, render};
 use super::text::{CAPITAL, fitting};
-use super::{DrawError, Image, Surface};
+use super::{Content, DrawError, Image, Surface};
 
 pub(super) const TITLE: f64 = 9.0;
 pub(super) const TEXT: f64 = 8.0;
@@ -104,7 +104,8 @@ impl Cutaway {
     /// [`DrawError::Empty`] without a finite point or value, [`DrawError::Grid`] for a surface whose lists do not fill
     /// it, [`DrawError::Range`] for a given range that is none, [`DrawError::Size`] for an absurd size.
     pub fn png(&self, width_px: usize) -> Result<Vec<u8>, DrawError> {
-        self.image(width_px)?.to_png(self.width_pt * 25.4 / 72.0)
+        let image = self.image(width_px)?;
+        image.to_png(self.width_pt * 25.4 / 72.0, Content::Shades)
     }
 
     /// Two points that make as much room as its panels take.
@@ -117,6 +118,14 @@ impl Cutaway {
         let (low, height) = self.extent(self.panels.iter(), up)?;
         let corner = |x: f64, y: f64| std::array::from_fn(|i| x * right[i] + y * up[i]);
         Ok([corner(left, low), corner(left + width, low + height)])
+    }
+
+    /// Pixels to a unit of D, at most, of tubes at least so long in a picture so many pixels wide.
+    pub fn finest_scale(&self, length: f64, width_px: usize) -> f64 {
+        let [right, ..] = View::axes(self.toward);
+        let across = (self.width_pt - 2.0 * SIDE) / (length * right[2]);
+        // Somewhere it is a diameter high.
+        across.min(TALLEST) * width_px as f64 / self.width_pt
     }
 
     /// The picture as pixels.
@@ -245,13 +254,10 @@ pub(super) fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::draw::Opening;
+    use crate::draw::{HALF, Opening};
 
     pub(in crate::draw) fn straight(values: impl Fn(f64) -> f64) -> Cutaway {
-        let opening = Opening {
-            points: [60, 30, 3],
-            ..Opening::HALF
-        };
+        let opening = Opening::evenly(HALF, [60, 30, 3]);
         let surfaces = opening.surfaces(|zeta, eta, xi| {
             let r = 0.44 + 0.06 * xi;
             ([r * eta.cos(), r * eta.sin(), 3.0 * zeta], values(zeta))
@@ -284,10 +290,7 @@ pub(super) mod tests {
             |picture: &Cutaway| Image::from_png(&picture.png(600).unwrap()).unwrap().pixels;
         let mut picture = straight(|z| z);
         picture.toward = [0.0, 1.0, 0.0];
-        let opening = |kept| Opening {
-            kept,
-            points: [60, 30, 3],
-        };
+        let opening = |kept| Opening::evenly(kept, [60, 30, 3]);
         let wall = |zeta: f64, eta: f64, xi: f64| {
             let r = 0.44 + 0.06 * xi;
             ([r * eta.cos(), r * eta.sin(), 3.0 * zeta], zeta)

@@ -65,10 +65,10 @@ pub use animation::{REST, animation};
 pub use chart::{Chart, Curve, Marker, Rule, Stroke};
 pub use colour::Map;
 pub use cutaway::{Cutaway, Panel};
-pub use image::Image;
+pub use image::{Content, Image};
 pub use inset::Inset;
 pub use range::{Range, Spanned};
-pub use section::Opening;
+pub use section::{HALF, Opening, evenly};
 pub use surface::{Sides, Surface};
 pub use ticks::short;
 

@@ -198,10 +198,7 @@ mod tests {
     fn what_a_body_hides_need_not_be_drawn() {
         let neck = |zeta: f64| 0.3 * (-(12.0 * (zeta - 0.4)).powi(2)).exp();
         for kept in [(3.1, 6.2), (0.0, std::f64::consts::TAU)] {
-            let opening = Opening {
-                kept,
-                points: [60, 40, 4],
-            };
+            let opening = Opening::evenly(kept, [60, 40, 4]);
             let body = opening.surfaces(|zeta, eta, xi| {
                 let r = 0.4 - neck(zeta) + 0.1 * xi;
                 let z = 2.0 * zeta + 0.5 * neck(zeta);

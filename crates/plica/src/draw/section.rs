@@ -9,27 +9,37 @@ use std::f64::consts::{PI, TAU};
 use super::light::{dot, minus};
 use super::{Sides, Surface};
 
-/// The part of the wall that stays, and how finely it is drawn.
-#[derive(Clone, Copy, Debug)]
+/// The near half taken away, as angles η between which the wall stays: both sections of it face the viewer.
+pub const HALF: (f64, f64) = (PI, TAU);
+
+/// The part of the wall that stays, and where it is looked at.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Opening {
     /// Angles η, in radians, between which the wall stays; a full turn or more keeps it closed.
     pub kept: (f64, f64),
-    /// Points along the tube, around it and through the wall.
-    pub points: [usize; 3],
+    /// Where along the tube, around the part that stays, and through the wall; each from 0 to 1, rising. Fewer than two
+    /// stand for both ends.
+    pub places: [Vec<f64>; 3],
 }
 
 impl Opening {
-    /// The front half removed: both sections of the wall face the viewer.
-    pub const HALF: Opening = Opening {
-        kept: (PI, TAU),
-        points: [401, 121, 9],
-    };
+    /// So many points along the tube, around it and through the wall, two at least, evenly.
+    pub fn evenly(kept: (f64, f64), points: [usize; 3]) -> Self {
+        Self {
+            kept,
+            places: points.map(evenly),
+        }
+    }
 
     /// Outer and inner wall, the two ends, and the two sections unless the wall is closed.
     ///
     /// `wall(zeta, eta, xi)` gives the place in units of D and the value of the field there.
     pub fn surfaces(&self, wall: impl Fn(f64, f64, f64) -> ([f64; 3], f64)) -> Vec<Surface> {
-        let [along, around, through] = self.points.map(|n| n.max(2));
+        let ends = [0.0, 1.0];
+        let [along, around, through] = [0, 1, 2].map(|i| match &self.places[i][..] {
+            [] | [_] => &ends[..],
+            places => places,
+        });
         let (first, last) = self.kept;
         let eta = |t: f64| first + t * (last - first);
         let mut surfaces = vec![
@@ -49,25 +59,21 @@ impl Opening {
     }
 }
 
-/// A surface over the unit square, `columns` points along its first and `rows` along its second parameter.
-pub fn grid(columns: usize, rows: usize, at: impl Fn(f64, f64) -> ([f64; 3], f64)) -> Surface {
-    let (columns, rows) = (columns.max(2), rows.max(2));
-    let mut points = Vec::with_capacity(columns * rows);
-    let mut values = Vec::with_capacity(columns * rows);
-    for row in 0..rows {
-        for column in 0..columns {
-            let (s, t) = (
-                column as f64 / (columns - 1) as f64,
-                row as f64 / (rows - 1) as f64,
-            );
-            let (point, value) = at(s, t);
-            points.push(point);
-            values.push(value);
-        }
-    }
+/// So many numbers from 0 to 1, two at least.
+pub fn evenly(count: usize) -> Vec<f64> {
+    let count = count.max(2);
+    (0..count).map(|i| i as f64 / (count - 1) as f64).collect()
+}
+
+/// A surface over two parameters: `columns` are the places along its first, `rows` along its second.
+fn grid(columns: &[f64], rows: &[f64], at: impl Fn(f64, f64) -> ([f64; 3], f64)) -> Surface {
+    let places = rows
+        .iter()
+        .flat_map(|&t| columns.iter().map(move |&s| (s, t)));
+    let (points, values) = places.map(|(s, t)| at(s, t)).unzip();
     Surface {
-        columns,
-        rows,
+        columns: columns.len(),
+        rows: rows.len(),
         points,
         values,
         sides: Sides::Both,
@@ -98,19 +104,16 @@ mod tests {
             ([r * eta.cos(), r * eta.sin(), 3.0 * zeta], zeta)
         };
         assert_eq!(
-            Opening {
-                kept: (0.0, TAU),
-                points: [5, 9, 3]
-            }
-            .surfaces(tube)
-            .len(),
+            Opening::evenly((0.0, TAU), [5, 9, 3]).surfaces(tube).len(),
             4
         );
-        let half = Opening::HALF.surfaces(tube);
+        let half = Opening::evenly(HALF, [401, 121, 9]);
+        let half = half.surfaces(tube);
         assert_eq!(half.len(), 6);
         assert_eq!((half[0].sides, half[1].sides), (Sides::Back, Sides::Front));
         // Inside out, nothing is said.
-        let turned = Opening::HALF.surfaces(|zeta, eta, xi| tube(zeta, eta, 1.0 - xi));
+        let turned = Opening::evenly(HALF, [401, 121, 9]);
+        let turned = turned.surfaces(|zeta, eta, xi| tube(zeta, eta, 1.0 - xi));
         assert_eq!(turned[0].sides, Sides::Both);
         assert!(half.iter().all(|s| s.check().is_ok()));
         assert!(

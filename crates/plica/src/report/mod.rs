@@ -3,6 +3,7 @@
 
 mod columns;
 mod field;
+mod fineness;
 mod modes;
 mod opened;
 mod pictures;
@@ -15,8 +16,9 @@ mod walls;
 
 pub use columns::{Column, Role};
 pub use field::Field;
+pub use fineness::Fineness;
 pub use modes::mode_pictures;
-pub use opened::{Look, looked_at, opened};
+pub use opened::{Look, Points, looked_at, opened};
 pub use pictures::pictures;
 pub use plots::{plot, plot_walls};
 pub use stability::stability_pictures;

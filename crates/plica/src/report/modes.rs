@@ -1,7 +1,9 @@
 //! The pictures of the lowest modes of a three-dimensional run.
 
 use crate::assembly::{Point, SplineTube};
-use crate::draw::{Chart, Curve, Cutaway, DrawError, Map, Opening, Panel, Range, Stroke, Surface};
+use crate::draw::{
+    Chart, Curve, Cutaway, DrawError, HALF, Map, Opening, Panel, Range, Stroke, Surface,
+};
 use crate::stability::{Eigenvalue, Shown, Spectra, Spectrum};
 use crate::study::Plan;
 use crate::tube::Tube;
@@ -101,10 +103,7 @@ fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
 /// radial displacement in units of its largest displacement.
 fn surfaces(tube: &SplineTube, shown: &Shown, shape: Option<&Vec<f64>>) -> Vec<Surface> {
     let along = tube.axial.elements();
-    let opening = Opening {
-        points: [2 * along + 1, 97, 9],
-        ..Opening::HALF
-    };
+    let opening = Opening::evenly(HALF, [2 * along + 1, 97, 9]);
     let moved = |u: &[f64], at: Point| {
         let sample = tube.sample(&shown.state.load, u, at);
         let displacement = [0, 1, 2].map(|i| sample.position[i] - sample.reference[i]);

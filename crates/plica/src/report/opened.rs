@@ -1,8 +1,9 @@
 //! A tube cut open, as a picture shows it.
 
 use super::Field;
+use super::fineness::{Fineness, Seen, Wall};
 use crate::assembly::{Point, SplineTube};
-use crate::draw::{Opening, Surface};
+use crate::draw::{Cutaway, DrawError, HALF, Opening, Spanned, Surface};
 use crate::tube::Load;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -11,19 +12,32 @@ use std::f64::consts::TAU;
 /// What of a tube is shown, and what it is coloured by.
 #[derive(Clone, Copy, Debug)]
 pub struct Look {
-    /// How much of the wall is taken away, and how finely the rest is drawn.
-    pub opening: Opening,
+    /// Angles, in radians, between which the wall stays.
+    pub kept: (f64, f64),
+    /// Where it is looked at.
+    pub points: Points,
     /// Its colour.
     pub field: Field,
     /// By how much values are multiplied.
     pub factor: f64,
 }
 
+/// Where a tube is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Points {
+    /// So many points along, around what stays, and through the wall.
+    Evenly([usize; 3]),
+    /// As many as it takes.
+    Finely(Fineness),
+}
+
 /// Pieces along a tube, at least.
 const ALONG: usize = 200;
 
-/// Position (z, x, y) and the value of the field.
-type Sampled = ([f64; 3], f64);
+/// By how many pixels what is drawn may be off the wall.
+const PIXELS: f64 = 0.15;
+/// By how much of what the colours span it may be off the field.
+const COLOURS: f64 = 0.01;
 
 impl Look {
     /// The near half taken away, coloured by strain energy density.
@@ -32,10 +46,8 @@ impl Look {
         let elements = tube.axial.elements();
         let along = elements * ALONG.div_ceil(elements.max(1)).max(2);
         Self {
-            opening: Opening {
-                points: [along + 1, 97, 13],
-                ..Opening::HALF
-            },
+            kept: HALF,
+            points: Points::Evenly([along + 1, 97, 13]),
             field: Field::EnergyDensity,
             factor: 1.0,
         }
@@ -44,19 +56,56 @@ impl Look {
     /// With an angle of the wall taken away, in degrees: 180 the near half, 90 its upper quarter, 0 nothing.
     #[must_use]
     pub fn cut(mut self, degrees: f64) -> Self {
-        self.opening.kept = (degrees.to_radians(), TAU);
-        let around = 1.0 + 192.0 * (1.0 - degrees / 360.0);
-        self.opening.points[1] = around as usize;
+        self.kept = (degrees.to_radians(), TAU);
         self
+    }
+
+    /// At few points: for the room it takes, and what its colours span.
+    #[must_use]
+    pub fn coarse(mut self, tube: &SplineTube) -> Self {
+        let through = if tube.sector.rings == 1 { 3 } else { 5 };
+        self.points = Points::Evenly([tube.axial.elements() + 1, 25, through]);
+        self
+    }
+
+    /// At as many points as it takes for a picture so wide of tubes of which this is a coarse look; and what their colours span.
+    ///
+    /// # Errors
+    /// [`DrawError`] for a range that is none, or without a value.
+    pub fn fine(
+        mut self,
+        coarse: &[&[Surface]],
+        picture: &Cutaway,
+        width: usize,
+    ) -> Result<(Self, Spanned), DrawError> {
+        let surfaces = || coarse.iter().copied().flatten();
+        let spanned = picture
+            .range
+            .of(surfaces().flat_map(|s| &s.values).copied())?;
+        let shortest = coarse.iter().map(|tube| length(tube));
+        let shortest = shortest.fold(f64::INFINITY, f64::min);
+        self.points = Points::Finely(Fineness {
+            place: PIXELS / picture.finest_scale(shortest, width),
+            value: COLOURS * (spanned.high - spanned.low),
+        });
+        Ok((self, spanned))
     }
 
     /// What [`Look::cut`] takes away; none if that is nothing.
     pub fn taken_away(&self) -> Option<Self> {
         let mut other = *self;
-        other.opening.kept = (0.0, self.opening.kept.0);
-        other.opening.points[1] = 194 - self.opening.points[1];
-        (self.opening.kept.0 > 0.0).then_some(other)
+        other.kept = (0.0, self.kept.0);
+        (self.kept.0 > 0.0).then_some(other)
     }
+}
+
+/// From one end of a tube to the other.
+fn length(tube: &[Surface]) -> f64 {
+    let along = tube.iter().flat_map(|s| &s.points).map(|point| point[2]);
+    let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| {
+        (low.min(z), high.max(z))
+    });
+    high - low
 }
 
 /// The surfaces of a tube with its near half taken away, coloured by strain energy density, in E; the
@@ -73,28 +122,39 @@ pub fn looked_at(
     upwards: f64,
     look: &Look,
 ) -> Vec<Surface> {
-    let along = tube.axial.elements();
-    let sample = |zeta: f64, angle: f64, xi: f64| {
-        let z = tube.axial.elements_on(zeta * along as f64);
+    let elements = tube.axial.elements();
+    let sample = |along: f64, angle: f64, xi: f64| {
+        let z = tube.axial.elements_on(along);
         let radius = tube.tube.inner_radius() + xi * tube.tube.thickness;
         let sample = tube.sample(load, u, Point { z, radius, angle });
         (sample.position, look.factor * look.field.of(&sample))
     };
     // Where every meridian is the same, one is sampled and turned.
     let axisymmetric = tube.sector.rings == 1;
-    let known: RefCell<HashMap<[u64; 2], Sampled>> = RefCell::default();
-    look.opening.surfaces(|zeta, angle, xi| {
+    let known: RefCell<HashMap<[u64; 2], Seen>> = RefCell::default();
+    let wall = |along: f64, angle: f64, xi: f64| {
         if !axisymmetric {
-            let ([z, x, y], value) = sample(zeta, angle + upwards, xi);
+            let ([z, x, y], value) = sample(along, angle + upwards, xi);
             let (sin, cos) = upwards.sin_cos();
             return ([x * cos + y * sin, y * cos - x * sin, z], value);
         }
-        let place = [zeta.to_bits(), xi.to_bits()];
+        let place = [along.to_bits(), xi.to_bits()];
         let ([z, x, y], value) = *known
             .borrow_mut()
             .entry(place)
-            .or_insert_with(|| sample(zeta, 0.0, xi));
+            .or_insert_with(|| sample(along, 0.0, xi));
         let (sin, cos) = angle.sin_cos();
         ([x * cos - y * sin, x * sin + y * cos, z], value)
-    })
+    };
+    let opening = match look.points {
+        Points::Evenly(points) => Opening::evenly(look.kept, points),
+        Points::Finely(fineness) => {
+            let meshed = Wall {
+                elements: [elements, tube.wall.elements()],
+                axisymmetric,
+            };
+            fineness.opening(look.kept, meshed, wall)
+        }
+    };
+    opening.surfaces(|zeta, angle, xi| wall(zeta * elements as f64, angle, xi))
 }

@@ -6,17 +6,12 @@ use super::upright::upright;
 use super::walls::{Wall, walls};
 use super::{Field, Story};
 use crate::assembly::SplineTube;
-use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Panel, Rule};
+use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Panel, Range, Rule, Surface};
 use crate::study::{Plan, Row, Scale, Snapshot, Summary};
 use rayon::prelude::*;
 
 /// Width of the pictures of a run, in pixels: a first look, for which somebody waits.
 const WIDTH: usize = 1200;
-
-/// Pieces along a tube, and around its half where it is round, that are fine enough for that: a polygon is off a circle by a sixth of a
-/// pixel.
-const ALONG: usize = 160;
-const AROUND: usize = 40;
 
 /// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots; of a chosen state without one no more
 /// than its energy.
@@ -45,7 +40,7 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     }
     // The tube takes longest: whoever is done with the plots helps.
     let (tube, plots) = rayon::join(
-        || cutaway(plan, &tube, &chosen, upwards).png(WIDTH),
+        || cutaway(plan, &tube, &chosen, upwards)?.png(WIDTH),
         || Ok([energy()?, walls(plan, &tube, &chosen).png(WIDTH)?]),
     );
     let [energy, walls] = plots?;
@@ -101,30 +96,39 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
 }
 
 /// The tube cut open at the chosen states, along the plane of an angle, which points up.
-fn cutaway(plan: &Plan, tube: &SplineTube, chosen: &[Wall<'_>], upwards: f64) -> Cutaway {
+fn cutaway(
+    plan: &Plan,
+    tube: &SplineTube,
+    chosen: &[Wall<'_>],
+    upwards: f64,
+) -> Result<Cutaway, DrawError> {
     let (value_label, factor) = Field::EnergyDensity.label(plan);
-    let mut look = Look {
+    let look = Look {
         factor,
         ..Look::half(tube)
     };
-    // A run does not wait for what is finer than its picture shows.
-    let elements = tube.axial.elements();
-    look.opening.points[0] = elements * ALONG.div_ceil(elements.max(1)) + 1;
-    if tube.sector.rings == 1 {
-        look.opening.points[1] = AROUND + 1;
-    }
-    let panel = |state: &Wall<'_>| Panel {
-        label: state.label.clone(),
-        surfaces: looked_at(tube, state.load, state.u, upwards, &look),
-        ..Panel::default()
-    };
-    Cutaway {
+    let looked =
+        |look: &Look, state: &Wall<'_>| looked_at(tube, state.load, state.u, upwards, look);
+    let picture = Cutaway {
         title: plan.title.clone(),
-        panels: chosen.par_iter().map(panel).collect(),
         value_label,
         bar: bar(&Scale::of(plan.units.as_ref())),
         ..Cutaway::default()
-    }
+    };
+    let coarse = look.coarse(tube);
+    let coarse: Vec<Vec<Surface>> = chosen.par_iter().map(|s| looked(&coarse, s)).collect();
+    let coarse: Vec<&[Surface]> = coarse.iter().map(Vec::as_slice).collect();
+    let (fine, spanned) = look.fine(&coarse, &picture, WIDTH)?;
+    let panel = |state: &Wall<'_>| Panel {
+        label: state.label.clone(),
+        surfaces: looked(&fine, state),
+        ..Panel::default()
+    };
+    Ok(Cutaway {
+        panels: chosen.par_iter().map(panel).collect(),
+        range: Range::Given(spanned.low, spanned.high),
+        ..picture
+    })
 }
 
 /// What a state is called in a legend.

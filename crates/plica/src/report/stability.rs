@@ -2,8 +2,8 @@
 
 use crate::assembly::{Point, SplineTube};
 use crate::draw::{
-    Chart, Curve, Cutaway, DrawError, Image, Map, Marker, Opening, Panel, Range, Rule, Stroke,
-    Surface,
+    Chart, Content, Curve, Cutaway, DrawError, HALF, Image, Map, Marker, Opening, Panel, Range,
+    Rule, Stroke, Surface,
 };
 use crate::stability::{Change, How, Mode, Quantity, Stability, Station};
 use crate::study::{Plan, effect};
@@ -59,7 +59,7 @@ fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
         .into_iter()
         .map(image)
         .collect::<Result<Vec<_>, _>>()?;
-    Image::stacked(&images)?.to_png(COLUMN * 25.4 / 72.0)
+    Image::stacked(&images)?.to_png(COLUMN * 25.4 / 72.0, Content::Lines)
 }
 
 /// The lowest eigenvalue of each harmonic along a stage.
@@ -180,31 +180,26 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
         change.quantity.written(change.critical, 4)
     );
     let n = mode.harmonic;
-    let panel = |label: String, opening: Opening, amplitude: f64| Panel {
+    let panel = |label: String, opening: &Opening, amplitude: f64| Panel {
         label,
         surfaces: meridian.surfaces(opening, amplitude),
         ..Panel::default()
     };
+    let along = 2 * tube.axial.elements() + 1;
     let (half, closed) = (
-        Opening {
-            points: [2 * tube.axial.elements() + 1, 121, 9],
-            ..Opening::HALF
-        },
-        Opening {
-            kept: (0.0, std::f64::consts::TAU),
-            points: [2 * tube.axial.elements() + 1, 241, 5],
-        },
+        Opening::evenly(HALF, [along, 121, 9]),
+        Opening::evenly((0.0, std::f64::consts::TAU), [along, 241, 5]),
     );
     let cutaway = Cutaway {
         title: plan.title.clone(),
         panels: vec![
-            panel(format!("{at}, where it loses harmonic {n}"), half, 0.0),
+            panel(format!("{at}, where it loses harmonic {n}"), &half, 0.0),
             panel(
                 format!("it {} (drawn to an amplitude of {VISIBLE} *D*)", effect(n)),
-                half,
+                &half,
                 VISIBLE,
             ),
-            panel("the same from outside".into(), closed, VISIBLE),
+            panel("the same from outside".into(), &closed, VISIBLE),
         ],
         value_label: "radial displacement of the mode".into(),
         range: Range::Given(-1.0, 1.0),
@@ -213,7 +208,7 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
         ..Cutaway::default()
     };
     let images = [cutaway.image(WIDTH)?, meridian.amplitudes().image(WIDTH)?];
-    Image::stacked(&images)?.to_png(PAGE * 25.4 / 72.0)
+    Image::stacked(&images)?.to_png(PAGE * 25.4 / 72.0, Content::Shades)
 }
 
 /// A state and its mode along one meridian, from which the others follow.
@@ -262,7 +257,7 @@ impl<'a> Meridian<'a> {
 
     /// The surfaces of the tube, coloured by the radial displacement of the mode; in units of its
     /// largest, if that is not small beside the others.
-    fn surfaces(&self, opening: Opening, amplitude: f64) -> Vec<Surface> {
+    fn surfaces(&self, opening: &Opening, amplitude: f64) -> Vec<Surface> {
         let (along, n) = (self.tube.axial.elements(), self.mode.harmonic as f64);
         let scale = amplitude / self.largest;
         opening.surfaces(|zeta, angle, xi| {

@@ -6,7 +6,10 @@ use super::opened::{Look, looked_at};
 use super::pictures::energy_label;
 use super::upright::upright;
 use crate::assembly::SplineTube;
-use crate::draw::{Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, animation};
+use crate::draw::{
+    Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, Spanned, Surface,
+    animation,
+};
 use crate::study::{Plan, Row, SavedState, Scale};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -47,22 +50,21 @@ impl Default for Appearance {
 /// A state with its row of the history.
 pub type Shown = (SavedState, Row);
 
-/// The room that a state takes, and the values of its field.
-type Seen = ([[f64; 3]; 2], Vec<f64>);
-
 /// States, one below the other, under one colour bar.
 ///
 /// # Errors
 /// [`DrawError`] for sizes and ranges that are none.
 pub fn render(plan: &Plan, states: &[Shown], look: &Appearance) -> Result<Vec<u8>, DrawError> {
     let tube = spline_tube(plan);
-    let finest = look_of(&tube, plan, look);
+    let coarse = coarse(&tube, plan, states, look);
+    let (finest, spanned) = finest(&tube, plan, &coarse, look)?;
     let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
     let panels = states
         .par_iter()
         .map(|shown| panel(&tube, shown, upwards, &finest, look));
     let picture = Cutaway {
         samples: FINEST,
+        range: Range::Given(spanned.low, spanned.high),
         ..picture(plan, panels.collect(), look)
     };
     picture.png(look.width)
@@ -82,23 +84,14 @@ pub fn animate(
     told: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Option<Vec<u8>>, DrawError> {
     let tube = spline_tube(plan);
-    let finest = look_of(&tube, plan, look);
-    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
     // A coarse look at all states for the frame and the colours that they share.
-    let mut coarse = finest;
-    coarse.opening.points = [tube.axial.elements() + 1, 33, 5];
-    let looked: Result<Vec<Seen>, DrawError> = states
-        .par_iter()
-        .map(|shown| {
-            let panel = panel(&tube, shown, upwards, &coarse, look);
-            let values = panel.surfaces.iter().flat_map(|s| &s.values).copied();
-            let values = values.collect();
-            Ok((picture(plan, vec![panel], look).room()?, values))
-        })
-        .collect();
-    let (rooms, values): (Vec<_>, Vec<_>) = looked?.into_iter().unzip();
-    let room = rooms.concat();
-    let spanned = range(look).of(values.into_iter().flatten())?;
+    let coarse = coarse(&tube, plan, states, look);
+    let (finest, spanned) = finest(&tube, plan, &coarse, look)?;
+    let room = coarse
+        .into_iter()
+        .map(|panel| picture(plan, vec![panel], look).room());
+    let room = room.collect::<Result<Vec<_>, DrawError>>()?.concat();
+    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
     let frame_look = Appearance {
         range: Some([spanned.low, spanned.high]),
         ..*look
@@ -141,6 +134,27 @@ fn look_of(tube: &SplineTube, plan: &Plan, look: &Appearance) -> Look {
         factor: look.field.label(plan).1,
         ..Look::half(tube).cut(look.cutaway)
     }
+}
+
+/// A coarse look at states.
+fn coarse(tube: &SplineTube, plan: &Plan, states: &[Shown], look: &Appearance) -> Vec<Panel> {
+    let coarse = look_of(tube, plan, look).coarse(tube);
+    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
+    let panels = states
+        .par_iter()
+        .map(|shown| panel(tube, shown, upwards, &coarse, look));
+    panels.collect()
+}
+
+/// A look as fine as pictures show, and what their colours span.
+fn finest(
+    tube: &SplineTube,
+    plan: &Plan,
+    coarse: &[Panel],
+    look: &Appearance,
+) -> Result<(Look, Spanned), DrawError> {
+    let coarse: Vec<&[Surface]> = coarse.iter().map(|panel| &panel.surfaces[..]).collect();
+    look_of(tube, plan, look).fine(&coarse, &picture(plan, vec![], look), look.width)
 }
 
 fn panel(
