@@ -147,8 +147,10 @@ fn lead(
     let summary = by(plan, &mut directory, &mut progress);
     progress.finish();
     let summary = summary.map_err(Failure::Study)?;
+    // Whoever waits for numbers does not wait for pictures.
+    let told = console::say(&summary.to_string());
     let drawn = draw(plan, &summary, &directory)?;
-    console::say(&format!("{summary}{drawn}"))?;
+    told.and_then(|()| console::say(&drawn))?;
     if summary.finished() {
         directory.tidy().map_err(Failure::Study)?;
         return Ok(());

@@ -31,8 +31,9 @@ pub enum Points {
     Finely(Fineness),
 }
 
-/// Pieces along a tube, at least.
+/// Pieces along a tube, at least: of a picture whose width is not known, and of a coarse look.
 const ALONG: usize = 200;
+const COARSE: usize = 160;
 
 /// By how many pixels what is drawn may be off the wall.
 const PIXELS: f64 = 0.15;
@@ -64,7 +65,9 @@ impl Look {
     #[must_use]
     pub fn coarse(mut self, tube: &SplineTube) -> Self {
         let through = if tube.sector.rings == 1 { 3 } else { 5 };
-        self.points = Points::Evenly([tube.axial.elements() + 1, 25, through]);
+        let elements = tube.axial.elements();
+        let along = elements * COARSE.div_ceil(elements.max(1));
+        self.points = Points::Evenly([along + 1, 25, through]);
         self
     }
 
