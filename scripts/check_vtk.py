@@ -263,7 +263,13 @@ def check_film(run, number):
     names = [walls.GetPointData().GetArrayName(i) for i in range(walls.GetPointData().GetNumberOfArrays())]
     for name in names:
         assert np.array_equal(field(film, name), field(walls, name)), name
-    print(f"one file: {len(times)} states, {len(names)} fields as in the file of state {number}")
+    faces = [vtk_to_numpy(mesh.GetCellData().GetArray("face")) for mesh in (film, walls)]
+    assert np.array_equal(*faces) and set(faces[0]) == {0, 1, 2, 3}
+    for name in ["state", "length_ratio", "diameter_ratio", "energy"]:
+        values = [mesh.GetFieldData().GetArray(name) for mesh in (film, walls)]
+        assert [value.GetNumberOfTuples() for value in values] == [1, 1], name
+        assert values[0].GetValue(0) == values[1].GetValue(0), name
+    print(f"one file: {len(times)} states, {len(names)} fields, faces and field data as in the file of state {number}")
 
 
 def main():

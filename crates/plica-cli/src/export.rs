@@ -125,8 +125,8 @@ fn film(
         let part = done as f64 / run.saved.len() as f64;
         ticker.working(&format!("state {state}, in one file"), part);
         // A bad one is told of by its own file.
-        if let Ok((state, _)) = run.state(state) {
-            exporter.film(&mut movie, &state);
+        if let Ok((state, row)) = run.state(state) {
+            exporter.film(&mut movie, &state, &row);
             states += 1;
         }
     }

@@ -68,6 +68,9 @@ impl What {
 /// Facets of a surface, around and along, from which on elements are not cut into more than one each.
 const FACETS: [usize; 2] = [96, 240];
 
+/// The field of a surface's cells that tells which face of the wall they are of.
+const FACE: &str = "face";
+
 impl Exporter {
     /// Of a run.
     pub fn new(plan: &Plan) -> Self {
@@ -96,17 +99,12 @@ impl Exporter {
             What::Walls => {
                 let (cells, faces) = lattice.skin();
                 let mut file = Document::surface(&points, &cells);
-                file.cell_data("face", faces.into_iter());
+                file.cell_data(FACE, faces.into_iter());
                 file
             }
         };
         drop(points);
-        for (name, value) in [
-            ("state", row.step as f64),
-            ("length_ratio", row.length_ratio),
-            ("diameter_ratio", row.diameter_ratio),
-            ("energy", row.energy),
-        ] {
+        for (name, value) in values(row) {
             file.value(name, value);
         }
         for field in FIELDS {
@@ -123,11 +121,12 @@ impl Exporter {
     pub fn movie(&self) -> Movie {
         let lattice = Nodes::lattice_of_walls(&self.tube, FACETS);
         let [outwards, around, along] = lattice.points();
-        Movie::new(lattice.skin().0, outwards * around * along)
+        let (cells, faces) = lattice.skin();
+        Movie::new(cells, (FACE, faces), outwards * around * along)
     }
 
     /// Adds a state to it, its number as the time.
-    pub fn film(&self, movie: &mut Movie, state: &SavedState) {
+    pub fn film(&self, movie: &mut Movie, state: &SavedState, row: &Row) {
         let lattice = Nodes::lattice_of_walls(&self.tube, FACETS);
         let nodes = Nodes::of(&self.tube, &state.load, &state.u, lattice);
         let length = self.scale.length;
@@ -136,6 +135,17 @@ impl Exporter {
             let numbers = (field.numbers)(&nodes, &self.scale);
             (field.name, field.components.len().max(1), numbers)
         };
-        movie.step(state.row as f64, points, FIELDS.iter().map(field).collect());
+        let fields = FIELDS.iter().map(field).collect();
+        movie.step(state.row as f64, values(row), points, fields);
     }
+}
+
+/// What files name of a state.
+fn values(row: &Row) -> [(&'static str, f64); 4] {
+    [
+        ("state", row.step as f64),
+        ("length_ratio", row.length_ratio),
+        ("diameter_ratio", row.diameter_ratio),
+        ("energy", row.energy),
+    ]
 }

@@ -13,33 +13,46 @@ const CHUNK: usize = 1 << 14;
 #[derive(Clone, Debug)]
 pub struct Movie {
     cells: Cells,
+    /// A field that cells have, the same in every step: its name and its numbers.
+    of_cells: (String, Vec<u8>),
     points: Vec<f32>,
     count: usize,
     times: Vec<f64>,
     /// Name, components, and the numbers of all steps so far.
     fields: Vec<(String, usize, Vec<f32>)>,
+    /// Name, and one number of every step so far.
+    values: Vec<(String, Vec<f64>)>,
 }
 
 impl Movie {
-    /// Of polygons over so many points.
-    pub fn new(cells: Cells, count: usize) -> Self {
+    /// Of polygons, which have a field, over so many points.
+    pub fn new(cells: Cells, (name, numbers): (&str, Vec<u8>), count: usize) -> Self {
         Self {
             cells,
+            of_cells: (name.to_owned(), numbers),
             count,
             points: vec![],
             times: vec![],
             fields: vec![],
+            values: vec![],
         }
     }
 
-    /// Adds a step: its time, its points, and the fields that these have, each the same in every step.
+    /// Adds a step: its time, single numbers of it, its points, and the fields that these have, each the same in every step.
     pub fn step(
         &mut self,
         time: f64,
+        values: impl IntoIterator<Item = (&'static str, f64)>,
         points: impl Iterator<Item = [f64; 3]>,
         fields: Vec<(&str, usize, Vec<f32>)>,
     ) {
         self.times.push(time);
+        for (i, (name, value)) in values.into_iter().enumerate() {
+            if self.values.len() == i {
+                self.values.push((name.to_owned(), vec![]));
+            }
+            self.values[i].1.push(value);
+        }
         self.points.extend(points.flatten().map(|x| x as f32));
         for (i, (name, components, numbers)) in fields.into_iter().enumerate() {
             if self.fields.len() == i {
@@ -83,6 +96,15 @@ impl Movie {
             floats(&mut data, name, numbers, *components);
         }
         root.add_group(data.finish());
+        let (name, numbers) = &self.of_cells;
+        let mut data = root.create_group("CellData");
+        data.create_dataset(name).with_u8_data(numbers);
+        root.add_group(data.finish());
+        let mut data = root.create_group("FieldData");
+        for (name, numbers) in &self.values {
+            data.create_dataset(name).with_f64_data(numbers);
+        }
+        root.add_group(data.finish());
 
         let mut group = root.create_group("Steps");
         group.set_attr("NSteps", AttrValue::I64(steps as i64));
@@ -103,6 +125,20 @@ impl Movie {
             integers(&mut offsets, name, &first(self.count));
         }
         group.add_group(offsets.finish());
+        let mut offsets = group.create_group("CellDataOffsets");
+        integers(&mut offsets, &self.of_cells.0, &vec![0; steps]);
+        group.add_group(offsets.finish());
+        let mut offsets = group.create_group("FieldDataOffsets");
+        let mut sizes = group.create_group("FieldDataSizes");
+        for (name, _) in &self.values {
+            integers(&mut offsets, name, &first(1));
+            // One component of one tuple.
+            let ones = vec![1; 2 * steps];
+            let dataset = sizes.create_dataset(name);
+            dataset.with_i64_data(&ones).with_shape(&[steps as u64, 2]);
+        }
+        group.add_group(offsets.finish());
+        group.add_group(sizes.finish());
         root.add_group(group.finish());
         file.add_group(root.finish());
         file.finish().map_err(|error| error.to_string())
