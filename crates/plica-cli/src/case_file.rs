@@ -3,6 +3,7 @@
 use crate::args::CaseArguments;
 use crate::failure::Failure;
 use plica::case::{self, Open, Wanted};
+use plica::draw::boxes;
 use plica::study::{NamedMode, Plan, RunDirectory, SavedState, SavedStateError, StudyError};
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
@@ -15,6 +16,18 @@ const LARGEST: u64 = 1 << 20;
 pub fn open(arguments: &CaseArguments) -> Result<(String, Plan), Failure> {
     let reach = Reach::of(arguments)?;
     open_with(&arguments.file, &|wanted| reach.read(wanted))
+}
+
+/// What whoever runs a case should know, a sentence each.
+pub fn advice(plan: &Plan) -> Vec<String> {
+    let mut advice = case::advice(plan);
+    let boxes: String = boxes(&plan.title).into_iter().collect();
+    if !boxes.is_empty() {
+        advice.push(format!(
+            "there are no letters for {boxes} of the title in the fonts of pictures: PNGs show boxes (SVGs and reports are set in the fonts of whoever reads them)"
+        ));
+    }
+    advice
 }
 
 /// Where files may lie that a case names.

@@ -3,7 +3,6 @@
 use crate::args::CaseArguments;
 use crate::failure::Failure;
 use crate::{case_file, console};
-use plica::case::advice;
 use plica::material::{Material, NeoHookean, Volumetric};
 use plica::spline::Circle;
 use plica::study::{Plan, fits, forecast};
@@ -16,7 +15,7 @@ pub fn check(arguments: &CaseArguments) -> Result<(), Failure> {
     for (name, value) in rows(&plan) {
         page += &format!("  {name:<10} {value}\n");
     }
-    for warning in advice(&plan) {
+    for warning in case_file::advice(&plan) {
         page += &format!("\nwarning: {warning}");
     }
     console::say(&(page.trim_end().to_owned() + "\n"))?;

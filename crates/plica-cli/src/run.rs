@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{case_file, console, threads};
-use plica::case::{advice, differences};
+use plica::case::differences;
 use plica::report::pictures;
 use plica::study::{self, Observer, Plan, RunDirectory, StudyError, Summary};
 use std::path::{Path, PathBuf};
@@ -140,7 +140,7 @@ fn lead(
 ) -> Result<(), Failure> {
     let out = directory.path().to_owned();
     console::tell(&format!("{}\nwriting to {}", plan.title, out.display()));
-    for warning in advice(plan) {
+    for warning in case_file::advice(plan) {
         console::tell(&format!("warning: {warning}"));
     }
     let mut progress = Progress::new(plan, interrupt.clone());

@@ -79,6 +79,27 @@ fn wrong_arguments_and_missing_files_have_their_codes() {
 }
 
 #[test]
+fn a_title_that_pictures_cannot_write_is_told() {
+    let directory = scratch("letters");
+    let case = std::fs::read_to_string(root().join("cases/small.toml")).unwrap();
+    let (_, rest) = case.split_once('\n').unwrap();
+    let told = |title: &str| {
+        std::fs::write(
+            directory.join("a.toml"),
+            format!("title = \"{title}\"\n{rest}"),
+        )
+        .unwrap();
+        let output = plica(&directory, &["check", "a.toml"]);
+        assert!(output.status.success());
+        String::from_utf8(output.stdout)
+            .unwrap()
+            .contains("PNGs show boxes")
+    };
+    assert!(told("腸重積"));
+    assert!(!told("Ελιά, è"));
+}
+
+#[test]
 fn a_new_case_is_sound_and_never_overwrites() {
     let directory = scratch("new");
     assert!(plica(&directory, &["new"]).status.success());

@@ -72,7 +72,7 @@ impl SplineTube {
     /// the nearest element. Where the resistance to a change of volume is integrated apart, its energy is that
     /// of the nearest of its points through the wall, and so is its stress: between them volume is not what the wall resists.
     pub fn sample(&self, load: &Load, u: &[f64], at: Point) -> Sample {
-        // Where the machine can multiply and add at once, calling a function for it would take most of the time.
+        // Where the machine can multiply and add at once, calling a function for each takes a third of the time.
         dispatch!(Level::new(), _simd => self.sample_at(load, u, at))
     }
 

@@ -23,7 +23,7 @@ pub(super) fn leaf(key: &Key, path: &str, value: &DeValue) -> Result<(), Wrong> 
         (Kind::Text, DeValue::String(text)) => {
             let plain = !text.trim().is_empty() && !text.chars().any(char::is_control);
             if !plain || text.chars().count() > 200 {
-                let rule = "must be one line of text, not empty, of at most 200 characters";
+                let rule = "must be one line of text without tabs or other control characters, not empty, of at most 200 characters";
                 return Err(Wrong::new(rule, None));
             }
         }

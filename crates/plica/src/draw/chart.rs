@@ -8,7 +8,7 @@ use super::frame::Frame;
 use super::inset::Inset;
 use super::text::{CAPITAL, fitting};
 use super::ticks::{Ticks, power_of_ten};
-use super::{Content, DrawError, Image};
+use super::{DrawError, Image, Packing};
 
 /// Sizes of axis titles and of everything else, in points.
 pub(super) const TITLE: f64 = 9.0;
@@ -120,13 +120,13 @@ impl Chart {
     /// [`DrawError::Empty`] without a finite point, [`DrawError::Range`] for a given range that is none,
     /// [`DrawError::Size`] for an absurd size.
     pub fn png(&self, width_px: usize) -> Result<Vec<u8>, DrawError> {
-        let content = if self.insets.is_empty() {
-            Content::Lines
+        let packing = if self.insets.is_empty() {
+            Packing::Plain
         } else {
-            Content::Shades
+            Packing::Small
         };
         let image = self.image(width_px)?;
-        image.to_png(self.width_pt * 25.4 / 72.0, content)
+        image.to_png(self.width_pt * 25.4 / 72.0, packing)
     }
 
     /// The chart as pixels.

@@ -9,7 +9,7 @@ use super::light::dot;
 use super::range::Range;
 use super::raster::{View, render};
 use super::text::{CAPITAL, fitting};
-use super::{Content, DrawError, Image, Surface};
+use super::{DrawError, Image, Packing, Surface};
 
 pub(super) const TITLE: f64 = 9.0;
 pub(super) const TEXT: f64 = 8.0;
@@ -70,7 +70,8 @@ pub struct Cutaway {
     pub map: Map,
     /// Direction of the viewer in the tube's coordinates; any but along z.
     pub toward: [f64; 3],
-    /// Points that every panel makes room for beside its own: of all pictures of an animation.
+    /// Points that every panel makes room for, if there are any, instead of its own: those of all pictures of an animation, so that
+    /// these are of one size.
     pub room: Vec<[f64; 3]>,
     /// Samples along either side of a pixel, 1 to 4: 2 are smooth, 3 are finer and take longer.
     pub samples: usize,
@@ -102,10 +103,18 @@ impl Cutaway {
     ///
     /// # Errors
     /// [`DrawError::Empty`] without a finite point or value, [`DrawError::Grid`] for a surface whose lists do not fill
-    /// it, [`DrawError::Range`] for a given range that is none, [`DrawError::Size`] for an absurd size.
+    /// it, [`DrawError::Range`] for a given range that is none, [`DrawError::Size`] for an absurd size, [`DrawError::Triangles`] for too many.
     pub fn png(&self, width_px: usize) -> Result<Vec<u8>, DrawError> {
+        self.packed(width_px, Packing::Small)
+    }
+
+    /// The same, packed in another way.
+    ///
+    /// # Errors
+    /// As [`Cutaway::png`].
+    pub fn packed(&self, width_px: usize, packing: Packing) -> Result<Vec<u8>, DrawError> {
         let image = self.image(width_px)?;
-        image.to_png(self.width_pt * 25.4 / 72.0, Content::Shades)
+        image.to_png(self.width_pt * 25.4 / 72.0, packing)
     }
 
     /// Two points that make as much room as its panels take.
@@ -120,12 +129,23 @@ impl Cutaway {
         Ok([corner(left, low), corner(left + width, low + height)])
     }
 
-    /// Pixels to a unit of D, at most, of tubes at least so long in a picture so many pixels wide.
-    pub fn finest_scale(&self, length: f64, width_px: usize) -> f64 {
-        let [right, ..] = View::axes(self.toward);
-        let across = (self.width_pt - 2.0 * SIDE) / (length * right[2]);
-        // Somewhere it is a diameter high.
-        across.min(TALLEST) * width_px as f64 / self.width_pt
+    /// Pixels to a unit of D in a picture so many pixels wide.
+    ///
+    /// # Errors
+    /// [`DrawError::Empty`] without a finite point.
+    pub fn pixels_per_unit(&self, width_px: usize) -> Result<f64, DrawError> {
+        Ok(self.points_per_unit()? * width_px as f64 / self.width_pt)
+    }
+
+    /// Printed points to a unit of D: a short tube is as wide as its height lets it be.
+    fn points_per_unit(&self) -> Result<f64, DrawError> {
+        let [right, up, _] = View::axes(self.toward);
+        let (_, width) = self.extent(self.panels.iter(), right)?;
+        let mut tallest: f64 = 0.0;
+        for panel in &self.panels {
+            tallest = tallest.max(self.extent([panel].into_iter(), up)?.1);
+        }
+        Ok(((self.width_pt - 2.0 * SIDE) / width).min(TALLEST / tallest))
     }
 
     /// The picture as pixels.
@@ -139,12 +159,8 @@ impl Cutaway {
         let spanned = self.spanned()?;
         let [right, up, toward] = View::axes(self.toward);
         let (left, width) = self.extent(self.panels.iter(), right)?;
-        let mut tallest: f64 = 0.0;
-        for panel in &self.panels {
-            tallest = tallest.max(self.extent([panel].into_iter(), up)?.1);
-        }
-        // Points per D; a short tube is as wide as its height lets it be, and stands in the middle.
-        let per_unit = ((self.width_pt - 2.0 * SIDE) / width).min(TALLEST / tallest);
+        let per_unit = self.points_per_unit()?;
+        // A short tube stands in the middle.
         let inset = 0.5 * (self.width_pt - width * per_unit);
 
         let mut tops = Vec::new();
@@ -233,8 +249,11 @@ impl Cutaway {
     ) -> Result<(f64, f64), DrawError> {
         let surfaces = panels.flat_map(|p| p.surfaces.iter().chain(&p.glass));
         let points = surfaces.flat_map(|s| &s.points);
-        let points = points.chain(&self.room);
-        let (low, high) = ends(points.map(|&p| dot(p, direction)));
+        let (low, high) = if self.room.is_empty() {
+            ends(points.map(|&p| dot(p, direction)))
+        } else {
+            ends(self.room.iter().map(|&p| dot(p, direction)))
+        };
         if high > low {
             Ok((low, high - low))
         } else {

@@ -43,6 +43,18 @@ fn font(italic: bool) -> Option<(&'static Font, f64)> {
     Some((font, f64::from(font.units_per_em().max(1))))
 }
 
+/// The characters of a text that the fonts have no letters for, each once: they are drawn as boxes.
+pub fn boxes(text: &str) -> Vec<char> {
+    let mut boxes = vec![];
+    for character in text.chars() {
+        let set = Letters::set(&character.to_string(), false);
+        if set.glyphs.iter().any(|glyph| glyph.number == 0) && !boxes.contains(&character) {
+            boxes.push(character);
+        }
+    }
+    boxes
+}
+
 impl Letters {
     /// Sets a text: pairs are kerned, accents stand on their letters.
     pub fn set(text: &str, italic: bool) -> Self {
@@ -160,6 +172,12 @@ mod tests {
         assert_eq!(mixed[4..], [numbers("ב"), numbers("א")].concat());
         // An accent of its own takes no room.
         assert!((width("e\u{301}") - width("e")).abs() < 1e-12);
+    }
+
+    #[test]
+    fn letters_that_are_not_there_are_told() {
+        assert_eq!(boxes("Süße, ελιά, мышца, אב, e\u{301} ∂W/∂u"), []);
+        assert_eq!(boxes("腸重積, 腸"), ['腸', '重', '積']);
     }
 
     #[test]

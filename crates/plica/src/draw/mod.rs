@@ -10,8 +10,10 @@
 //! | `colour_bar` | the bar beneath the cut-aways |
 //! | [`section`] | the surfaces of a tube cut open along its axis, from any wall mapping |
 //! | [`Surface`] | a grid of points that carries a field |
-//! | [`raster`], `samples` | shaded surfaces: their triangles; a z-buffer, and what light it makes of pixels |
-//! | `light` | how bright a point of a surface is |
+//! | [`raster`] | shaded surfaces on a page, strip by strip |
+//! | `scene`, `samples` | their triangles; which of them lies before the others, sample by sample |
+//! | `pixels` | the pixels that samples make, and the line at edges |
+//! | `light`, `lit` | how bright a point of a surface is; how bright a sample |
 //! | [`colour`] | two even maps for fields, Okabe and Ito's palette for lines |
 //! | `ticks` | round numbers for axes |
 //! | [`label`] | `*z*/*D*`, `*L*_{max}`, `10^{−3}`; the same as HTML and as plain text |
@@ -65,8 +67,9 @@ pub use animation::{REST, animation};
 pub use chart::{Chart, Curve, Marker, Rule, Stroke};
 pub use colour::Map;
 pub use cutaway::{Cutaway, Panel};
-pub use image::{Content, Image};
+pub use image::{Image, Packing};
 pub use inset::Inset;
+pub use letters::boxes;
 pub use range::{Range, Spanned};
 pub use section::{HALF, Opening, evenly};
 pub use surface::{Sides, Surface};
@@ -111,6 +114,12 @@ pub enum DrawError {
         width: f64,
         /// Height in pixels.
         height: f64,
+    },
+    /// More triangles than can be told apart.
+    #[error("surfaces of {triangles} triangles, more than can be told apart")]
+    Triangles {
+        /// How many there are.
+        triangles: usize,
     },
     /// The drawing library refused.
     #[error("drawing failed: {0}")]

@@ -49,7 +49,8 @@ impl View {
 /// take turns: a strip's samples fit a cache, and what a strip shows depends on nothing but the surfaces.
 ///
 /// # Errors
-/// [`DrawError::Grid`] for a surface whose lists do not fill its grid, [`DrawError::Size`] for an absurd picture.
+/// [`DrawError::Grid`] for a surface whose lists do not fill its grid, [`DrawError::Size`] for an absurd picture,
+/// [`DrawError::Triangles`] for too many.
 pub fn render(
     surfaces: &[Surface],
     view: &View,

@@ -7,6 +7,7 @@ use std::ops::Range;
 const NEAR: f64 = 1e-6;
 /// Samples that are covered at a time.
 const LANES: usize = 8;
+
 /// The nearest whole number to one from 0 to 2³¹, the even one of two: without the care of `as` for all others.
 #[inline(always)]
 fn nearest_whole(x: f64) -> usize {

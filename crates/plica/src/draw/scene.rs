@@ -34,7 +34,7 @@ pub(super) struct Corner {
 
 impl Scene {
     /// # Errors
-    /// [`DrawError::Grid`] for a surface whose lists do not fill its grid, [`DrawError::Backend`] for more than can be told apart.
+    /// [`DrawError::Grid`] for a surface whose lists do not fill its grid, [`DrawError::Triangles`] for more than can be told apart.
     pub fn of(
         surfaces: &[Surface],
         view: &View,
@@ -45,10 +45,20 @@ impl Scene {
             bits: u32::BITS - (surfaces.len() + 1).ilog2() - 1,
             ..Self::default()
         };
+        let mut triangles = 0usize;
+        for surface in surfaces {
+            surface.check()?;
+            triangles = triangles.saturating_add(surface.points.len().saturating_mul(2));
+        }
+        if triangles >> scene.bits != 0 {
+            return Err(DrawError::Triangles { triangles });
+        }
         let scale = view.scale * samples as f64;
         let lamp = Lamp::default();
         for (number, surface) in surfaces.iter().enumerate() {
-            surface.check()?;
+            if surface.columns < 2 || surface.rows < 2 {
+                continue;
+            }
             let first = scene.corners.len();
             let points = surface.points.iter().zip(surface.normals());
             let corners = points.zip(&surface.values).map(|((&p, n), &value)| {
@@ -83,10 +93,6 @@ impl Scene {
                 }
             }
         }
-        let told_apart = scene.triangles.len() as u64 <= 1 << scene.bits;
-        if !told_apart || u32::try_from(scene.corners.len()).is_err() {
-            return Err(DrawError::Backend("too many triangles".into()));
-        }
         Ok(scene)
     }
 
@@ -120,4 +126,48 @@ impl Scene {
 #[inline]
 pub(super) fn double_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::Map;
+
+    #[test]
+    fn names_tell_triangles_and_surfaces_apart() {
+        let square = Surface {
+            columns: 2,
+            rows: 2,
+            points: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]],
+            values: vec![0.5; 4],
+            sides: Sides::Both,
+        };
+        let view = View {
+            right: [1.0, 0.0, 0.0],
+            up: [0.0, 1.0, 0.0],
+            toward: [0.0, 0.0, 1.0],
+            corner: (0.0, 1.0),
+            scale: 1.0,
+            size: (16, 16),
+        };
+        let shader = Shader::new((0.0, 1.0), Map::Viridis);
+        for count in [0, 1, 3, 6, 7, 8, 12] {
+            let scene = Scene::of(&vec![square.clone(); count], &view, 2, &shader).unwrap();
+            assert_eq!(scene.triangles.len(), 2 * count);
+            assert_eq!(scene.surface(0), 0);
+            for number in 0..2 * count as u32 {
+                let name = scene.name(number);
+                assert_eq!(scene.surface(name), number / 2 + 1);
+                let places = scene.corners(name).map(|corner| corner.place);
+                let own = scene.triangles[number as usize].corners;
+                assert_eq!(places, scene.places(own));
+            }
+        }
+        let nothing = Surface {
+            rows: usize::MAX,
+            ..Surface::default()
+        };
+        let scene = Scene::of(&[nothing], &view, 2, &shader).unwrap();
+        assert!(scene.triangles.is_empty());
+    }
 }

@@ -159,7 +159,7 @@ fn kept(text: &str) -> String {
 fn picture(stamp: &Stamp, per_point: f64) -> Result<element::Image, DrawError> {
     let points = |pixels: f64| format!("{:.4}", pixels / per_point);
     let [x, y] = stamp.at.map(|v| points(v as f64));
-    let png = STANDARD.encode(stamp.picture.to_png(1.0, super::Content::Shades)?);
+    let png = STANDARD.encode(stamp.picture.to_png(1.0, super::Packing::Small)?);
     Ok(element::Image::new()
         .set("x", x)
         .set("y", y)

@@ -3,7 +3,6 @@
 
 mod columns;
 mod field;
-mod fineness;
 mod modes;
 mod opened;
 mod pictures;
@@ -11,12 +10,12 @@ mod plots;
 mod stability;
 mod states;
 mod story;
+mod tolerance;
 mod upright;
 mod walls;
 
 pub use columns::{Column, Role};
 pub use field::Field;
-pub use fineness::Fineness;
 pub use modes::mode_pictures;
 pub use opened::{Look, Points, looked_at, opened};
 pub use pictures::pictures;
@@ -24,4 +23,5 @@ pub use plots::{plot, plot_walls};
 pub use stability::stability_pictures;
 pub use states::{Appearance, Shown, animate, render};
 pub use story::{Abscissa, Story};
+pub use tolerance::Tolerance;
 pub use upright::{VISIBLE, upright};

@@ -1,9 +1,9 @@
 //! A tube cut open, as a picture shows it.
 
 use super::Field;
-use super::fineness::{Fineness, Seen, Wall};
+use super::tolerance::{Meshed, Seen, Tolerance};
 use crate::assembly::{Point, SplineTube};
-use crate::draw::{Cutaway, DrawError, HALF, Opening, Spanned, Surface};
+use crate::draw::{Cutaway, DrawError, HALF, Opening, Range, Surface};
 use crate::tube::Load;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -28,17 +28,17 @@ pub enum Points {
     /// So many points along, around what stays, and through the wall.
     Evenly([usize; 3]),
     /// As many as it takes.
-    Finely(Fineness),
+    Within(Tolerance),
 }
 
 /// Pieces along a tube, at least: of a picture whose width is not known, and of a coarse look.
 const ALONG: usize = 200;
 const COARSE: usize = 160;
 
-/// By how many pixels what is drawn may be off the wall.
-const PIXELS: f64 = 0.15;
+/// By how many pixels what is drawn may be off the wall, at most: cut along, joined along, and cut around by a third of it each.
+const PIXELS: f64 = 0.4;
 /// By how much of what the colours span it may be off the field.
-const COLOURS: f64 = 0.01;
+const COLOURS: f64 = 0.03;
 
 impl Look {
     /// The near half taken away, coloured by strain energy density.
@@ -54,14 +54,15 @@ impl Look {
         }
     }
 
-    /// With an angle of the wall taken away, in degrees: 180 the near half, 90 its upper quarter, 0 nothing.
+    /// With an angle of the wall taken away, in degrees: 180 the near half, 90 its upper quarter, 0 nothing. As many even points stand
+    /// for what is left, whatever that is.
     #[must_use]
     pub fn cut(mut self, degrees: f64) -> Self {
         self.kept = (degrees.to_radians(), TAU);
         self
     }
 
-    /// At few points: for the room it takes, and what its colours span.
+    /// At few even points: for the room it takes, and for what colours span, which every point counts alike for.
     #[must_use]
     pub fn coarse(mut self, tube: &SplineTube) -> Self {
         let through = if tube.sector.rings == 1 { 3 } else { 5 };
@@ -71,27 +72,19 @@ impl Look {
         self
     }
 
-    /// At as many points as it takes for a picture so wide of tubes of which this is a coarse look; and what their colours span.
+    /// At as many points as it takes in a picture so many pixels wide that has coarse looks at the tubes so far; and the ends of its
+    /// colour bar, which finer looks keep.
     ///
     /// # Errors
-    /// [`DrawError`] for a range that is none, or without a value.
-    pub fn fine(
-        mut self,
-        coarse: &[&[Surface]],
-        picture: &Cutaway,
-        width: usize,
-    ) -> Result<(Self, Spanned), DrawError> {
-        let surfaces = || coarse.iter().copied().flatten();
-        let spanned = picture
-            .range
-            .of(surfaces().flat_map(|s| &s.values).copied())?;
-        let shortest = coarse.iter().map(|tube| length(tube));
-        let shortest = shortest.fold(f64::INFINITY, f64::min);
-        self.points = Points::Finely(Fineness {
-            place: PIXELS / picture.finest_scale(shortest, width),
-            value: COLOURS * (spanned.high - spanned.low),
+    /// As [`Cutaway::png`].
+    pub fn fine(mut self, coarse: &Cutaway, width: usize) -> Result<(Self, Range), DrawError> {
+        let colours = coarse.ends()?;
+        self.points = Points::Within(Tolerance {
+            place: PIXELS / coarse.pixels_per_unit(width)?,
+            value: COLOURS,
+            colours,
         });
-        Ok((self, spanned))
+        Ok((self, Range::Given(colours.0, colours.1)))
     }
 
     /// What [`Look::cut`] takes away; none if that is nothing.
@@ -100,15 +93,6 @@ impl Look {
         other.kept = (0.0, self.kept.0);
         (self.kept.0 > 0.0).then_some(other)
     }
-}
-
-/// From one end of a tube to the other.
-fn length(tube: &[Surface]) -> f64 {
-    let along = tube.iter().flat_map(|s| &s.points).map(|point| point[2]);
-    let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| {
-        (low.min(z), high.max(z))
-    });
-    high - low
 }
 
 /// The surfaces of a tube with its near half taken away, coloured by strain energy density, in E; the
@@ -141,7 +125,8 @@ pub fn looked_at(
             let (sin, cos) = upwards.sin_cos();
             return ([x * cos + y * sin, y * cos - x * sin, z], value);
         }
-        let place = [along.to_bits(), xi.to_bits()];
+        // The same place, however it was come by.
+        let place = [along, xi].map(|x| (x * f64::from(1u32 << 30)).round() as u64);
         let ([z, x, y], value) = *known
             .borrow_mut()
             .entry(place)
@@ -151,12 +136,12 @@ pub fn looked_at(
     };
     let opening = match look.points {
         Points::Evenly(points) => Opening::evenly(look.kept, points),
-        Points::Finely(fineness) => {
-            let meshed = Wall {
+        Points::Within(tolerance) => {
+            let meshed = Meshed {
                 elements: [elements, tube.wall.elements()],
                 axisymmetric,
             };
-            fineness.opening(look.kept, meshed, wall)
+            tolerance.opening(look.kept, meshed, wall)
         }
     };
     opening.surfaces(|zeta, angle, xi| wall(zeta * elements as f64, angle, xi))

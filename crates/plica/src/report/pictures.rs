@@ -6,7 +6,7 @@ use super::upright::upright;
 use super::walls::{Wall, walls};
 use super::{Field, Story};
 use crate::assembly::SplineTube;
-use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Panel, Range, Rule, Surface};
+use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Packing, Panel, Rule};
 use crate::study::{Plan, Row, Scale, Snapshot, Summary};
 use rayon::prelude::*;
 
@@ -40,7 +40,7 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     }
     // The tube takes longest: whoever is done with the plots helps.
     let (tube, plots) = rayon::join(
-        || cutaway(plan, &tube, &chosen, upwards)?.png(WIDTH),
+        || cutaway(plan, &tube, &chosen, upwards)?.packed(WIDTH, Packing::Fast),
         || Ok([energy()?, walls(plan, &tube, &chosen).png(WIDTH)?]),
     );
     let [energy, walls] = plots?;
@@ -107,27 +107,25 @@ fn cutaway(
         factor,
         ..Look::half(tube)
     };
-    let looked =
-        |look: &Look, state: &Wall<'_>| looked_at(tube, state.load, state.u, upwards, look);
+    let panel = |look: &Look, state: &Wall<'_>| Panel {
+        label: state.label.clone(),
+        surfaces: looked_at(tube, state.load, state.u, upwards, look),
+        ..Panel::default()
+    };
     let picture = Cutaway {
         title: plan.title.clone(),
         value_label,
         bar: bar(&Scale::of(plan.units.as_ref())),
         ..Cutaway::default()
     };
-    let coarse = look.coarse(tube);
-    let coarse: Vec<Vec<Surface>> = chosen.par_iter().map(|s| looked(&coarse, s)).collect();
-    let coarse: Vec<&[Surface]> = coarse.iter().map(Vec::as_slice).collect();
-    let (fine, spanned) = look.fine(&coarse, &picture, WIDTH)?;
-    let panel = |state: &Wall<'_>| Panel {
-        label: state.label.clone(),
-        surfaces: looked(&fine, state),
-        ..Panel::default()
+    let seen = |look: &Look| Cutaway {
+        panels: chosen.par_iter().map(|state| panel(look, state)).collect(),
+        ..picture.clone()
     };
+    let (fine, range) = look.fine(&seen(&look.coarse(tube)), WIDTH)?;
     Ok(Cutaway {
-        panels: chosen.par_iter().map(panel).collect(),
-        range: Range::Given(spanned.low, spanned.high),
-        ..picture
+        range,
+        ..seen(&fine)
     })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::assembly::{Point, SplineTube};
 use crate::draw::{
-    Chart, Content, Curve, Cutaway, DrawError, HALF, Image, Map, Marker, Opening, Panel, Range,
+    Chart, Curve, Cutaway, DrawError, HALF, Image, Map, Marker, Opening, Packing, Panel, Range,
     Rule, Stroke, Surface,
 };
 use crate::stability::{Change, How, Mode, Quantity, Stability, Station};
@@ -59,7 +59,7 @@ fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
         .into_iter()
         .map(image)
         .collect::<Result<Vec<_>, _>>()?;
-    Image::stacked(&images)?.to_png(COLUMN * 25.4 / 72.0, Content::Lines)
+    Image::stacked(&images)?.to_png(COLUMN * 25.4 / 72.0, Packing::Plain)
 }
 
 /// The lowest eigenvalue of each harmonic along a stage.
@@ -208,7 +208,7 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
         ..Cutaway::default()
     };
     let images = [cutaway.image(WIDTH)?, meridian.amplitudes().image(WIDTH)?];
-    Image::stacked(&images)?.to_png(PAGE * 25.4 / 72.0, Content::Shades)
+    Image::stacked(&images)?.to_png(PAGE * 25.4 / 72.0, Packing::Small)
 }
 
 /// A state and its mode along one meridian, from which the others follow.

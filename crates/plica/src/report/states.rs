@@ -6,10 +6,7 @@ use super::opened::{Look, looked_at};
 use super::pictures::energy_label;
 use super::upright::upright;
 use crate::assembly::SplineTube;
-use crate::draw::{
-    Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, Spanned, Surface,
-    animation,
-};
+use crate::draw::{Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, animation};
 use crate::study::{Plan, Row, SavedState, Scale};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -57,15 +54,16 @@ pub type Shown = (SavedState, Row);
 pub fn render(plan: &Plan, states: &[Shown], look: &Appearance) -> Result<Vec<u8>, DrawError> {
     let tube = spline_tube(plan);
     let coarse = coarse(&tube, plan, states, look);
-    let (finest, spanned) = finest(&tube, plan, &coarse, look)?;
+    let (finest, range) = look_of(&tube, plan, look).fine(&coarse, look.width)?;
     let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
     let panels = states
         .par_iter()
         .map(|shown| panel(&tube, shown, upwards, &finest, look));
     let picture = Cutaway {
+        panels: panels.collect(),
         samples: FINEST,
-        range: Range::Given(spanned.low, spanned.high),
-        ..picture(plan, panels.collect(), look)
+        range,
+        ..coarse
     };
     picture.png(look.width)
 }
@@ -85,17 +83,10 @@ pub fn animate(
 ) -> Result<Option<Vec<u8>>, DrawError> {
     let tube = spline_tube(plan);
     // A coarse look at all states for the frame and the colours that they share.
-    let coarse = coarse(&tube, plan, states, look);
-    let (finest, spanned) = finest(&tube, plan, &coarse, look)?;
-    let room = coarse
-        .into_iter()
-        .map(|panel| picture(plan, vec![panel], look).room());
-    let room = room.collect::<Result<Vec<_>, DrawError>>()?.concat();
+    let mut coarse = coarse(&tube, plan, states, look);
+    coarse.room = coarse.room()?.to_vec();
+    let (finest, range) = look_of(&tube, plan, look).fine(&coarse, look.width)?;
     let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
-    let frame_look = Appearance {
-        range: Some([spanned.low, spanned.high]),
-        ..*look
-    };
     let done = AtomicUsize::new(0);
     let frame = |shown: &Shown| -> Result<Option<Image>, DrawError> {
         if !told(done.load(Ordering::Relaxed)) {
@@ -103,8 +94,9 @@ pub fn animate(
         }
         let panel = panel(&tube, shown, upwards, &finest, look);
         let tube = Cutaway {
-            room: room.clone(),
-            ..picture(plan, vec![panel], &frame_look)
+            room: coarse.room.clone(),
+            range,
+            ..picture(plan, vec![panel], look)
         };
         let tube = tube.image(look.width)?;
         let energy = energy(plan, rows, &shown.1).image(look.width)?;
@@ -137,24 +129,13 @@ fn look_of(tube: &SplineTube, plan: &Plan, look: &Appearance) -> Look {
 }
 
 /// A coarse look at states.
-fn coarse(tube: &SplineTube, plan: &Plan, states: &[Shown], look: &Appearance) -> Vec<Panel> {
+fn coarse(tube: &SplineTube, plan: &Plan, states: &[Shown], look: &Appearance) -> Cutaway {
     let coarse = look_of(tube, plan, look).coarse(tube);
     let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
     let panels = states
         .par_iter()
         .map(|shown| panel(tube, shown, upwards, &coarse, look));
-    panels.collect()
-}
-
-/// A look as fine as pictures show, and what their colours span.
-fn finest(
-    tube: &SplineTube,
-    plan: &Plan,
-    coarse: &[Panel],
-    look: &Appearance,
-) -> Result<(Look, Spanned), DrawError> {
-    let coarse: Vec<&[Surface]> = coarse.iter().map(|panel| &panel.surfaces[..]).collect();
-    look_of(tube, plan, look).fine(&coarse, &picture(plan, vec![], look), look.width)
+    picture(plan, panels.collect(), look)
 }
 
 fn panel(
