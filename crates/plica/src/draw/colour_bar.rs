@@ -9,7 +9,10 @@ use super::ticks::{power_of_ten, short, ticks};
 
 impl Cutaway {
     /// What its colours span.
-    pub(super) fn spanned(&self) -> Result<Spanned, DrawError> {
+    ///
+    /// # Errors
+    /// As [`Cutaway::png`].
+    pub fn spanned(&self) -> Result<Spanned, DrawError> {
         let surfaces = self.panels.iter().flat_map(|p| &p.surfaces);
         self.range.of(surfaces.flat_map(|s| &s.values).copied())
     }

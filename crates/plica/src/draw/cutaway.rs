@@ -232,15 +232,6 @@ impl Cutaway {
         canvas.finish()
     }
 
-    /// The values at the two ends of the colour bar.
-    ///
-    /// # Errors
-    /// As [`Cutaway::png`].
-    pub fn ends(&self) -> Result<(f64, f64), DrawError> {
-        let spanned = self.spanned()?;
-        Ok((spanned.low, spanned.high))
-    }
-
     /// Start and length of what the panels cover along a direction.
     pub(super) fn extent<'a>(
         &self,
@@ -300,6 +291,32 @@ pub(super) mod tests {
             inked * 4 > image.pixels.len(),
             "{inked} of {}",
             image.pixels.len()
+        );
+    }
+
+    #[test]
+    fn pictures_that_share_room_and_colours_are_of_one_size() {
+        let mut picture = straight(|z| z);
+        let room = picture.room().unwrap().to_vec();
+        let found = picture.spanned().unwrap();
+        assert_eq!(picture.image(600).unwrap().height, {
+            picture.room = room.clone();
+            picture.image(600).unwrap().height
+        });
+        // A tube that outgrows its room is cut off, and its values change no bar.
+        let mut larger = straight(|z| 2.0 * z);
+        for point in &mut larger.panels[0].surfaces[0].points {
+            *point = point.map(|x| 1.1 * x);
+        }
+        let alone = larger.image(600).unwrap().height;
+        (larger.room, larger.range) = (room, Range::Found(found));
+        assert_eq!(larger.spanned().unwrap(), found);
+        let image = larger.image(600).unwrap();
+        assert_eq!(image.height, picture.image(600).unwrap().height);
+        assert_ne!(image.height, alone);
+        assert_eq!(
+            larger.pixels_per_unit(600).unwrap(),
+            picture.pixels_per_unit(600).unwrap()
         );
     }
 

@@ -23,6 +23,8 @@ pub enum Range {
     Full,
     /// These two.
     Given(f64, f64),
+    /// What was found otherwise, the field's own ends with it: of several pictures that tell the same.
+    Found(Spanned),
 }
 
 /// What the colours of a field span, and the field's own ends.
@@ -44,6 +46,9 @@ impl Range {
     /// # Errors
     /// [`DrawError::Empty`] without a finite value, [`DrawError::Range`] for a given range that is none.
     pub fn of(self, values: impl Iterator<Item = f64>) -> Result<Spanned, DrawError> {
+        if let Self::Found(found) = self {
+            return Ok(found);
+        }
         let mut finite: Vec<f64> = values.filter(|v| v.is_finite()).collect();
         let Some(last) = finite.len().checked_sub(1) else {
             return Err(DrawError::Empty { what: "field" });
@@ -57,7 +62,7 @@ impl Range {
                 }
                 (low, high)
             }
-            Self::Full => (least, largest),
+            Self::Full | Self::Found(_) => (least, largest),
             Self::Balanced => {
                 let most = at(last - last / RARE).max(-at(last / RARE));
                 rounded(-most, most)

@@ -62,29 +62,29 @@ impl Look {
         self
     }
 
-    /// At few even points: for the room it takes, and for what colours span, which every point counts alike for.
+    /// At few even points: for the room it takes, and what colours span, which every point counts alike for.
     #[must_use]
     pub fn coarse(mut self, tube: &SplineTube) -> Self {
-        let through = if tube.sector.rings == 1 { 3 } else { 5 };
         let elements = tube.axial.elements();
         let along = elements * COARSE.div_ceil(elements.max(1));
-        self.points = Points::Evenly([along + 1, 25, through]);
+        let around = if tube.sector.rings == 1 { 25 } else { 49 };
+        self.points = Points::Evenly([along + 1, around, 5]);
         self
     }
 
-    /// At as many points as it takes in a picture so many pixels wide that has coarse looks at the tubes so far; and the ends of its
-    /// colour bar, which finer looks keep.
+    /// At as many points as it takes in a picture so many pixels wide that has coarse looks at the tubes so far; and its colour bar,
+    /// which then tells the same in pictures of any size.
     ///
     /// # Errors
     /// As [`Cutaway::png`].
     pub fn fine(mut self, coarse: &Cutaway, width: usize) -> Result<(Self, Range), DrawError> {
-        let colours = coarse.ends()?;
+        let spanned = coarse.spanned()?;
         self.points = Points::Within(Tolerance {
             place: PIXELS / coarse.pixels_per_unit(width)?,
             value: COLOURS,
-            colours,
+            colours: (spanned.low, spanned.high),
         });
-        Ok((self, Range::Given(colours.0, colours.1)))
+        Ok((self, Range::Found(spanned)))
     }
 
     /// What [`Look::cut`] takes away; none if that is nothing.
