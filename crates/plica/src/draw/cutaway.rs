@@ -306,7 +306,7 @@ pub(super) mod tests {
         // A tube that outgrows its room is cut off, and its values change no bar.
         let mut larger = straight(|z| 2.0 * z);
         for point in &mut larger.panels[0].surfaces[0].points {
-            *point = point.map(|x| 1.1 * x);
+            point[0] *= 1.1;
         }
         let alone = larger.image(600).unwrap().height;
         (larger.room, larger.range) = (room, Range::Found(found));
