@@ -21,10 +21,12 @@ pub fn open(arguments: &CaseArguments) -> Result<(String, Plan), Failure> {
 /// What whoever runs a case should know, a sentence each.
 pub fn advice(plan: &Plan) -> Vec<String> {
     let mut advice = case::advice(plan);
-    let boxes: String = boxes(&plan.title).into_iter().collect();
+    let names = plan.stages.iter().map(|stage| &stage.name[..]);
+    let drawn: String = std::iter::once(&plan.title[..]).chain(names).collect();
+    let boxes: String = boxes(&drawn).into_iter().collect();
     if !boxes.is_empty() {
         advice.push(format!(
-            "there are no letters for {boxes} of the title in the fonts of pictures: PNGs show boxes (SVGs and reports are set in the fonts of whoever reads them)"
+            "there are no letters for {boxes} of titles and names in the fonts of pictures: PNGs show boxes (SVGs and reports are set in the fonts of whoever reads them)"
         ));
     }
     advice

@@ -25,13 +25,14 @@ impl Cutaway {
             scale.least < scale.low - hair,
         );
         let exponent = ticks(scale.low, scale.high, INTERVALS).exponent;
-        // With as many digits as it takes to lie beyond the bar.
+        // In the power of ten of the ticks, with as many digits as it takes to lie beyond the bar.
         let told = |value: f64| {
             let end = if value > scale.high {
                 scale.high
             } else {
                 scale.low
             };
+            let [value, end] = [value, end].map(|x| x / 10f64.powi(exponent));
             let digits = (2..8).find(|&digits| short(value, digits) != short(end, digits));
             short(value, digits.unwrap_or(8))
         };

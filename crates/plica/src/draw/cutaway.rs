@@ -5,6 +5,7 @@
 
 use super::canvas::{Anchor, Canvas, INK, Pen};
 use super::colour::{Map, mix};
+use super::image::MIN_SIDE;
 use super::light::dot;
 use super::range::Range;
 use super::raster::{View, render};
@@ -186,9 +187,10 @@ impl Cutaway {
                 toward,
                 corner: (left - margin / per_unit, high + margin / per_unit),
                 scale: per_unit * pixels,
+                // A long thin tube is a line.
                 size: (
-                    ((width * per_unit + 2.0 * margin) * pixels).ceil() as usize,
-                    ((height + 2.0 * margin) * pixels).ceil() as usize,
+                    (((width * per_unit + 2.0 * margin) * pixels).ceil() as usize).max(MIN_SIDE),
+                    (((height + 2.0 * margin) * pixels).ceil() as usize).max(MIN_SIDE),
                 ),
             };
             panel.seen(&view, range, self.map, self.samples)

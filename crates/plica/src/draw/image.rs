@@ -2,6 +2,9 @@
 
 use super::DrawError;
 
+/// The shortest side a picture may have, in pixels.
+pub const MIN_SIDE: usize = 16;
+
 /// The longest side a picture may have, in pixels.
 pub const MAX_SIDE: usize = 8_000;
 
@@ -44,9 +47,9 @@ impl Image {
     /// The sides of a picture in whole pixels.
     ///
     /// # Errors
-    /// [`DrawError::Size`] unless both lie between 16 and [`MAX_SIDE`] pixels.
+    /// [`DrawError::Size`] unless both lie between [`MIN_SIDE`] and [`MAX_SIDE`] pixels.
     pub fn size(width: f64, height: f64) -> Result<[usize; 2], DrawError> {
-        let allowed = 16.0..=MAX_SIDE as f64;
+        let allowed = MIN_SIDE as f64..=MAX_SIDE as f64;
         if !allowed.contains(&width) || !allowed.contains(&height) {
             return Err(DrawError::Size { width, height });
         }

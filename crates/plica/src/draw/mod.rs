@@ -106,7 +106,8 @@ pub enum DrawError {
     },
     /// A picture too small or too large to draw.
     #[error(
-        "picture of {width:.0} x {height:.0} pixels: both sides must lie between 16 and {}",
+        "picture of {width:.0} x {height:.0} pixels: both sides must lie between {} and {}",
+        image::MIN_SIDE,
         image::MAX_SIDE
     )]
     Size {

@@ -62,13 +62,14 @@ impl Look {
         self
     }
 
-    /// At few even points: for the room it takes, and what colours span, which every point counts alike for.
+    /// At few even points, so many of them through the wall: for the room it takes, and what its colours span and its field's own ends,
+    /// which every point counts alike for.
     #[must_use]
-    pub fn coarse(mut self, tube: &SplineTube) -> Self {
+    pub fn coarse(mut self, tube: &SplineTube, through: usize) -> Self {
         let elements = tube.axial.elements();
         let along = elements * COARSE.div_ceil(elements.max(1));
-        let around = if tube.sector.rings == 1 { 25 } else { 49 };
-        self.points = Points::Evenly([along + 1, around, 5]);
+        let around = if tube.sector.rings == 1 { 33 } else { 49 };
+        self.points = Points::Evenly([along + 1, around, through]);
         self
     }
 

@@ -14,6 +14,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Samples along either side of a pixel of a single picture, for which there is time.
 const FINEST: usize = 3;
 
+/// Points through the wall at which fields are looked at first: they may peak anywhere.
+const THROUGH: usize = 13;
+
 /// How states are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Appearance {
@@ -53,9 +56,9 @@ pub type Shown = (SavedState, Row);
 /// [`DrawError`] for sizes and ranges that are none.
 pub fn render(plan: &Plan, states: &[Shown], look: &Appearance) -> Result<Vec<u8>, DrawError> {
     let tube = spline_tube(plan);
-    let coarse = coarse(&tube, plan, states, look);
-    let (finest, range) = look_of(&tube, plan, look).fine(&coarse, look.width)?;
     let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
+    let coarse = coarse(&tube, plan, states, upwards, look);
+    let (finest, range) = look_of(&tube, plan, look).fine(&coarse, look.width)?;
     let panels = states
         .par_iter()
         .map(|shown| panel(&tube, shown, upwards, &finest, look));
@@ -82,11 +85,12 @@ pub fn animate(
     told: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Option<Vec<u8>>, DrawError> {
     let tube = spline_tube(plan);
+    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
     // A coarse look at all states for the frame and the colours that they share.
-    let mut coarse = coarse(&tube, plan, states, look);
+    let mut coarse = coarse(&tube, plan, states, upwards, look);
     coarse.room = coarse.room()?.to_vec();
     let (finest, range) = look_of(&tube, plan, look).fine(&coarse, look.width)?;
-    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
+    coarse.panels = vec![];
     let done = AtomicUsize::new(0);
     let frame = |shown: &Shown| -> Result<Option<Image>, DrawError> {
         if !told(done.load(Ordering::Relaxed)) {
@@ -129,9 +133,14 @@ fn look_of(tube: &SplineTube, plan: &Plan, look: &Appearance) -> Look {
 }
 
 /// A coarse look at states.
-fn coarse(tube: &SplineTube, plan: &Plan, states: &[Shown], look: &Appearance) -> Cutaway {
-    let coarse = look_of(tube, plan, look).coarse(tube);
-    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
+fn coarse(
+    tube: &SplineTube,
+    plan: &Plan,
+    states: &[Shown],
+    upwards: f64,
+    look: &Appearance,
+) -> Cutaway {
+    let coarse = look_of(tube, plan, look).coarse(tube, THROUGH);
     let panels = states
         .par_iter()
         .map(|shown| panel(tube, shown, upwards, &coarse, look));
