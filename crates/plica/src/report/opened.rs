@@ -31,9 +31,8 @@ pub enum Points {
     Within(Tolerance),
 }
 
-/// Pieces along a tube, at least: of a picture whose width is not known, and of a coarse look.
-const ALONG: usize = 200;
-const COARSE: usize = 160;
+/// Pieces along a tube, at least.
+pub(super) const ALONG: usize = 200;
 
 /// By how many pixels what is drawn may be off the wall, at most: cut along, joined along, and cut around by a third of it each.
 const PIXELS: f64 = 0.4;
@@ -62,12 +61,12 @@ impl Look {
         self
     }
 
-    /// At few even points, so many of them through the wall: for the room it takes, and what its colours span and its field's own ends,
-    /// which every point counts alike for.
+    /// At few even points, as many pieces along at least and so many points through the wall: for the room it takes, and what its
+    /// colours span and its field's own ends, which every point counts alike for.
     #[must_use]
-    pub fn coarse(mut self, tube: &SplineTube, through: usize) -> Self {
+    pub fn coarse(mut self, tube: &SplineTube, [along, through]: [usize; 2]) -> Self {
         let elements = tube.axial.elements();
-        let along = elements * COARSE.div_ceil(elements.max(1));
+        let along = elements * along.div_ceil(elements.max(1));
         let around = if tube.sector.rings == 1 { 33 } else { 49 };
         self.points = Points::Evenly([along + 1, around, through]);
         self

@@ -13,8 +13,8 @@ use rayon::prelude::*;
 /// Width of the pictures of a run, in pixels: a first look, for which somebody waits.
 const WIDTH: usize = 1200;
 
-/// Points through the wall at which its energy is looked at first: it peaks at the faces.
-const THROUGH: usize = 5;
+/// Pieces along and points through the wall at which its energy is looked at first: it peaks at the faces.
+const COARSE: [usize; 2] = [160, 5];
 
 /// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots; of a chosen state without one no more
 /// than its energy.
@@ -125,7 +125,7 @@ fn cutaway(
         panels: chosen.par_iter().map(|state| panel(look, state)).collect(),
         ..picture.clone()
     };
-    let (fine, range) = look.fine(&seen(&look.coarse(tube, THROUGH)), WIDTH)?;
+    let (fine, range) = look.fine(&seen(&look.coarse(tube, COARSE)), WIDTH)?;
     Ok(Cutaway {
         range,
         ..seen(&fine)

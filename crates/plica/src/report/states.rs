@@ -2,7 +2,7 @@
 
 use super::Field;
 use super::columns::bar;
-use super::opened::{Look, looked_at};
+use super::opened::{ALONG, Look, looked_at};
 use super::pictures::energy_label;
 use super::upright::upright;
 use crate::assembly::SplineTube;
@@ -14,8 +14,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Samples along either side of a pixel of a single picture, for which there is time.
 const FINEST: usize = 3;
 
-/// Points through the wall at which fields are looked at first: they may peak anywhere.
-const THROUGH: usize = 13;
+/// Pieces along and points through the wall at which fields are looked at first: they may peak anywhere.
+const COARSE: [usize; 2] = [ALONG, 13];
 
 /// How states are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,7 +140,7 @@ fn coarse(
     upwards: f64,
     look: &Appearance,
 ) -> Cutaway {
-    let coarse = look_of(tube, plan, look).coarse(tube, THROUGH);
+    let coarse = look_of(tube, plan, look).coarse(tube, COARSE);
     let panels = states
         .par_iter()
         .map(|shown| panel(tube, shown, upwards, &coarse, look));
