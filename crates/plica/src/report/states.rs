@@ -6,7 +6,9 @@ use super::opened::{ALONG, Look, looked_at};
 use super::pictures::energy_label;
 use super::upright::upright;
 use crate::assembly::SplineTube;
-use crate::draw::{Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, animation};
+use crate::draw::{
+    Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, Surface, animation,
+};
 use crate::study::{Plan, Row, SavedState, Scale};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -86,11 +88,28 @@ pub fn animate(
 ) -> Result<Option<Vec<u8>>, DrawError> {
     let tube = spline_tube(plan);
     let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
-    // A coarse look at all states for the frame and the colours that they share.
-    let mut coarse = coarse(&tube, plan, states, upwards, look);
-    coarse.room = coarse.room()?.to_vec();
+    // A coarse look at all states for the frame and the colours that they share; of each no more than these is kept.
+    let looked = states.par_iter().map(|shown| {
+        let state = coarse(&tube, plan, std::slice::from_ref(shown), upwards, look);
+        let surfaces = state.panels.iter().flat_map(|panel| &panel.surfaces);
+        let values: Vec<f64> = surfaces.flat_map(|s| &s.values).copied().collect();
+        Ok((state.room()?, values))
+    });
+    let looked: Result<Vec<_>, DrawError> = looked.collect();
+    let (rooms, values): (Vec<_>, Vec<_>) = looked?.into_iter().unzip();
+    let seen = Surface {
+        values: values.concat(),
+        ..Surface::default()
+    };
+    let seen = Panel {
+        surfaces: vec![seen],
+        ..Panel::default()
+    };
+    let coarse = Cutaway {
+        room: rooms.concat(),
+        ..picture(plan, vec![seen], look)
+    };
     let (finest, range) = look_of(&tube, plan, look).fine(&coarse, look.width)?;
-    coarse.panels = vec![];
     let done = AtomicUsize::new(0);
     let frame = |shown: &Shown| -> Result<Option<Image>, DrawError> {
         if !told(done.load(Ordering::Relaxed)) {
