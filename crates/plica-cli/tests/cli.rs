@@ -79,14 +79,17 @@ fn wrong_arguments_and_missing_files_have_their_codes() {
 }
 
 #[test]
-fn a_title_that_pictures_cannot_write_is_told() {
+fn titles_and_names_that_pictures_cannot_write_are_told() {
     let directory = scratch("letters");
     let case = std::fs::read_to_string(root().join("cases/small.toml")).unwrap();
     let (_, rest) = case.split_once('\n').unwrap();
-    let told = |title: &str| {
+    let told = |title: &str, stage: &str| {
         std::fs::write(
             directory.join("a.toml"),
-            format!("title = \"{title}\"\n{rest}"),
+            format!(
+                "title = \"{title}\"\n{}",
+                rest.replace("\"contract\"", &format!("\"{stage}\""))
+            ),
         )
         .unwrap();
         let output = plica(&directory, &["check", "a.toml"]);
@@ -95,8 +98,9 @@ fn a_title_that_pictures_cannot_write_is_told() {
             .unwrap()
             .contains("PNGs show boxes")
     };
-    assert!(told("腸重積"));
-    assert!(!told("Ελιά, è"));
+    assert!(told("腸重積", "contract"));
+    assert!(told("gut", "収縮"));
+    assert!(!told("Ελιά, è", "contract"));
 }
 
 #[test]
