@@ -298,7 +298,7 @@ pub type Ends = [f64; 2];
 
 /// The names of fields.
 fn fields() -> clap::builder::PossibleValuesParser {
-    plica::report::Field::ALL.map(|field| field.name()).into()
+    plica_view::report::Field::ALL.map(|field| field.name()).into()
 }
 
 /// An angle to take away.

@@ -3,7 +3,7 @@
 use crate::args::CaseArguments;
 use crate::failure::Failure;
 use plica::case::{self, Open, Wanted};
-use plica::draw::boxes;
+use plica_view::draw::boxes;
 use plica::study::{NamedMode, Plan, RunDirectory, SavedState, SavedStateError, StudyError};
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;

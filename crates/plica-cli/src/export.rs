@@ -6,9 +6,9 @@ use crate::finished::Finished;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{console, threads};
-use plica::export::{Exporter, What};
+use plica_view::export::{Exporter, What};
 use plica::study::RunDirectory;
-use plica::vtk::collection;
+use plica_view::vtk::collection;
 use std::collections::BTreeMap;
 use std::path::Path;
 

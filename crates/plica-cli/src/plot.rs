@@ -4,8 +4,8 @@ use crate::args::PlotArguments;
 use crate::failure::Failure;
 use crate::finished::{Finished, endings};
 use crate::render::trouble;
-use plica::draw::Chart;
-use plica::report::{self, Column, Shown};
+use plica_view::draw::Chart;
+use plica_view::report::{self, Column, Shown};
 use plica::study::Scale;
 
 /// What is plotted of states themselves.

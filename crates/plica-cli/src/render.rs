@@ -7,8 +7,8 @@ use crate::finished::{Finished, endings};
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{console, threads};
-use plica::draw::{DrawError, REST};
-use plica::report::{self, Appearance, Field, Shown};
+use plica_view::draw::{DrawError, REST};
+use plica_view::report::{self, Appearance, Field, Shown};
 use std::sync::Mutex;
 
 /// Directions of the viewer that have a name: (up, towards the viewer, along the tube).

@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::pages::First;
 use crate::ticker::Ticker;
 use crate::{console, pages, threads};
-use plica::reproduction::{
+use plica_verify::reproduction::{
     FIGURES, Figure, Fineness, Observer, Ran, SUMMARY, TITLE, Trouble, reproduce as tell,
 };
 use std::path::PathBuf;

@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{case_file, console, threads};
 use plica::case::differences;
-use plica::report::pictures;
+use plica_view::report::pictures;
 use plica::study::{self, Observer, Plan, RunDirectory, StudyError, Summary};
 use std::path::{Path, PathBuf};
 

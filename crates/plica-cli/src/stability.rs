@@ -5,8 +5,8 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{case_file, console, threads};
-use plica::draw::DrawError;
-use plica::report::{mode_pictures, stability_pictures};
+use plica_view::draw::DrawError;
+use plica_view::report::{mode_pictures, stability_pictures};
 use plica::stability::{
     ModesRequest, Observer, Request, Spectrum, StabilityError, Station, follow, lowest_modes,
 };

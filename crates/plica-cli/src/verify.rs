@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::pages::First;
 use crate::ticker::Ticker;
 use crate::{console, pages, threads};
-use plica::verification::{CHECKS, Check, Observer, Row, TITLE, Trouble, verify as hold};
+use plica_verify::verification::{CHECKS, Check, Observer, Row, TITLE, Trouble, verify as hold};
 use std::fs;
 
 /// The page with the table.

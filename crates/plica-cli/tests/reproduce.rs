@@ -39,7 +39,7 @@ fn figures_are_listed_and_others_are_refused() {
     let listed = plica(&directory, &["reproduce", "--list"]);
     assert!(listed.status.success());
     let listed = text(&listed.stdout);
-    for figure in plica::reproduction::FIGURES {
+    for figure in plica_verify::reproduction::FIGURES {
         assert!(listed.contains(figure.title), "{listed}");
     }
     let said = plica(&directory, &["reproduce", "fig8"]);

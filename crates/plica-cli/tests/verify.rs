@@ -44,7 +44,7 @@ fn checks_are_listed_and_others_are_refused() {
     let listed = plica(&directory, &["verify", "--list"]);
     assert!(listed.status.success());
     let listed = text(&listed.stdout);
-    for check in plica::verification::CHECKS {
+    for check in plica_verify::verification::CHECKS {
         let slow = if check.slow { " (--full)" } else { "" };
         let line = format!("{}{slow}", check.about);
         let named = |l: &str| l.starts_with(check.name) && l.ends_with(&line);

@@ -16,25 +16,13 @@
 //! - [`study`]: stages, accepted states, the run directory.
 //! - [`stability`]: which harmonics a run loses, where, and in what shape.
 //! - [`case`]: the case file as written, and what it means.
-//! - [`draw`]: charts and shaded cut-aways from plain data.
-//! - [`report`]: the pictures of a run.
-//! - [`page`]: a run, or two, as one HTML page.
-//! - [`vtk`]: files of VTK from plain data.
-//! - [`export`]: states as files of VTK.
-//! - [`verification`]: problems whose answer is known otherwise.
-//! - [`reproduction`]: the paper's figures, beside what it reports.
 
 pub mod activation;
 pub mod assembly;
 pub mod case;
-pub mod draw;
-pub mod export;
 pub mod material;
 pub mod matrix;
 pub mod measure;
-pub mod page;
-pub mod report;
-pub mod reproduction;
 pub mod rings;
 pub mod solve;
 pub mod spline;
@@ -42,5 +30,3 @@ pub mod stability;
 pub mod study;
 pub mod tensor;
 pub mod tube;
-pub mod verification;
-pub mod vtk;

@@ -1,0 +1,339 @@
+//! The main case: energy and walls along the relaxation.
+
+use super::super::job::Job;
+use super::super::page::{Page, Verdict, energy};
+use super::super::pictures::{Outline, energies, outer, outlines};
+use super::super::runs::{Ran, Runs};
+use super::super::{Figure, Fineness, Trouble};
+use super::{COARSE, axisymmetric, first, is_folded, minimum, ratio, side, unstable};
+use plica_view::draw::{Curve, Rule, Stroke};
+use plica::measure::{Face, Flank, Rotation, Side, Wall};
+use plica::study::Row;
+
+pub(super) const FIGURE: Figure = Figure {
+    name: "fig4",
+    title: "Fig. 4: strain energy and walls of the main case",
+    paper: "With Dmin/D = 0.25 held, Lmax/L rises from 1.0 to 1.25. A: the total strain energy, with the tube's shapes. \
+            B: the outer wall at Lmax/L = 1.0, 1.18 and 1.2, which rotates about a centre.",
+    jobs,
+    tell,
+};
+
+/// The paper's scheme with states accepted as the paper accepts them.
+fn unsettled() -> Job {
+    let job = Job::of("paper-scheme").named("paper-scheme-not-settled");
+    job.on(COARSE)
+        .with("solver.pseudo_time.settle", false)
+        .with("solver.pseudo_time.hold", 20000)
+        .bare()
+}
+
+fn jobs(fineness: Fineness) -> Vec<Job> {
+    vec![
+        axisymmetric("invagination", fineness),
+        Job::of("invagination")
+            .named("invagination-coarse")
+            .on(COARSE),
+        Job::of("paper-scheme").on(COARSE),
+        unsettled(),
+    ]
+}
+
+fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
+    let main = runs.get("invagination")?;
+    let rows = main.stage("relax");
+    let least = minimum(rows)?;
+    shapes(page, rows);
+    let off = (least.length_ratio - 1.13).abs();
+    page.claim(
+        "4A",
+        "the energy falls to a minimum at Lmax/L ~ 1.13",
+        format!(
+            "from {} to {} E D³ at Lmax/L = {:.2}",
+            energy(&rows[0]),
+            energy(least),
+            least.length_ratio
+        ),
+        off < 0.0101 && least.energy < 0.5 * rows[0].energy,
+    );
+    slopes(page, rows)?;
+    let squares = first(rows, "square");
+    let overhang = first(rows, "invaginated");
+    let mut rules = vec![];
+    for (row, label) in [(squares, "square"), (overhang, "overhang")] {
+        rules.extend(row.map(|row| Rule {
+            at: row.length_ratio,
+            label: label.into(),
+        }));
+    }
+    let curve = Curve {
+        points: rows
+            .iter()
+            .map(|row| (row.length_ratio, row.energy))
+            .collect(),
+        colour: 1,
+        dots: true,
+        ..Curve::default()
+    };
+    let shown = [
+        (1.0, (0.24, 0.84)),
+        (1.13, (0.46, 0.55)),
+        (1.18, (0.66, 0.8)),
+        (1.25, (0.84, 0.18)),
+    ];
+    let shown: Result<Vec<_>, Trouble> = shown
+        .iter()
+        .map(|&(at, place)| Ok((main.at(at)?, place)))
+        .collect();
+    page.picture(
+        "energy",
+        energies(vec![curve], main, &shown?, rules)?,
+        "Total strain energy along the relaxation, with the tube cut open at Lmax/L = 1.00, 1.13, 1.18 and 1.25",
+    );
+    walls(page, main)?;
+    schemes(page, runs)
+}
+
+/// V, U, square, invaginated: in this order.
+fn shapes(page: &mut Page, rows: &[Row]) {
+    let mut shapes: Vec<&str> = rows.iter().map(|row| row.shape.as_str()).collect();
+    shapes.dedup();
+    let from = |shape| ratio(first(rows, shape));
+    page.claim(
+        "4A",
+        "V, then U, then square, then invaginated",
+        format!(
+            "{}; U from {}, square from {}, overhang from {}",
+            shapes.join(", "),
+            from("U"),
+            from("square"),
+            from("invaginated")
+        ),
+        shapes == ["V", "U", "square", "invaginated"],
+    );
+}
+
+/// The energy's slope before and after the fold.
+fn slopes(page: &mut Page, rows: &[Row]) -> Result<(), Trouble> {
+    let none = || Trouble::State("no state before or after the fold".into());
+    let folded = rows
+        .iter()
+        .position(|row| row.shape == "invaginated")
+        .ok_or_else(none)?;
+    let slope = |a: &Row, b: &Row| (b.energy - a.energy) / (b.length_ratio - a.length_ratio);
+    let (Some(before), Some(last)) = (folded.checked_sub(3), rows.last()) else {
+        return Err(none());
+    };
+    let before = slope(&rows[before], &rows[folded - 1]);
+    let after = slope(&rows[folded], last);
+    page.claim(
+        "4A",
+        "it then rises, and less steeply after invagination",
+        format!("slope dW/d(Lmax/L) = {before:.2e} over the last two steps before the overhang, {after:.2e} from there to the end"),
+        before > 0.0 && after < before,
+    );
+    Ok(())
+}
+
+/// Outer walls, how they turn, and which side is compressed.
+fn walls(page: &mut Page, main: &Ran) -> Result<(), Trouble> {
+    let at = [1.0, 1.18, 1.2];
+    let rows: Result<Vec<&Row>, Trouble> = at.iter().map(|&at| main.at(at)).collect();
+    let rows = rows?;
+    let walls: Result<Vec<Wall>, Trouble> = rows.iter().map(|row| outer(main, row)).collect();
+    let walls = walls?;
+    let [v, square, folded] = [rows[0], rows[1], rows[2]];
+    page.claim(
+        "4B",
+        "at 1.0 a V, at 1.18 square, at 1.2 invaginated toward the colon",
+        format!("{}; {}; {}", v.shape, square.shape, side(folded)),
+        v.shape == "V" && square.shape == "square" && is_folded(folded, "colon"),
+    );
+    let turning: Vec<&Row> = main
+        .stage("relax")
+        .iter()
+        .filter(|row| row.length_ratio < 1.2 + 1e-9)
+        .collect();
+    let all: Result<Vec<Wall>, Trouble> = turning.iter().map(|row| outer(main, row)).collect();
+    let all = all?;
+    let [colon, ileum] = [Side::Colon, Side::Ileum].map(|side| Turn::of(&walls, &all, side));
+    let told = |side: &str, turn: &Option<Turn>| match turn {
+        Some(turn) => format!("{side} flank {}", turn.told()),
+        None => format!("the {side} flank does not"),
+    };
+    page.claim(
+        "4B",
+        "the wall rotates about a centre",
+        format!(
+            "{}; {} ({} states from 1.00 to 1.20)",
+            told("colon", &colon),
+            told("ileum", &ileum),
+            all.len()
+        ),
+        [&colon, &ileum].iter().all(|turn| {
+            turn.as_ref().is_some_and(|turn| {
+                turn.most() > 10.0 && turn.rotation.off < 0.5 * main.plan.tube.thickness
+            })
+        }),
+    );
+    compression(page, main, square)?;
+    let outline = |((row, wall), colour): ((&&Row, &Wall), usize)| Outline {
+        wall: wall.clone(),
+        label: format!("*L*_{{max}}/*L* = {:.2}: {}", row.length_ratio, row.shape),
+        colour,
+        stroke: Stroke::Solid,
+    };
+    let drawn = rows.iter().zip(&walls).zip(1..).map(outline).collect();
+    let centres: Vec<Rotation> = [colon, ileum]
+        .into_iter()
+        .flatten()
+        .map(|turn| turn.rotation)
+        .collect();
+    page.picture(
+        "walls",
+        outlines(drawn, &centres)?,
+        "Outer walls at Lmax/L = 1.00, 1.18 and 1.20 and the centres about which their flanks rotate",
+    );
+    Ok(())
+}
+
+/// How a flank turns.
+struct Turn {
+    /// Its angles in the states of the figure, in degrees.
+    angles: Vec<f64>,
+    /// What it turns about through all states.
+    rotation: Rotation,
+}
+
+impl Turn {
+    fn of(shown: &[Wall], all: &[Wall], side: Side) -> Option<Self> {
+        let angle = |wall: &Wall| Some(Flank::of(wall, side)?.angle_deg);
+        Some(Self {
+            angles: shown.iter().map(angle).collect::<Option<_>>()?,
+            rotation: Rotation::of(&all.iter().collect::<Vec<_>>(), side)?,
+        })
+    }
+
+    /// How far it turns between two of the states shown, at most, in degrees.
+    fn most(&self) -> f64 {
+        let ends = self
+            .angles
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+        ends.1 - ends.0
+    }
+
+    fn told(&self) -> String {
+        let angles: Vec<String> = self.angles.iter().map(|a| format!("{a:.0}°")).collect();
+        let Rotation { centre, off, .. } = self.rotation;
+        format!(
+            "at {} about ({:.2}, {:.2}) D, to {off:.3} D",
+            angles.join(", "),
+            centre.0,
+            centre.1
+        )
+    }
+}
+
+/// How much shorter each side of the zone has become: the middle of the wall, along itself.
+fn compression(page: &mut Page, main: &Ran, row: &Row) -> Result<(), Trouble> {
+    let [outer, inner] = [Face::Outer, Face::Inner].map(|face| main.wall(row, face, 0.0));
+    let (outer, inner) = (outer?, inner?);
+    let faces = outer.points.iter().zip(&inner.points);
+    let middle: Vec<(f64, f64)> = faces
+        .map(|(a, b)| (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1)))
+        .collect();
+    let shorter = |from: f64, to: f64| {
+        let (mut now, mut rest) = (0.0, 0.0);
+        for (z, m) in outer.reference_z.windows(2).zip(middle.windows(2)) {
+            if z[0] >= from && z[1] <= to {
+                rest += z[1] - z[0];
+                now += (m[1].0 - m[0].0).hypot(m[1].1 - m[0].1);
+            }
+        }
+        100.0 * (1.0 - now / rest)
+    };
+    let [from, to] = main.plan.tube.muscles[0].zone;
+    let (colon, ileum) = (shorter(0.0, from), shorter(to, main.plan.tube.length));
+    let beside = shorter(to, to + from);
+    page.judge(
+        "4B",
+        "the colon side, which is shorter, is the more compressed one",
+        format!(
+            "at 1.18 the middle of the wall is {colon:.2} % shorter than at rest on the whole colon side, {ileum:.2} % on the whole ileum \
+             side, but {beside:.2} % on the half diameter of it beside the zone, which is as long as the colon side"
+        ),
+        if colon > ileum && ileum > 0.0 { Verdict::Explained } else { Verdict::Differs },
+    );
+    page.text(
+        "**Which side is more compressed?** One axial force goes through the whole tube, so that neither side bears more of it. On average the \
+         colon side is the more compressed one, since the ileum side is longer and most of it is far from the zone, where the wall does not bend; \
+         over equal lengths beside the zone both are alike. So a greater compression does not explain the side. (The tubes of Fig. 5 have folds to both ends, of nearly \
+         the same energy.)",
+    );
+    Ok(())
+}
+
+/// The paper's scheme and relaxation: the same states, at what cost?
+fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
+    let (ours, papers) = (runs.get("invagination-coarse")?, runs.get("paper-scheme")?);
+    let raw = runs.get(&unsettled().name)?;
+    let mut rows = vec![];
+    let (mut settled, mut as_accepted, mut alike) = (0.0_f64, 0.0_f64, true);
+    for at in [1.0, 1.05, 1.1, 1.13, 1.17, 1.2, 1.25] {
+        let (a, b, c) = (ours.at(at)?, papers.at(at)?, raw.at(at)?);
+        alike &= [b, c]
+            .iter()
+            .all(|row| a.shape == row.shape && a.side == row.side);
+        let off = |row: &Row| (row.energy / a.energy - 1.0).abs();
+        (settled, as_accepted) = (settled.max(off(b)), as_accepted.max(off(c)));
+        rows.push(vec![
+            format!("{at:.2}"),
+            format!("{:.6e}", a.energy),
+            format!("{:.0e}", off(b)),
+            format!("{:.0e}", off(c)),
+            format!("{:.0e}", c.residual),
+            side(a),
+            side(b),
+            side(c),
+        ]);
+    }
+    let ratio = papers.seconds() / ours.seconds().max(1e-9);
+    let good = alike
+        && settled < 1e-5
+        && as_accepted < 1e-2
+        && [papers, raw].iter().all(|ran| ran.verdict == "complete");
+    page.add(
+        "Fig. 2",
+        "the paper's scheme (Newmark, ηD/(EΔτ) = 100) against Plica's",
+        format!(
+            "{} solves and {:.0} s against {} and {:.1} s ({ratio:.0} times less); the energies of seven states from 1.00 to 1.25 differ by {settled:.0e} at most once \
+             settled without drag, by {as_accepted:.0e} as the paper accepts them",
+            papers.solves(), papers.seconds(), ours.solves(), ours.seconds()
+        ),
+        good,
+    );
+    page.text(
+        "**The two schemes**, on one mesh. A state of the pseudo-time is accepted when no control point moves 1e-5 D in a step, and then settled \
+         without drag (`solver.pseudo_time.settle`), or not; the residual of the latter is that without drag, over the forces in play.",
+    );
+    page.table(
+        &[
+            "Lmax/L",
+            "W, static",
+            "Newmark, settled: off",
+            "not settled: off",
+            "its residual",
+            "static",
+            "Newmark, settled",
+            "not settled",
+        ],
+        rows,
+    );
+    page.text(format!(
+        "**Stability.** These are axisymmetric states, which the full tube has as well; it leaves their path where they are unstable: at Lmax/L = {} \
+         (Appendix B).",
+        unstable(runs.get("invagination")?.stage("relax"))
+    ));
+    Ok(())
+}

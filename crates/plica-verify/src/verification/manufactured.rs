@@ -1,0 +1,354 @@
+//! Manufactured solutions: a displacement is chosen, the forces that it needs are worked out, and the tube is
+//! asked for the displacement.
+//!
+//! The forces are f_i = ∫ P(Fe*) : ∂N_i/∂F dV₀ at the displacement u* that was chosen, in cylindrical components on
+//! the exact circle, with a stress that is written out here, under many more points than the kernel has. What the
+//! kernel, its spline circle and its splines make of the same forces is then off by O(h^{p+1}) in u.
+
+use super::found::{Findings, Trouble};
+use super::row::Tolerance;
+use super::specimen::tight;
+use plica::activation::{Direction, Muscle, Profile};
+use plica::assembly::{Inverted, SplineTube};
+use plica_view::draw::{Chart, Curve, Stroke};
+use plica::material::{Material, NeoHookean};
+use plica::solve::{Balance, Equilibrium, newton};
+use plica::spline::gauss_legendre;
+use plica::study::TubeProblem;
+use plica::tube::{Load, Mesh, Support, Tube};
+use std::f64::consts::{PI, TAU};
+
+const LENGTH: f64 = 1.0;
+const THICKNESS: f64 = 0.2;
+const NU: f64 = 0.3;
+/// Gauss points to an element and direction.
+const POINTS: usize = 8;
+
+/// u* along and outwards at (z, R), and its gradients (∂z, ∂R) of each.
+fn chosen(z: f64, R: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+    let t = (R - 0.4) / THICKNESS;
+    let (s, c) = (PI * z / LENGTH).sin_cos();
+    let k = PI / LENGTH;
+    let g = (1.5 * t).exp();
+    let dg = 1.5 * g / THICKNESS;
+    // Zero at both ends, where the tube is fixed.
+    let u = [0.01 * s * (t + 0.4).sin(), -0.01 * s * s * g];
+    let gradients = [
+        [
+            0.01 * k * c * (t + 0.4).sin(),
+            0.01 * s * (t + 0.4).cos() / THICKNESS,
+        ],
+        [-0.02 * k * s * c * g, -0.01 * s * s * dg],
+    ];
+    (u, gradients)
+}
+
+fn tube() -> Tube {
+    let muscle = |direction| Muscle {
+        name: "m".into(),
+        direction,
+        // Smooth in all of the tube.
+        zone: [0.0, LENGTH],
+        profile: Profile::RaisedCosine,
+    };
+    Tube {
+        length: LENGTH,
+        thickness: THICKNESS,
+        material: Material::NeoHookean(NeoHookean::new(1.0, NU)),
+        muscles: vec![muscle(Direction::Circular), muscle(Direction::Longitudinal)],
+        ends: [Support::Fixed; 2],
+        imperfections: vec![],
+    }
+}
+
+/// Targets of the two muscles.
+const TARGETS: [f64; 2] = [0.8, 1.1];
+
+/// θζ and θη.
+fn grown(z: f64) -> [f64; 2] {
+    let s = 0.5 * (1.0 - (TAU * z / LENGTH).cos());
+    [
+        1.0 + (TARGETS[1] - 1.0) * 2.0 * s,
+        1.0 - (1.0 - TARGETS[0]) * s,
+    ]
+}
+
+/// w det Fp, and P Fp⁻ᵀ det Fp at (z, R), entries (zz, zr, rz, rr, θθ), from the formulas of docs/model.md.
+fn elastic(z: f64, R: f64, [uz, ur]: [[f64; 2]; 2], u_r: f64) -> (f64, [f64; 5]) {
+    let [gz, gt] = grown(z);
+    // Fe = F Fp⁻¹.
+    let (zz, zr) = ((1.0 + uz[0]) / gz, uz[1]);
+    let (rz, rr) = (ur[0] / gz, 1.0 + ur[1]);
+    let tt = (1.0 + u_r / R) / gt;
+    let plane = zz * rr - zr * rz;
+    let J = plane * tt;
+    let (mu, lambda) = (0.5 / (1.0 + NU), NU / ((1.0 + NU) * (1.0 - 2.0 * NU)));
+    let p = lambda * J.ln() - mu;
+    // F⁻ᵀ = cofactor / J.
+    let P = [
+        mu * zz + p * rr / plane,
+        mu * zr - p * rz / plane,
+        mu * rz - p * zr / plane,
+        mu * rr + p * zz / plane,
+        mu * tt + p / tt,
+    ];
+    let det = gz * gt;
+    let I1 = zz * zz + zr * zr + rz * rz + rr * rr + tt * tt;
+    let w = 0.5 * mu * (I1 - 3.0) - mu * J.ln() + 0.5 * lambda * J.ln().powi(2);
+    let forces = [P[0] / gz, P[1], P[2] / gz, P[3], P[4] / gt].map(|force| force * det);
+    (w * det, forces)
+}
+
+/// A quadrature point, and the splines there.
+struct Place {
+    z: f64,
+    R: f64,
+    /// R times the weight: volume per radian.
+    volume: f64,
+    /// By function along and through: its unknown along the axis (the next is radial), value, slope over z and
+    /// slope over R.
+    functions: Vec<(usize, [f64; 3])>,
+}
+
+/// Does something at every quadrature point of a tube of one ring.
+fn everywhere(spline: &SplineTube, mut each: impl FnMut(&Place)) {
+    let rule = gauss_legendre(POINTS);
+    let mut functions = vec![];
+    for e in 0..spline.axial.elements() {
+        let (z0, z1) = spline.axial.element(e);
+        for w in 0..spline.wall.elements() {
+            let (r0, r1) = spline.wall.element(w);
+            for (x, y) in rule.iter().flat_map(|x| rule.iter().map(move |y| (x, y))) {
+                let (z, R) = (z0 + (z1 - z0) * x.0, r0 + (r1 - r0) * y.0);
+                let along = spline.axial.evaluate_in(e, z);
+                let through = spline.wall.evaluate_in(w, R);
+                functions.clear();
+                for (a, (n, dn)) in along.value.iter().zip(&along.slope).enumerate() {
+                    for (c, (m, dm)) in through.value.iter().zip(&through.slope).enumerate() {
+                        let at = (e + a) * spline.row_size() + (w + c) * 3;
+                        functions.push((at, [n * m, dn * m, n * dm]));
+                    }
+                }
+                let place = Place {
+                    z,
+                    R,
+                    volume: R * x.1 * y.1 * (z1 - z0) * (r1 - r0),
+                    functions: std::mem::take(&mut functions),
+                };
+                each(&place);
+                functions = place.functions;
+            }
+        }
+    }
+}
+
+/// The tube under the forces of a displacement that was chosen.
+struct Manufactured {
+    problem: TubeProblem,
+    forces: Vec<f64>,
+    /// Π at the displacement that was chosen, of a ring's share.
+    potential: f64,
+}
+
+impl Manufactured {
+    fn new(degree: usize, elements: [usize; 2]) -> Self {
+        let around = if degree == 1 { 4000 } else { 400 };
+        let mesh = Mesh {
+            axial: elements[0] + degree,
+            around,
+            thickness: elements[1] + degree,
+            degree,
+            refinements: vec![],
+            volumetric: Default::default(),
+        };
+        let spline = SplineTube::new(&tube(), &mesh, 1);
+        let mut forces = vec![0.0; spline.unknowns()];
+        let mut potential = 0.0;
+        // A ring's share of the circumference. A ring that moves outwards by its control value moves the wall by
+        // as much as the circle's radius is of its control points' radius.
+        let share = TAU / around as f64;
+        let circle = 1.0 / spline.circle.control_radius;
+        everywhere(&spline, |at| {
+            let (u, [uz, ur]) = chosen(at.z, at.R);
+            let (w, [zz, zr, rz, rr, tt]) = elastic(at.z, at.R, [uz, ur], u[1]);
+            let volume = share * at.volume;
+            let work = zz * uz[0] + zr * uz[1] + rz * ur[0] + rr * ur[1] + tt * u[1] / at.R;
+            potential += volume * (w - work);
+            for (i, [value, over_z, over_R]) in &at.functions {
+                forces[*i] += volume * (zz * over_z + zr * over_R);
+                let outwards = rz * over_z + rr * over_R + tt * value / at.R;
+                forces[i + 1] += volume * circle * outwards;
+            }
+        });
+        Self {
+            problem: TubeProblem::new(spline),
+            forces,
+            potential,
+        }
+    }
+
+    fn load(&self) -> Load {
+        Load {
+            muscles: TARGETS.to_vec(),
+            ..self.problem.tube.tube.rest()
+        }
+    }
+
+    /// Errors of u in L2, of its gradient in L2, and of the potential, over those of u* itself.
+    fn errors(&self) -> Result<[f64; 3], Trouble> {
+        let spline = &self.problem.tube;
+        let circle = 1.0 / spline.circle.control_radius;
+        // From u* at Greville's abscissae, which is near.
+        let mut start = spline.control_values(|z, r, _| {
+            let ([along, outwards], _) = chosen(z, r);
+            [along, outwards / circle, 0.0]
+        });
+        self.impose(&self.load(), &mut start);
+        let found = newton(self, &self.load(), start, &tight(), &mut ());
+        let found = found.map_err(|failed| Trouble::Solve(failed.to_string()))?;
+        let (mut off, mut all) = ([0.0; 2], [0.0; 2]);
+        everywhere(spline, |at| {
+            // Value and slopes over z and R, of each component.
+            let mut u = [[0.0; 3]; 2];
+            for (i, functions) in &at.functions {
+                let x = [found.u[*i], circle * found.u[i + 1]];
+                for c in 0..2 {
+                    for (u, n) in u[c].iter_mut().zip(functions) {
+                        *u += n * x[c];
+                    }
+                }
+            }
+            let (exact, slopes) = chosen(at.z, at.R);
+            for c in 0..2 {
+                off[0] += at.volume * (u[c][0] - exact[c]).powi(2);
+                all[0] += at.volume * exact[c].powi(2);
+                for d in 0..2 {
+                    off[1] += at.volume * (u[c][1 + d] - slopes[c][d]).powi(2);
+                    all[1] += at.volume * slopes[c][d].powi(2);
+                }
+            }
+        });
+        let potential = (found.forces.energy / self.potential - 1.0).abs();
+        let [value, slope] = [0, 1].map(|d| (off[d] / all[d]).sqrt());
+        Ok([value, slope, potential])
+    }
+}
+
+impl Equilibrium for Manufactured {
+    type Load = Load;
+    type Broken = Inverted;
+    type Tangent = <TubeProblem as Equilibrium>::Tangent;
+
+    fn given(&self) -> &[bool] {
+        self.problem.given()
+    }
+    fn impose(&self, load: &Load, u: &mut [f64]) {
+        self.problem.impose(load, u);
+    }
+    fn between(&self, from: &Load, to: &Load, t: f64) -> Load {
+        self.problem.between(from, to, t)
+    }
+    fn forces(&self, load: &Load, u: &[f64]) -> Result<Balance, Inverted> {
+        let mut balance = self.problem.forces(load, u)?;
+        for ((residual, force), u) in balance.residual.iter_mut().zip(&self.forces).zip(u) {
+            *residual -= force;
+            balance.energy -= force * u;
+        }
+        Ok(balance)
+    }
+    fn tangent(&self, load: &Load, u: &[f64]) -> Self::Tangent {
+        self.problem.tangent(load, u)
+    }
+    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.problem.drag(factor, v, y);
+    }
+}
+
+/// What errors are of, and their order in the degree p.
+const ERRORS: [(&str, &str); 3] = [
+    ("u in L2", "p + 1"),
+    ("its gradient in L2 (the energy norm)", "p"),
+    ("the potential Π", "2p"),
+];
+
+/// Error, over the solution, below which rounding shows.
+const ROUNDING: f64 = 1e-10;
+
+/// Orders of convergence for degrees 1 to 4.
+pub fn orders(found: &mut Findings<'_>) -> Result<(), Trouble> {
+    let mut curves = vec![];
+    for degree in 1..=4 {
+        let finest = match (degree, found.full) {
+            (1, false) => 64,
+            (1, true) => 128,
+            (_, false) => 32,
+            (_, true) => 64,
+        };
+        let meshes: Vec<usize> = (0..4).rev().map(|halvings| finest >> halvings).collect();
+        let mut errors = vec![];
+        found.case(format!("manufactured solution, p = {degree}"))?;
+        for &n in &meshes {
+            found.go_on()?;
+            errors.push(Manufactured::new(degree, [2 * n, n / 2]).errors()?);
+        }
+        // Of quartics the potential is exact to rounding on all but the coarsest mesh.
+        let seen = if degree < 4 { 3 } else { 2 };
+        for (d, (name, source)) in ERRORS.into_iter().take(seen).enumerate() {
+            // Between the last two meshes that rounding does not blur.
+            let clear = errors
+                .iter()
+                .take_while(|error| error[d] > ROUNDING)
+                .count();
+            let (at, slope) = match clear.checked_sub(1) {
+                Some(at) if at > 0 => (at, (errors[at - 1][d] / errors[at][d]).log2()),
+                _ => (1, f64::NAN),
+            };
+            let quantity = format!(
+                "order of {name}, {} to {} elements",
+                meshes[at - 1],
+                meshes[at]
+            );
+            let order = [degree + 1, degree, 2 * degree][d] as f64;
+            found.row(
+                quantity,
+                slope,
+                (order, source),
+                Tolerance::Absolute([0.1, 0.1, 0.3][d]),
+            );
+            if d < 2 {
+                let points = meshes.iter().zip(&errors);
+                curves.push(Curve {
+                    label: if d == 0 {
+                        format!("*p* = {degree}")
+                    } else {
+                        String::new()
+                    },
+                    points: points
+                        .map(|(n, e)| ((*n as f64).log2(), e[d].log10()))
+                        .collect(),
+                    colour: degree,
+                    stroke: if d == 0 {
+                        Stroke::Solid
+                    } else {
+                        Stroke::Dashed
+                    },
+                    dots: true,
+                });
+            }
+        }
+    }
+    found.picture(
+        "orders.png",
+        "Manufactured solutions of degrees 1 to 4: error of the displacement in L2 (solid, order p + 1) and of its gradient \
+         (dashed, order p), over those of the solution, against elements to a diameter of length.",
+        Chart {
+            x_label: "log_{2} *n*".into(),
+            y_label: "log_{10} error".into(),
+            x_range: Some((1.8, if found.full { 7.2 } else { 6.2 })),
+            curves,
+            width_pt: 360.0,
+            ..Chart::default()
+        },
+    );
+    Ok(())
+}

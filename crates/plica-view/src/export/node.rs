@@ -1,0 +1,190 @@
+//! What is known of a point of the wall, in (x, y, z).
+#![allow(non_snake_case)] // the formulas keep the letters of their sources
+
+use plica::assembly::Sample;
+use plica::tensor::Tensor2;
+
+/// A point, and the fields there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node {
+    /// Where it is, in D.
+    pub position: [f64; 3],
+    /// From where it was at rest, in D.
+    pub displacement: [f32; 3],
+    /// det Fe.
+    pub jacobian: f32,
+    /// θζ and θη.
+    pub grown: [f32; 2],
+    /// w, in E.
+    pub energy_density: f32,
+    /// σ in E: xx, yy, zz, xy, yz, xz.
+    pub stress: [f32; 6],
+    /// Von Mises stress, in E.
+    pub von_mises: f32,
+    /// Principal stretches of Fe, largest first.
+    pub stretches: [f32; 3],
+    /// Their directions.
+    pub directions: [[f32; 3]; 3],
+    /// ½ (FᵀF − 1): ζζ, ηη, ξξ, ζη, ηξ, ζξ.
+    pub strain: [f32; 6],
+}
+
+/// A turn about the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    sin: f64,
+    cos: f64,
+}
+
+impl Turn {
+    /// By an angle, in radians.
+    pub fn by(angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self { sin, cos }
+    }
+
+    /// A vector, turned.
+    pub fn of(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let Self { sin, cos } = self;
+        [x * cos - y * sin, x * sin + y * cos, z]
+    }
+
+    /// The same of one stored short.
+    pub fn of_short(&self, x: [f32; 3]) -> [f32; 3] {
+        self.of(x.map(f64::from)).map(|x| x as f32)
+    }
+
+    /// A symmetric tensor (xx, yy, zz, xy, yz, xz), turned.
+    pub fn of_tensor(&self, t: [f32; 6]) -> [f32; 6] {
+        let [xx, yy, zz, xy, yz, xz] = t.map(f64::from);
+        let Self { sin: s, cos: c } = *self;
+        [
+            c * c * xx - 2.0 * c * s * xy + s * s * yy,
+            s * s * xx + 2.0 * c * s * xy + c * c * yy,
+            zz,
+            c * s * (xx - yy) + (c * c - s * s) * xy,
+            s * xz + c * yz,
+            c * xz - s * yz,
+        ]
+        .map(|x| x as f32)
+    }
+}
+
+impl Node {
+    /// From what a tube says of a point.
+    pub fn of(sample: &Sample) -> Self {
+        let turn = Turn::by(sample.element_angle);
+        // From (z, outwards, around) to (x, y, z), and to the laboratory.
+        let out = |[z, x, y]: [f64; 3]| [x, y, z];
+        let vector = |v: [f64; 3]| turn.of(out(v));
+        let tensor = |t: &Tensor2| {
+            let t = t.0;
+            let [zz, xx, yy] = [0, 1, 2].map(|i| t[i][i]);
+            turn.of_tensor([xx, yy, zz, t[1][2], t[2][0], t[1][0]].map(|x| x as f32))
+        };
+        let Fe = sample.elastic;
+        let stretches = sample.stretches();
+        let [theta_z, theta_t] = sample.grown;
+        let mut F = Fe;
+        for row in &mut F.0 {
+            (row[0], row[2]) = (theta_z * row[0], theta_t * row[2]);
+        }
+        let C = F.transpose().times(F).0;
+        let E = |i: usize, j: usize| 0.5 * (C[i][j] - f64::from(u8::from(i == j)));
+        let (position, reference) = (out(sample.position), out(sample.reference));
+        // Where nothing exists there is nothing, and det Fe tells why.
+        let turned = sample.is_turned_over();
+        let existing = |x: f64| if turned { 0.0 } else { x };
+        let jacobian = if turned {
+            sample.jacobian.min(Fe.determinant())
+        } else {
+            sample.jacobian
+        };
+        Self {
+            position,
+            displacement: [0, 1, 2].map(|i| (position[i] - reference[i]) as f32),
+            jacobian: jacobian as f32,
+            grown: sample.grown.map(|x| x as f32),
+            energy_density: existing(sample.energy_density) as f32,
+            stress: tensor(&Tensor2(sample.stress.0.map(|row| row.map(existing)))),
+            von_mises: existing(sample.von_mises()) as f32,
+            stretches: stretches.map(|(stretch, _)| stretch as f32),
+            directions: stretches.map(|(_, v)| vector(pointed(v)).map(|x| x as f32)),
+            strain: [(0, 0), (2, 2), (1, 1), (0, 2), (2, 1), (0, 1)].map(|(i, j)| E(i, j) as f32),
+        }
+    }
+}
+
+/// Of a direction and its opposite, the one whose largest component is positive: neighbours then point alike.
+fn pointed(v: [f64; 3]) -> [f64; 3] {
+    let largest = v
+        .iter()
+        .fold(0.0_f64, |m, x| if x.abs() > m.abs() { *x } else { m });
+    if largest < 0.0 { v.map(|x| -x) } else { v }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plica::assembly::{Point, SplineTube};
+    use plica::material::{Material, NeoHookean, Volumetric};
+    use crate::fixture;
+    use plica::tube::{Integration, Mesh, Tube};
+
+    /// With both laws of volume, integrated with the rest and apart.
+    #[test]
+    fn where_the_wall_is_turned_over_there_is_no_stress_and_no_nan() {
+        for volumetric in [Volumetric::Logarithmic, Volumetric::Quadratic] {
+            for integration in [Integration::Full, Integration::Reduced] {
+                let tube = Tube {
+                    material: Material::NeoHookean(NeoHookean {
+                        volumetric,
+                        ..NeoHookean::new(1.0, 0.3)
+                    }),
+                    ..fixture::short()
+                };
+                let mesh = Mesh {
+                    volumetric: integration,
+                    ..fixture::coarse()
+                };
+                let tube = SplineTube::new(&tube, &mesh, 1);
+                // In the middle of the tube the inside comes to lie outside.
+                let u = tube.control_values(|z, r, _| {
+                    [
+                        0.0,
+                        4.0 * (0.45 - r) * (-40.0 * (z - 0.5).powi(2)).exp(),
+                        0.0,
+                    ]
+                });
+                let load = tube.tube.rest();
+                let (mut turned, mut sound) = (0, 0);
+                for k in 0..=60 {
+                    for depth in 0..=6 {
+                        let (z, radius) = (f64::from(k) / 60.0, 0.4 + 0.1 * f64::from(depth) / 6.0);
+                        let sample = tube.sample(
+                            &load,
+                            &u,
+                            Point {
+                                z,
+                                radius,
+                                angle: 0.0,
+                            },
+                        );
+                        let node = Node::of(&sample);
+                        let stresses = [node.stress, [node.von_mises; 6], [node.energy_density; 6]];
+                        let all = stresses.as_flattened();
+                        assert!(all.iter().all(|x| x.is_finite()));
+                        if sample.is_turned_over() {
+                            turned += 1;
+                            assert!(node.jacobian <= 0.0);
+                            assert!(all.iter().all(|x| *x == 0.0));
+                        } else {
+                            sound += 1;
+                        }
+                    }
+                }
+                assert!(turned > 10 && sound > 100, "{turned}, {sound}");
+            }
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! A small tube, a plan and its states for tests.
+
+use plica::assembly::SplineTube;
+use plica::material::{Material, NeoHookean};
+use plica::study::{Layout, Output, Plan, SavedState};
+use plica::tube::{Mesh, Support, Symmetry, Tube};
+
+/// A tube as long as it is wide, with free ends and nothing to drive it.
+pub fn short() -> Tube {
+    Tube {
+        length: 1.0,
+        thickness: 0.1,
+        material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+        muscles: vec![],
+        ends: [Support::Free; 2],
+        imperfections: vec![],
+    }
+}
+
+/// A coarse cubic mesh: 6 control points along, 12 around, 4 through the wall.
+pub fn coarse() -> Mesh {
+    Mesh {
+        axial: 6,
+        around: 12,
+        thickness: 4,
+        degree: 3,
+        refinements: vec![],
+        volumetric: Default::default(),
+    }
+}
+
+/// The small tube under a symmetry, without stages.
+pub fn plan(symmetry: Symmetry) -> Plan {
+    Plan {
+        title: String::new(),
+        tube: short(),
+        mesh: coarse(),
+        symmetry,
+        start: None,
+        modes: vec![],
+        stages: vec![],
+        solver: Default::default(),
+        output: Output::default(),
+        units: None,
+    }
+}
+
+/// A state of a plan's tube that widens along it and twists, the more so the later.
+pub fn state(plan: &Plan, row: usize) -> SavedState {
+    let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
+    let late = row as f64;
+    SavedState {
+        stage: String::new(),
+        row,
+        along: 0.0,
+        muscles: vec![],
+        load: plan.tube.rest(),
+        layout: Layout::of(plan),
+        u: tube.control_values(|z, r, _| [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * late)),
+        arrays: Default::default(),
+    }
+}

@@ -1,0 +1,189 @@
+//! What the page's template knows of a run.
+
+use super::known::Known;
+use super::stability::Stability;
+use super::{Run, words};
+use crate::draw::label;
+use crate::report::{Column, Role};
+use plica::study::{Findings, Row, Scale};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::Serialize;
+
+/// A run as words, tables and pictures.
+#[derive(Serialize)]
+pub struct Sheet {
+    name: String,
+    title: String,
+    headline: String,
+    complete: bool,
+    findings: Vec<(&'static str, String)>,
+    warnings: Vec<String>,
+    /// What is said where there is no warning.
+    all_well: String,
+    case: String,
+    /// Files that the case names and that it cannot be run without.
+    needs: Vec<String>,
+    manifest: serde_json::Value,
+    mesh: String,
+    unknowns: usize,
+    seconds: String,
+    drawn: String,
+    table: Vec<Line>,
+    heads: Vec<String>,
+    stability: Stability,
+    pictures: Vec<Picture>,
+}
+
+/// A state.
+#[derive(Serialize)]
+struct Line {
+    step: usize,
+    stage: String,
+    shape: String,
+    unstable: String,
+    method: String,
+    numbers: Vec<String>,
+    drawn: bool,
+}
+
+/// A picture of the run's own.
+#[derive(Serialize)]
+pub struct Picture {
+    words: &'static str,
+    data: String,
+}
+
+impl Picture {
+    /// Those of a run's pictures that are there, with what is to be said of each.
+    pub fn those(run: &Run<'_>, names: &[(&str, &'static str)]) -> Vec<Self> {
+        let read = |&(name, words): &(&str, &'static str)| {
+            let data = STANDARD.encode(run.directory.read(name)?);
+            Some(Self { words, data })
+        };
+        names.iter().filter_map(read).collect()
+    }
+}
+
+impl Sheet {
+    /// Of a run whose walls are sampled.
+    pub fn of(run: &Run<'_>, columns: &[Column], known: &Known) -> Self {
+        let scale = Scale::of(run.plan.units.as_ref());
+        let findings = Findings {
+            rows: run.rows,
+            scale,
+        };
+        let tabled = columns.iter().filter(|c| c.role != Role::Other);
+        let tabled: Vec<&Column> = tabled.collect();
+        let line = |(i, row): (usize, &Row)| Line {
+            step: row.step,
+            stage: row.stage.clone(),
+            shape: row.shape.clone(),
+            unstable: row.unstable_harmonics.clone(),
+            method: row.method.clone(),
+            numbers: tabled.iter().map(|c| number(c.values[i])).collect(),
+            drawn: known.scene.rows.contains(&row.step),
+        };
+        let mesh = &run.plan.mesh;
+        let [axial, around, thickness] = [mesh.axial, mesh.around, mesh.thickness];
+        let rings = mesh.rings(run.plan.symmetry);
+        let symmetry = match rings {
+            1 => "axisymmetric".to_owned(),
+            n if n == around => "nothing repeats around".into(),
+            n => format!("a sector of {n} rings that repeats {} times", around / n),
+        };
+        let seconds: f64 = run.rows.iter().map(|row| row.seconds).sum();
+        let case = run.directory.read("case.toml").unwrap_or_default();
+        let [along, through, meridians] = known.scene.points;
+        let modes = run.plan.modes.iter().map(|mode| mode.file.clone());
+        let start = run.plan.start.iter().map(|start| start.file.clone());
+        Self {
+            name: run.name.clone(),
+            title: run.plan.title.clone(),
+            headline: words::headline(run, &findings),
+            complete: run.directory.verdict() == "complete",
+            findings: findings.lines().into_iter().map(set).collect(),
+            warnings: words::warnings(run, &known.scene),
+            all_well: words::all_well(run),
+            case: String::from_utf8_lossy(&case).into_owned(),
+            needs: start.chain(modes).collect(),
+            manifest: run.directory.manifest(),
+            mesh: format!("{axial} × {around} × {thickness} control points, {symmetry}"),
+            unknowns: 3 * axial * rings * thickness,
+            seconds: format!("{seconds:.1}"),
+            drawn: if known.scene.drawn {
+                format!(
+                    "{along} × {} × {through} points of every state (along, around, through the wall)",
+                    meridians * known.scene.turns
+                )
+            } else {
+                "nothing: no state is saved in full".into()
+            },
+            table: run.rows.iter().enumerate().map(line).collect(),
+            heads: tabled.iter().map(|c| label::html(&c.label)).collect(),
+            stability: Stability::of(run),
+            pictures: Picture::those(
+                run,
+                &[
+                    (
+                        "tube.png",
+                        "The tube cut open at chosen states, coloured by strain energy density.",
+                    ),
+                    ("walls.png", "Outer and inner wall at the same states."),
+                ],
+            ),
+        }
+    }
+}
+
+/// A finding, its units and numbers set as on the rest of the page.
+fn set((name, words): (&'static str, String)) -> (&'static str, String) {
+    let words = words
+        .replace("D^3", "D³")
+        .replace(" uJ", " µJ")
+        .replace(" um", " µm");
+    (name, raised(&words))
+}
+
+/// A number in a table, with as many digits as a reader compares.
+fn number(value: Option<f64>) -> String {
+    match value {
+        None => "–".into(),
+        Some(0.0) => "0".into(),
+        Some(x) if (1e-2..1e4).contains(&x.abs()) => format!("{x:.4}").replace('-', "−"),
+        Some(x) => raised(&format!("{x:.3e}")),
+    }
+}
+
+/// A text whose numbers such as -1.5e-4 are set as −1.5×10⁻⁴.
+fn raised(text: &str) -> String {
+    let set = |word: &str| {
+        let end = word.trim_end_matches(|c: char| !c.is_ascii_digit()).len();
+        let (bare, rest) = word.split_at(end);
+        let begin = bare.len() - bare.trim_start_matches(|c: char| "(".contains(c)).len();
+        let (before, bare) = bare.split_at(begin);
+        match bare.split_once('e') {
+            Some((mantissa, power)) if bare.parse::<f64>().is_ok() => {
+                let power = label::plain(&format!("^{{{power}}}"));
+                format!("{before}{}×10{power}{rest}", mantissa.replace('-', "−"))
+            }
+            _ => word.to_owned(),
+        }
+    };
+    text.split(' ').map(set).collect::<Vec<String>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_of_ten_are_raised_and_nothing_else() {
+        assert_eq!(
+            raised("W = -1.500e-4 D³ (residual 3e-12), 2 states, the end 1e5"),
+            "W = −1.500×10⁻⁴ D³ (residual 3×10⁻¹²), 2 states, the end 1×10⁵"
+        );
+        assert_eq!(number(Some(1.5e-5)), "1.500×10⁻⁵");
+        assert_eq!(number(Some(-0.25)), "−0.2500");
+    }
+}

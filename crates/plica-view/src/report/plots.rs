@@ -1,0 +1,66 @@
+//! Numbers of a run's states as plots, and its walls.
+
+use super::walls::{Wall, walls};
+use super::{Column, Shown};
+use plica::assembly::SplineTube;
+use crate::draw::{Chart, Curve, Rule};
+use plica::study::{Plan, Row, Scale};
+
+/// A column against another, or against the number of the state; none if the run has no such column.
+pub fn plot(plan: &Plan, rows: &[Row], name: &str, along: Option<&str>) -> Option<Chart> {
+    let columns = Column::of(rows, &Scale::of(plan.units.as_ref()));
+    let find = |name: &str| columns.iter().find(|column| column.name == name);
+    let y = find(name)?;
+    let (x_label, x): (&str, Vec<Option<f64>>) = match along {
+        Some(name) => {
+            let x = find(name)?;
+            (&x.label, x.values.clone())
+        }
+        None => (
+            "state",
+            rows.iter().map(|row| Some(row.step as f64)).collect(),
+        ),
+    };
+    // Where a stage begins, if that has a place on the abscissa.
+    let stages = rows
+        .windows(2)
+        .filter(|pair| pair[0].stage != pair[1].stage && pair[0].step > 0);
+    let rules = stages.map(|pair| Rule {
+        at: pair[0].step as f64,
+        label: pair[1].stage.clone(),
+    });
+    let point =
+        |(x, y): (&Option<f64>, &Option<f64>)| (x.unwrap_or(f64::NAN), y.unwrap_or(f64::NAN));
+    Some(Chart {
+        x_label: x_label.to_owned(),
+        y_label: y.label.clone(),
+        curves: vec![Curve {
+            points: x.iter().zip(&y.values).map(point).collect(),
+            dots: true,
+            colour: 1,
+            ..Curve::default()
+        }],
+        rules: rules
+            .take(if along.is_none() { usize::MAX } else { 0 })
+            .collect(),
+        ..Chart::default()
+    })
+}
+
+/// Outer and inner wall at states.
+pub fn plot_walls(plan: &Plan, states: &[Shown]) -> Chart {
+    let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
+    let chosen: Vec<Wall<'_>> = states.iter().map(wall).collect();
+    walls(plan, &tube, &chosen)
+}
+
+fn wall((state, row): &Shown) -> Wall<'_> {
+    Wall {
+        label: format!(
+            "state {}: *L*_{{max}}/*L* = {:.2}, *D*_{{min}}/*D* = {:.2} ({})",
+            row.step, row.length_ratio, row.diameter_ratio, row.shape
+        ),
+        load: &state.load,
+        u: &state.u,
+    }
+}

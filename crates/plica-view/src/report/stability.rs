@@ -1,0 +1,329 @@
+//! The pictures of a test of stability.
+
+use plica::assembly::{Point, SplineTube};
+use crate::draw::{
+    Chart, Curve, Cutaway, DrawError, HALF, Image, Map, Marker, Opening, Packing, Panel, Range,
+    Rule, Stroke, Surface,
+};
+use plica::stability::{Change, How, Mode, Quantity, Stability, Station};
+use plica::study::{Plan, effect};
+use plica::tube::Tube;
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+/// So many states are marked one by one.
+const FEW: usize = 25;
+/// Width of every picture, in pixels.
+const WIDTH: usize = 1800;
+/// Printed width of the charts and of the page, in points.
+const COLUMN: f64 = 300.0;
+const PAGE: f64 = 510.0;
+/// Amplitude to which a mode is drawn, in D.
+const VISIBLE: f64 = 0.08;
+/// Eigenvalues over those at the beginning of a stage, as far as they are drawn.
+const DRAWN: [f64; 2] = [-0.8, 1.6];
+
+/// Draws what a test of stability found: names of files and their PNG bytes.
+///
+/// - `stability.png`: the lowest eigenvalue of each harmonic along every stage that changes one;
+/// - `mode.png`: the first mode to go, if any.
+///
+/// # Errors
+/// [`DrawError`] if there is nothing to draw.
+pub fn stability_pictures(
+    plan: &Plan,
+    found: &Stability,
+) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
+    let mut pictures = vec![("stability.png".to_owned(), eigenvalues(plan, found)?)];
+    let first = found.changes.iter().find(|change| change.mode.is_some());
+    if let Some((change, mode)) = first.and_then(|c| Some((c, c.mode.as_ref()?))) {
+        pictures.push(("mode.png".to_owned(), first_mode(plan, change, mode)?));
+    }
+    Ok(pictures)
+}
+
+/// The stages with a change, or else the last, one below the other.
+fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
+    let changes = |name: &str| found.changes.iter().any(|change| change.stage == name);
+    let mut stages: Vec<&str> = plan
+        .stages
+        .iter()
+        .map(|stage| stage.name.as_str())
+        .collect();
+    stages.retain(|name| changes(name));
+    if stages.is_empty() {
+        stages.extend(found.stations.last().map(|station| station.stage.as_str()));
+    }
+    let image = |stage| chart(plan, found, stage).image(WIDTH);
+    let images = stages
+        .into_iter()
+        .map(image)
+        .collect::<Result<Vec<_>, _>>()?;
+    Image::stacked(&images)?.to_png(COLUMN * 25.4 / 72.0, Packing::Plain)
+}
+
+/// The lowest eigenvalue of each harmonic along a stage.
+fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
+    let inside: Vec<usize> = (0..found.stations.len())
+        .filter(|&i| found.stations[i].stage == stage)
+        .collect();
+    let (Some(&first), Some(&last)) = (inside.first(), inside.last()) else {
+        return Chart::default();
+    };
+    // A stage begins with the last state of the one before.
+    let stations = &found.stations[first.saturating_sub(1)..=last];
+    let [begin, end] = [&stations[0], &stations[stations.len() - 1]];
+    let quantity = Quantity::between(&plan.tube, &begin.load, &end.load);
+    let x = |station: &Station| quantity.of(&plan.tube, &station.load);
+    let changes: Vec<&Change> = found.changes.iter().filter(|c| c.stage == stage).collect();
+
+    let ends = [x(begin).min(x(end)), x(begin).max(x(end))];
+    let mut curves = vec![Curve {
+        points: ends.map(|x| (x, 0.0)).to_vec(),
+        stroke: Stroke::Fine,
+        ..Curve::default()
+    }];
+    let (mut low, mut high) = (0.0_f64, 1.0_f64);
+    for n in 0..=found.highest {
+        let unit = begin.tested[n].lowest.abs();
+        let mut points = vec![];
+        for pair in stations.windows(2) {
+            points.push((x(&pair[0]), pair[0].tested[n].lowest / unit));
+            if changes
+                .iter()
+                .any(|change| is_snap_between(change, [x(&pair[0]), x(&pair[1])]))
+            {
+                points.push((f64::NAN, f64::NAN));
+            }
+        }
+        points.push((x(end), end.tested[n].lowest / unit));
+        for (_, y) in points.iter().filter(|point| point.1.is_finite()) {
+            (low, high) = (low.min(*y), high.max(*y));
+        }
+        curves.push(Curve {
+            label: name(n),
+            // Between few states a line says less than they do.
+            dots: points.len() <= FEW,
+            points,
+            colour: n + 1,
+            ..Curve::default()
+        });
+    }
+    let (low, high) = (low.max(DRAWN[0]), high.min(DRAWN[1]));
+    let room = 0.06 * (high - low);
+    // The first eigenvalue of a harmonic is the one that is drawn.
+    let marked: Vec<&&Change> = changes
+        .iter()
+        .filter(|c| c.negative.contains(&0) && c.how == How::Smooth)
+        .collect();
+    Chart {
+        x_label: label(quantity, &plan.tube),
+        y_label: "lowest eigenvalue *λ*/*λ*_{begin}".into(),
+        curves,
+        markers: marked
+            .iter()
+            .map(|change| Marker {
+                at: (change.critical, 0.0),
+                label: String::new(),
+                colour: change.harmonic + 1,
+            })
+            .collect(),
+        rules: marked
+            .iter()
+            .map(|change| Rule {
+                at: change.critical,
+                label: change.quantity.written(change.critical, 4),
+            })
+            .collect(),
+        x_range: Some((ends[0], ends[1])),
+        y_range: Some((low - room, high + room)),
+        width_pt: COLUMN,
+        ..Chart::default()
+    }
+}
+
+fn is_snap_between(change: &Change, [from, to]: [f64; 2]) -> bool {
+    let inside = |x: f64| (from.min(to)..=from.max(to)).contains(&x);
+    change.how == How::Snap && change.between.iter().all(|&x| inside(x))
+}
+
+/// A harmonic in a legend.
+fn name(harmonic: usize) -> String {
+    match harmonic {
+        0 => "*n* = 0 (round)".into(),
+        1 => "1 (sideways)".into(),
+        2 => "2 (oval)".into(),
+        n => format!("{n}"),
+    }
+}
+
+/// The title of an axis.
+fn label(quantity: Quantity, tube: &Tube) -> String {
+    match quantity {
+        Quantity::LengthRatio => "*L*_{max}/*L*".into(),
+        Quantity::DiameterRatio => "*D*_{min}/*D*".into(),
+        Quantity::ColonDisplacement => "displacement of the colon end/*D*".into(),
+        Quantity::IleumDisplacement => "displacement of the ileum end/*D*".into(),
+        Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
+        Quantity::DeadPressure(wall) => format!("dead *p*/*E* {}", ["inside", "outside"][wall]),
+        Quantity::Muscle(_) => quantity.name(tube),
+    }
+}
+
+/// The tube at the critical state and with its mode, open and closed, over the mode's amplitudes.
+fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, DrawError> {
+    let tube = SplineTube::new(&plan.tube, &plan.mesh, 1);
+    let meridian = Meridian::new(&tube, mode);
+    let at = format!(
+        "{} = {}",
+        label(change.quantity, &plan.tube),
+        change.quantity.written(change.critical, 4)
+    );
+    let n = mode.harmonic;
+    let panel = |label: String, opening: &Opening, amplitude: f64| Panel {
+        label,
+        surfaces: meridian.surfaces(opening, amplitude),
+        ..Panel::default()
+    };
+    let along = 2 * tube.axial.elements() + 1;
+    let (half, closed) = (
+        Opening::evenly(HALF, [along, 121, 9]),
+        Opening::evenly((0.0, std::f64::consts::TAU), [along, 241, 5]),
+    );
+    let cutaway = Cutaway {
+        title: plan.title.clone(),
+        panels: vec![
+            panel(format!("{at}, where it loses harmonic {n}"), &half, 0.0),
+            panel(
+                format!("it {} (drawn to an amplitude of {VISIBLE} *D*)", effect(n)),
+                &half,
+                VISIBLE,
+            ),
+            panel("the same from outside".into(), &closed, VISIBLE),
+        ],
+        value_label: "radial displacement of the mode".into(),
+        range: Range::Given(-1.0, 1.0),
+        map: Map::Signed,
+        width_pt: PAGE,
+        ..Cutaway::default()
+    };
+    let images = [cutaway.image(WIDTH)?, meridian.amplitudes().image(WIDTH)?];
+    Image::stacked(&images)?.to_png(PAGE * 25.4 / 72.0, Packing::Small)
+}
+
+/// A state and its mode along one meridian, from which the others follow.
+struct Meridian<'a> {
+    tube: &'a SplineTube,
+    mode: &'a Mode,
+    /// Largest radial amplitude at the outer wall.
+    radial: f64,
+    /// Largest displacement anywhere on the outer wall.
+    largest: f64,
+    known: RefCell<HashMap<[u64; 2], Place>>,
+}
+
+/// Position (z, r) of a point at angle zero, and the amplitudes (z, r, θ) of the mode there.
+type Place = ([f64; 2], [f64; 3]);
+
+impl<'a> Meridian<'a> {
+    fn new(tube: &'a SplineTube, mode: &'a Mode) -> Self {
+        let mut meridian = Self {
+            tube,
+            mode,
+            radial: 0.0,
+            largest: 0.0,
+            known: RefCell::default(),
+        };
+        for z in tube.axial.spread(4 * tube.axial.elements() + 1) {
+            let (_, amplitude) = meridian.place(z, Tube::OUTER_RADIUS);
+            meridian.radial = meridian.radial.max(amplitude[1].abs());
+            let size = amplitude.iter().fold(0.0, |size: f64, a| size.hypot(*a));
+            meridian.largest = meridian.largest.max(size);
+        }
+        meridian
+    }
+
+    fn place(&self, z: f64, radius: f64) -> Place {
+        let at = Point {
+            z,
+            radius,
+            angle: 0.0,
+        };
+        let sample = |u| self.tube.sample(&self.mode.state.load, u, at);
+        let (state, mode) = (sample(&self.mode.state.u), sample(&self.mode.shape));
+        let amplitude = [0, 1, 2].map(|i| mode.position[i] - mode.reference[i]);
+        ([state.position[0], state.position[1]], amplitude)
+    }
+
+    /// The surfaces of the tube, coloured by the radial displacement of the mode; in units of its
+    /// largest, if that is not small beside the others.
+    fn surfaces(&self, opening: &Opening, amplitude: f64) -> Vec<Surface> {
+        let (along, n) = (self.tube.axial.elements(), self.mode.harmonic as f64);
+        let scale = amplitude / self.largest;
+        opening.surfaces(|zeta, angle, xi| {
+            let key = [zeta.to_bits(), xi.to_bits()];
+            let ([z, r], mode) = *self.known.borrow_mut().entry(key).or_insert_with(|| {
+                let inner = self.tube.tube.inner_radius();
+                self.place(
+                    self.tube.axial.elements_on(zeta * along as f64),
+                    inner + xi * self.tube.tube.thickness,
+                )
+            });
+            let (sin, cos) = if n == 0.0 {
+                (-1.0, 1.0)
+            } else {
+                (n * angle).sin_cos()
+            };
+            let [dz, dr, dt] = [mode[0] * cos, mode[1] * cos, -mode[2] * sin];
+            let (z, r, t) = (z + scale * dz, r + scale * dr, scale * dt);
+            let (sin, cos) = angle.sin_cos();
+            let value = if amplitude == 0.0 {
+                0.0
+            } else {
+                (dr / self.radial.max(0.1 * self.largest)).clamp(-1.0, 1.0)
+            };
+            ([r * cos - t * sin, r * sin + t * cos, z], value)
+        })
+    }
+
+    /// The amplitudes of the mode along the outer wall.
+    fn amplitudes(&self) -> Chart {
+        let z = self.tube.axial.spread(4 * self.tube.axial.elements() + 1);
+        let places: Vec<Place> = z
+            .iter()
+            .map(|&z| self.place(z, Tube::OUTER_RADIUS))
+            .collect();
+        let curve = |i: usize, label: &str, colour| Curve {
+            label: label.into(),
+            points: z
+                .iter()
+                .zip(&places)
+                .map(|(&z, p)| (z, p.1[i] / self.largest))
+                .collect(),
+            colour,
+            ..Curve::default()
+        };
+        let n = self.mode.harmonic;
+        let waves = match n {
+            0 => ["", ""].map(str::to_owned),
+            1 => ["cos *φ*", "−sin *φ*"].map(|wave| format!(" (times {wave})")),
+            n => [
+                format!(" (times cos {n}*φ*)"),
+                format!(" (times −sin {n}*φ*)"),
+            ],
+        };
+        Chart {
+            x_label: "*z*/*D* of the outer wall at rest".into(),
+            y_label: "amplitude of the mode".into(),
+            curves: vec![
+                curve(0, &format!("axial{}", waves[0]), 3),
+                curve(1, &format!("radial{}", waves[0]), 2),
+                curve(2, &format!("circumferential{}", waves[1]), 1),
+            ],
+            x_range: Some((0.0, self.tube.tube.length)),
+            proportion: 0.3,
+            width_pt: PAGE,
+            ..Chart::default()
+        }
+    }
+}

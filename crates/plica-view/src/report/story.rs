@@ -1,0 +1,133 @@
+//! Which states tell the story of a path, and against what it is plotted.
+
+use super::columns::unit;
+use crate::draw::short;
+use plica::study::{Row, Scale, Summary};
+
+/// What changes along a path: the abscissa of its charts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Abscissa {
+    /// Lmax/L.
+    LengthRatio,
+    /// Dmin/D.
+    DiameterRatio,
+    /// Displacement of the ileum end less that of the colon end.
+    Stretch,
+    /// True pressure on the inner wall.
+    InnerPressure,
+    /// True pressure on the outer wall.
+    OuterPressure,
+    /// The number of the state.
+    Step,
+}
+
+impl Abscissa {
+    /// Its value at a state.
+    pub fn of(self, row: &Row) -> f64 {
+        match self {
+            Self::LengthRatio => row.length_ratio,
+            Self::DiameterRatio => row.diameter_ratio,
+            Self::Stretch => row.ileum_displacement - row.colon_displacement,
+            Self::InnerPressure => row.inner_pressure.unwrap_or(0.0),
+            Self::OuterPressure => row.outer_pressure.unwrap_or(0.0),
+            Self::Step => row.step as f64,
+        }
+    }
+
+    /// Its label on an axis, with its unit.
+    pub fn label(self, scale: &Scale) -> String {
+        let length = unit(&scale.length_name);
+        let stress = unit(&scale.stress_name);
+        match self {
+            Self::LengthRatio => "*L*_{max}/*L*".into(),
+            Self::DiameterRatio => "*D*_{min}/*D*".into(),
+            Self::Stretch => format!("displacement of the ends, apart ({length})"),
+            Self::InnerPressure => format!("pressure on the inner wall ({stress})"),
+            Self::OuterPressure => format!("pressure on the outer wall ({stress})"),
+            Self::Step => "state".into(),
+        }
+    }
+
+    /// Its value at a state as a text.
+    pub fn told(self, row: &Row) -> String {
+        let value = self.of(row);
+        match self {
+            Self::LengthRatio | Self::DiameterRatio => format!("{value:.2}"),
+            Self::Step => row.step.to_string(),
+            _ if value == 0.0 => "0".into(),
+            _ => short(value, 3),
+        }
+    }
+}
+
+/// The part of a path that is plotted, and its chosen states.
+#[derive(Clone, Debug)]
+pub struct Story<'a> {
+    /// What it is plotted against.
+    pub abscissa: Abscissa,
+    /// The states of that part.
+    pub rows: Vec<&'a Row>,
+    /// Up to four states to look at closely: where it begins, the least energy, the last square
+    /// wall, the end.
+    pub chosen: Vec<&'a Row>,
+}
+
+impl<'a> Story<'a> {
+    /// The story of a run: its last stages, as far back as one quantity alone changes (twists and dead pressures, which are not plotted against, aside).
+    pub fn of(summary: &'a Summary) -> Self {
+        let all = summary.rows();
+        let quantities = [
+            Abscissa::LengthRatio,
+            Abscissa::DiameterRatio,
+            Abscissa::Stretch,
+            Abscissa::InnerPressure,
+            Abscissa::OuterPressure,
+        ];
+        let tail = |quantity: Abscissa| {
+            let others = quantities.iter().filter(move |&&other| other != quantity);
+            let last = &all[all.len() - 1];
+            let same = |row: &&Row| others.clone().all(|other| other.of(row) == other.of(last));
+            let count = all.iter().rev().take_while(same).count();
+            let rows = &all[all.len() - count..];
+            let changes = rows
+                .windows(2)
+                .filter(|w| quantity.of(&w[0]) != quantity.of(&w[1]));
+            if changes.count() + 1 >= rows.len() {
+                rows.len()
+            } else {
+                0
+            }
+        };
+        let best = quantities
+            .into_iter()
+            .max_by_key(|&quantity| (tail(quantity), rank(quantity)));
+        let (abscissa, count) = match best {
+            Some(quantity) if tail(quantity) > 2 => (quantity, tail(quantity)),
+            _ => (Abscissa::Step, all.len()),
+        };
+        let rows: Vec<&Row> = all[all.len() - count..].iter().collect();
+
+        let first = rows.first().copied();
+        let mut chosen: Vec<&Row> = first.into_iter().collect();
+        let inside = |row: &&Row| rows.iter().any(|r| r.step == row.step);
+        chosen.extend(summary.findings().energy_minimum().filter(inside));
+        chosen.extend(rows.iter().rev().find(|row| row.shape == "square").copied());
+        chosen.extend(rows.last().copied());
+        chosen.sort_by_key(|row| row.step);
+        chosen.dedup_by_key(|row| row.step);
+        Self {
+            abscissa,
+            rows,
+            chosen,
+        }
+    }
+}
+
+/// Which quantity wins a tie.
+fn rank(quantity: Abscissa) -> usize {
+    match quantity {
+        Abscissa::LengthRatio => 3,
+        Abscissa::DiameterRatio => 2,
+        _ => 1,
+    }
+}

@@ -1,0 +1,112 @@
+//! Outer and inner wall at several states.
+
+use super::VISIBLE;
+use super::columns::unit;
+use plica::assembly::SplineTube;
+use crate::draw::{Chart, Curve, Stroke};
+use plica::measure::{Departure, Face, Meridians};
+use plica::study::{Plan, Scale};
+use plica::tube::Load;
+
+/// Points per element along a drawn wall.
+const POINTS_PER_ELEMENT: usize = 4;
+
+/// A state, and what it is called in a legend.
+#[derive(Clone, Debug)]
+pub struct Wall<'a> {
+    /// Its name.
+    pub label: String,
+    /// Its load.
+    pub load: &'a Load,
+    /// Its unknowns.
+    pub u: &'a [f64],
+}
+
+/// The largest departure from axisymmetry among states: all are drawn in its plane.
+pub(super) fn departure(tube: &SplineTube, states: &[Wall<'_>]) -> Departure {
+    let of = |state: &Wall<'_>| Meridians::of(tube, state.load, state.u).departure();
+    let largest = states.iter().map(of);
+    let largest = largest.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+    largest.unwrap_or_default()
+}
+
+/// Outer and inner wall of states; of a tube that is visibly not axisymmetric two meridians, that at the crest above
+/// the axis and that at the trough below it.
+pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Chart {
+    let scale = Scale::of(plan.units.as_ref());
+    let length = scale.length;
+    let departure = departure(tube, states);
+    let both = departure.crest_and_trough();
+    let one_line = departure.amplitude < VISIBLE;
+    let angles = if one_line { &both[..1] } else { &both };
+    let z = tube
+        .axial
+        .spread(tube.axial.elements() * POINTS_PER_ELEMENT + 1);
+    let mut curves = vec![];
+    for (colour, state) in states.iter().enumerate() {
+        let meridians = Meridians::of(tube, state.load, state.u);
+        for (face, stroke) in [(Face::Outer, Stroke::Solid), (Face::Inner, Stroke::Fine)] {
+            let label = if face == Face::Outer {
+                state.label.clone()
+            } else {
+                String::new()
+            };
+            let mut points = vec![];
+            for (wall, side) in (meridians.walls(face, angles, &z).iter()).zip([1.0, -1.0]) {
+                points.extend(
+                    wall.points
+                        .iter()
+                        .map(|&(z, r)| (length * z, length * side * r)),
+                );
+                points.push((f64::NAN, f64::NAN));
+            }
+            curves.push(Curve {
+                label,
+                points,
+                colour: colour + 1,
+                stroke,
+                ..Curve::default()
+            });
+        }
+    }
+    curves.push(Curve {
+        label: "inner wall".into(),
+        stroke: Stroke::Fine,
+        ..Curve::default()
+    });
+    let finite = |p: &&(f64, f64)| p.0.is_finite();
+    let points = || curves.iter().flat_map(|curve| &curve.points).filter(finite);
+    let highest = points().map(|p| p.1).fold(0.55 * length, f64::max);
+    let lowest = if one_line {
+        0.0
+    } else {
+        points().map(|p| p.1).fold(-0.55 * length, f64::min) - 0.05 * length
+    };
+    let (low, high) = points().fold((0.0_f64, length * plan.tube.length), |(low, high), p| {
+        (low.min(p.0), high.max(p.0))
+    });
+    if !one_line {
+        let axis = Curve {
+            points: vec![(low, 0.0), (high, 0.0)],
+            stroke: Stroke::Dashed,
+            ..Curve::default()
+        };
+        curves.push(axis);
+    }
+    let [crest, trough] = both.map(|angle| (angle.to_degrees().round() + 0.0).rem_euclid(360.0));
+    Chart {
+        title: if one_line {
+            String::new()
+        } else {
+            format!("above *r* = 0 the meridian at {crest}°, below it that at {trough}°")
+        },
+        x_label: format!("*z* ({})", unit(&scale.length_name)),
+        y_label: format!("*r* ({})", unit(&scale.length_name)),
+        equal_aspect: true,
+        x_range: Some((low, high)),
+        y_range: Some((lowest, 0.05 * length + highest)),
+        width_pt: 510.0,
+        curves,
+        ..Chart::default()
+    }
+}
