@@ -78,7 +78,7 @@ async function off(tab, which, directory) {
   const history = table(path.join(directory, "history.csv"));
   const last = history.step.length - 1;
   const walls = table(path.join(directory, "profiles", `state-${String(last).padStart(4, "0")}.csv`));
-  const waves = history.departure_harmonic[last];
+  const waves = history.asymmetry_mode[last];
   const meridians = await tab.evaluate(
     async ([which, waves]) => {
       const data = JSON.parse(document.getElementById("data").textContent);

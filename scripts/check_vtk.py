@@ -199,7 +199,7 @@ def check_state(run, number, row, profile):
     assert np.array_equal(vtk_to_numpy(linear.GetPoints().GetData()), now)
     close("volume of straight cells", volume_of(linear, now), volume, 1e-2)
 
-    if int(row["departure_harmonic"]) == 0:
+    if int(row["asymmetry_mode"]) == 0:
         check_walls(rest, now, linear, profile)
 
     # Fields among themselves: stress symmetric by construction; stretches and directions.

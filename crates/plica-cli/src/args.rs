@@ -298,7 +298,9 @@ pub type Ends = [f64; 2];
 
 /// The names of fields.
 fn fields() -> clap::builder::PossibleValuesParser {
-    plica_view::report::Field::ALL.map(|field| field.name()).into()
+    plica_view::report::Field::ALL
+        .map(|field| field.name())
+        .into()
 }
 
 /// An angle to take away.
@@ -472,8 +474,8 @@ Examples:
   plica plot runs/tube walls --state 15 --state 30 --out walls.svg
 
 Columns that can be plotted are those that the run has of: length_ratio, diameter_ratio, colon_displacement, ileum_displacement,
-colon_twist_deg, ileum_twist_deg, inner_pressure, outer_pressure, inner_dead_pressure, outer_dead_pressure, energy, potential, max_wall_angle_deg, overhang, outer_radius_min, flatness, gap, lumen,
-departure, min_det_fe, drag_work, residual, iterations; docs/run-directory.md tells what they are.
+colon_twist_deg, ileum_twist_deg, inner_pressure, outer_pressure, inner_dead_load, outer_dead_load, energy, potential, max_wall_angle_deg, overhang, outer_radius_min, flatness, gap, lumen,
+asymmetry, min_det_fe, damping_work, residual, iterations; docs/run-directory.md tells what they are.
 
 Texts of an SVG stay texts, to be found and edited.";
 

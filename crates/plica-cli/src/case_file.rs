@@ -3,8 +3,8 @@
 use crate::args::CaseArguments;
 use crate::failure::Failure;
 use plica::case::{self, Open, Wanted};
-use plica_view::draw::boxes;
 use plica::study::{NamedMode, Plan, RunDirectory, SavedState, SavedStateError, StudyError};
+use plica_view::draw::boxes;
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 

@@ -4,9 +4,9 @@ use crate::args::PlotArguments;
 use crate::failure::Failure;
 use crate::finished::{Finished, endings};
 use crate::render::trouble;
+use plica::study::Scale;
 use plica_view::draw::Chart;
 use plica_view::report::{self, Column, Shown};
-use plica::study::Scale;
 
 /// What is plotted of states themselves.
 const WALLS: &str = "walls";

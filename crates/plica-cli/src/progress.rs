@@ -67,7 +67,7 @@ impl Observer for Progress {
             row.method,
             row.max_wall_angle_deg,
             row.shape,
-            departs(format!(" {:>12}", departure(row))),
+            departs(format!(" {:>12}", asymmetry(row))),
             row.iterations,
             row.seconds
         ));
@@ -91,17 +91,17 @@ fn pressure(row: &Row) -> f64 {
     let pressures = [
         row.outer_pressure,
         row.inner_pressure,
-        row.outer_dead_pressure,
-        row.inner_dead_pressure,
+        row.outer_dead_load,
+        row.inner_dead_load,
     ];
     let under = |p: &f64| *p != 0.0;
     pressures.into_iter().flatten().find(under).unwrap_or(0.0)
 }
 
 /// How far a state is from axisymmetric, and in which harmonic.
-fn departure(row: &Row) -> String {
-    match row.departure_harmonic {
+fn asymmetry(row: &Row) -> String {
+    match row.asymmetry_mode {
         0 => "0".into(),
-        n => format!("{:.1e} n={n}", row.departure),
+        n => format!("{:.1e} n={n}", row.asymmetry),
     }
 }

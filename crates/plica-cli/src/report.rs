@@ -4,8 +4,8 @@ use crate::args::ReportArguments;
 use crate::failure::Failure;
 use crate::finished::{Finished, endings};
 use crate::{console, threads};
-use plica_view::page::{PageError, Run, drawn, page};
 use plica::study::SavedState;
+use plica_view::page::{PageError, Run, drawn, page};
 use std::path::{Path, PathBuf};
 
 /// Writes runs as a page.

@@ -6,8 +6,8 @@ use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{case_file, console, threads};
 use plica::case::differences;
-use plica_view::report::pictures;
 use plica::study::{self, Observer, Plan, RunDirectory, StudyError, Summary};
+use plica_view::report::pictures;
 use std::path::{Path, PathBuf};
 
 /// Draws the pictures of a run; says which. A picture that cannot be drawn does not undo a run.

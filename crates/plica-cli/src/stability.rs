@@ -5,13 +5,13 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{case_file, console, threads};
-use plica_view::draw::DrawError;
-use plica_view::report::{mode_pictures, stability_pictures};
 use plica::stability::{
     ModesRequest, Observer, Request, Spectrum, StabilityError, Station, follow, lowest_modes,
 };
 use plica::study::{Plan, RunDirectory, fits};
 use plica::tube::{Load, Tube};
+use plica_view::draw::DrawError;
+use plica_view::report::{mode_pictures, stability_pictures};
 
 /// How close critical values are bracketed, unless told otherwise.
 const TOLERANCE: f64 = 1e-4;
@@ -45,15 +45,15 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
             "warning: the run has not ended, or was killed; its states so far are tested",
         );
     }
-    let mut watch = Watcher {
+    let mut monitor = Watcher {
         ticker: Ticker::new(interrupt),
         begun: false,
         pressed: plan.is_pressed(),
     };
     if plan.mesh.rings(plan.symmetry) == 1 {
-        by_harmonics(arguments, &plan, &directory, &mut watch)
+        by_harmonics(arguments, &plan, &directory, &mut monitor)
     } else {
-        by_modes(arguments, &plan, &directory, &mut watch)
+        by_modes(arguments, &plan, &directory, &mut monitor)
     }
 }
 
@@ -62,7 +62,7 @@ fn by_harmonics(
     arguments: &StabilityArguments,
     plan: &Plan,
     directory: &RunDirectory,
-    watch: &mut Watcher,
+    monitor: &mut Watcher,
 ) -> Result<(), Failure> {
     if arguments.modes.is_some() || !arguments.state.is_empty() {
         return Err(Failure::Usage(StabilityError::OneRing.to_string()));
@@ -70,11 +70,11 @@ fn by_harmonics(
     let request = Request {
         harmonics: arguments
             .harmonics
-            .map_or(plan.output.harmonics, usize::from),
+            .map_or(plan.output.stability_modes, usize::from),
         tolerance: arguments.tolerance.unwrap_or(TOLERANCE),
     };
-    let found = follow(plan, directory, &request, watch);
-    watch.ticker.finish();
+    let found = follow(plan, directory, &request, monitor);
+    monitor.ticker.finish();
     let found = found.map_err(failure)?;
     let names = found.write(&plan.tube, directory).map_err(Failure::Study)?;
     let pictures = stability_pictures(plan, &found);
@@ -92,7 +92,7 @@ fn by_modes(
     arguments: &StabilityArguments,
     plan: &Plan,
     directory: &RunDirectory,
-    watch: &mut Watcher,
+    monitor: &mut Watcher,
 ) -> Result<(), Failure> {
     if arguments.harmonics.is_some() || arguments.tolerance.is_some() {
         return Err(Failure::Usage(
@@ -105,8 +105,8 @@ fn by_modes(
         states: arguments.state.clone(),
         modes: usize::from(arguments.modes.unwrap_or(MODES)),
     };
-    let found = lowest_modes(plan, directory, &request, watch);
-    watch.ticker.finish();
+    let found = lowest_modes(plan, directory, &request, monitor);
+    monitor.ticker.finish();
     let found = found.map_err(failure)?;
     if found.states.is_empty() {
         return Err(failure(StabilityError::Stopped));

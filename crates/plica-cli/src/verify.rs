@@ -48,13 +48,13 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     let page = arguments.out.join(PAGE);
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
-    let mut watch = Watcher {
+    let mut monitor = Watcher {
         ticker: Ticker::new(interrupt),
         done: 0,
         of: 1,
     };
-    let held = hold(full, &wanted, &mut watch);
-    watch.ticker.finish();
+    let held = hold(full, &wanted, &mut monitor);
+    monitor.ticker.finish();
     let held = held.map_err(|trouble| match trouble {
         Trouble::Stopped => Failure::Interrupted("interrupted; nothing was written".into()),
         trouble => Failure::Files(trouble.to_string()),

@@ -26,7 +26,7 @@ drive.circular.diameter_ratio = 0.3
 [solver]
 newton_iterations = 4
 relaxation_steps = 4
-halvings = 0
+max_step_halvings = 0
 [output]
 pictures = false
 "#;
@@ -48,7 +48,7 @@ fn a_lost_run_says_where_and_what_may_help_and_goes_on_with_that() {
         "strained hardest at z = ",
         "θ = ",
         "wall",
-        "solver.halvings",
+        "solver.max_step_halvings",
     ] {
         assert!(last.contains(word), "{word}: {last}");
     }
@@ -62,7 +62,7 @@ fn a_lost_run_says_where_and_what_may_help_and_goes_on_with_that() {
     // As it advises.
     fs::write(
         directory.join("case.toml"),
-        CASE.replace("halvings = 0", "halvings = 8"),
+        CASE.replace("max_step_halvings = 0", "max_step_halvings = 8"),
     )
     .unwrap();
     let said = plica(
@@ -76,7 +76,7 @@ fn a_lost_run_says_where_and_what_may_help_and_goes_on_with_that() {
 #[test]
 fn a_run_that_has_no_first_state_says_so() {
     let directory = scratch("lost-first");
-    let dented = "[[imperfections]]\nof = \"colon-end\"\namplitude = 0.025\nshape = { wave = { harmonic = 2 } }\n";
+    let dented = "[[imperfections]]\nof = \"colon-end\"\namplitude = 0.025\nshape = { wave = { mode = 2 } }\n";
     let case = CASE
         .replace("newton_iterations = 4", "newton_iterations = 1")
         .replace("relaxation_steps = 4", "relaxation_steps = 1")
@@ -98,7 +98,7 @@ fn a_run_that_has_no_first_state_says_so() {
         assert!(last.contains(word), "{word}: {last}");
     }
     assert!(
-        !last.contains("last good state") && !last.contains("halvings"),
+        !last.contains("last good state") && !last.contains("max_step_halvings"),
         "{last}"
     );
 }

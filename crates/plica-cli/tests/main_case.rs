@@ -111,7 +111,7 @@ fn it_invaginates_to_the_colon(history: &History) {
 fn it_is_in_equilibrium_and_tilts_before_it_snaps(history: &History) {
     assert!(history.numbers("residual").iter().all(|&r| r <= 1e-6));
     assert!(history.words("equilibrium").iter().all(|&e| e == "yes"));
-    let unstable = history.words("unstable_harmonics");
+    let unstable = history.words("unstable_modes");
     assert!(unstable.iter().any(|&harmonics| harmonics != "none"));
     for (state, harmonics) in unstable.into_iter().enumerate() {
         if harmonics != "none" {

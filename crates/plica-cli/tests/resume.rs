@@ -48,7 +48,7 @@ control_points = { axial = 14, around = 8, thickness = 4 }
 [[imperfections]]
 of = "colon-end"
 amplitude = 0.02
-shape = { wave = { harmonic = 1 } }
+shape = { wave = { mode = 1 } }
 [[stages]]
 steps = 4
 drive.circular.diameter_ratio = 0.7
@@ -58,7 +58,7 @@ drive.ileum.twist_degrees = 10
 "#;
 
 /// Through pseudo-time, whose velocity is carried on.
-fn dragged() -> String {
+fn damped() -> String {
     ROUND.replace("[output]", "[solver]\nscheme = \"newmark\"\n[solver.pseudo_time]\nsettle = false\n[output]\nprofiles_every = 2")
 }
 
@@ -136,7 +136,7 @@ fn survives(name: &str, case: &str, kills: usize, seed: u64) {
 fn a_run_that_is_killed_is_taken_up_again() {
     survives("resume-round", ROUND, 4, 1);
     survives("resume-tilted", TILTED, 3, 2);
-    survives("resume-dragged", &dragged(), 3, 3);
+    survives("resume-damped", &damped(), 3, 3);
 }
 
 /// For the slow suite: `cargo test --release -p plica-cli --test resume -- --ignored`.
@@ -145,7 +145,7 @@ fn a_run_that_is_killed_is_taken_up_again() {
 fn runs_that_are_killed_two_hundred_times_are_taken_up_again() {
     survives("resume-many-round", ROUND, 80, 11);
     survives("resume-many-tilted", TILTED, 70, 12);
-    survives("resume-many-dragged", &dragged(), 60, 13);
+    survives("resume-many-damped", &damped(), 60, 13);
 }
 
 /// A run that was killed on its way, after some states.

@@ -189,7 +189,7 @@ zone = [0.5, 1.0]
 [[imperfections]]
 of = \"colon-end\"
 amplitude = 5e-3
-shape = { wave = { harmonic = 2, phase_degrees = 30 } }
+shape = { wave = { mode = 2, phase_degrees = 30 } }
 [[stages]]
 name = \"relax\"
 steps = 1

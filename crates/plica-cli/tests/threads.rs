@@ -68,7 +68,7 @@ fn a_run_is_the_same_on_one_two_and_eight_threads() {
             .replace("steps = 25", "steps = 5"),
     );
     let tilted = "symmetry = \"none\"\n[muscles.circular]\ndirection = \"circular\"\nzone = [0.5, 1.5]\n[mesh]\ncontrol_points = { axial = 20, around = 12, thickness = 4 }\n\
-        [[imperfections]]\nof = \"colon-end\"\namplitude = 0.01\nshape = { wave = { harmonic = 1 } }\n[[stages]]\nsteps = 4\ndrive.circular.diameter_ratio = 0.7\n";
+        [[imperfections]]\nof = \"colon-end\"\namplitude = 0.01\nshape = { wave = { mode = 1 } }\n[[stages]]\nsteps = 4\ndrive.circular.diameter_ratio = 0.7\n";
     same_for_any_number("tilted", tilted);
 }
 

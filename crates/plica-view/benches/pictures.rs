@@ -3,8 +3,8 @@
 //! `cargo bench -p plica --bench pictures` prints what docs/performance.md says. On one thread.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use plica_view::report::pictures;
 use plica::study::{self, Observer, Row, RunDirectory};
+use plica_view::report::pictures;
 use std::hint::black_box;
 
 struct Nobody;

@@ -7,8 +7,8 @@ mod common;
 
 use common::Chance;
 use plica::case;
-use plica_view::export::{Exporter, What};
 use plica::study::{self, Ending, Observer, Plan, Row, RunDirectory, SavedState};
+use plica_view::export::{Exporter, What};
 use std::fmt::Write;
 use std::io::Read;
 use std::path::Path;
@@ -94,9 +94,9 @@ fn random(chance: &mut Chance) -> String {
         let of = chance.of(&["\"geometry\"", "\"colon-end\"", "{ muscle = \"ring\" }"]);
         let shape = match (of, fold) {
             ("\"geometry\"", _) => "{ random = { seed = 7 } }",
-            (_, "none") => "{ wave = { harmonic = 1 } }",
-            (_, "2") => "{ wave = { harmonic = 2 } }",
-            _ => "{ wave = { harmonic = 0 } }",
+            (_, "none") => "{ wave = { mode = 1 } }",
+            (_, "2") => "{ wave = { mode = 2 } }",
+            _ => "{ wave = { mode = 0 } }",
         };
         let amplitude =
             chance.between(0.0, 0.2) * if of.starts_with('{') { 1.0 } else { thickness };
@@ -134,7 +134,7 @@ fn random(chance: &mut Chance) -> String {
         if chance.one_in(3) {
             let (wall, kind) = (
                 chance.of(&["inner-wall", "outer-wall"]),
-                chance.of(&["pressure", "dead_pressure"]),
+                chance.of(&["pressure", "dead_load"]),
             );
             add(format_args!(
                 "drive.{wall}.{kind} = {}e-3\n",
@@ -144,7 +144,7 @@ fn random(chance: &mut Chance) -> String {
     }
     add(format_args!(
         "[solver]\nscheme = \"{}\"\nhalvings = {}\n[output]\npictures = false\nwall_points = 51\n",
-        chance.of(&["static", "static", "static", "dragged", "newmark"]),
+        chance.of(&["static", "static", "static", "backward-euler", "newmark"]),
         chance.below(6)
     ));
     case

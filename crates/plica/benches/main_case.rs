@@ -5,8 +5,9 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use plica::assembly::SplineTube;
+use plica::equilibrium::TubeProblem;
 use plica::solve::{Equilibrium, Path};
-use plica::study::{Plan, TubeProblem};
+use plica::study::Plan;
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -34,7 +35,7 @@ fn contracted<'a>(plan: &Plan, problem: &'a TubeProblem) -> Path<'a, TubeProblem
 
 fn lead(path: &mut Path<'_, TubeProblem>, plan: &Plan, stage: usize) {
     let stage = &plan.stages[stage];
-    path.set_out(stage.load.clone());
+    path.begin_segment(stage.load.clone());
     for n in 1..=stage.steps {
         path.advance(n as f64 / stage.steps as f64, &mut ())
             .expect("the path can be followed");
@@ -55,7 +56,7 @@ fn kernels(c: &mut Criterion) {
         b.iter(|| black_box(problem.tube.tangent(load, u)))
     });
     let mut tangent = problem.tube.tangent(load, u);
-    tangent.constrain(problem.given());
+    tangent.constrain(problem.prescribed());
     group.bench_function("factorisation", |b| {
         b.iter(|| black_box(tangent.clone().factor()))
     });

@@ -6,8 +6,9 @@
 //! an oval one, which takes some minutes to find.
 
 use plica::assembly::SplineTube;
+use plica::equilibrium::TubeProblem;
 use plica::solve::{Equilibrium, Path, Solver, Tangent};
-use plica::study::{Plan, TubeProblem};
+use plica::study::Plan;
 use std::time::Instant;
 
 /// Control points along, around and through the wall: 50 thousand to 1.6 million unknowns.
@@ -51,7 +52,7 @@ const FAR_FROM_ROUND: [(&str, &str, [usize; 3], usize); 2] = [
 fn far_from_round() {
     println!(
         "\n{:>8} {:>13} {:>9} {:>8} {:>7} {:>9} {:>9} {:>9} {:>5}",
-        "state", "mesh", "unknowns", "Lmax/L", "drag", "tangent", "factor", "solve", "its"
+        "state", "mesh", "unknowns", "Lmax/L", "damping", "tangent", "factor", "solve", "its"
     );
     for (name, text, mesh, steps) in FAR_FROM_ROUND {
         let mut plan = plica::case::read(text, name).expect("the case is sound");
@@ -61,7 +62,7 @@ fn far_from_round() {
         let mut path = Path::begin(&whole, plan.tube.rest(), start, plan.solver.clone())
             .expect("a tube at rest is not inverted");
         for (number, stage) in (1..).zip(&plan.stages) {
-            path.set_out(stage.load.clone());
+            path.begin_segment(stage.load.clone());
             let last = if number == plan.stages.len() {
                 steps
             } else {
@@ -76,12 +77,12 @@ fn far_from_round() {
         let further = whole.between(&load, &plan.tube.rest(), 1e-3);
         let residual = whole.forces(&further, &u).expect("not inverted").residual;
         let free = |(r, given): (&f64, &bool)| if *given { 0.0 } else { -r };
-        let b: Vec<f64> = residual.iter().zip(whole.given()).map(free).collect();
-        for drag in [0.0, 10.0] {
+        let b: Vec<f64> = residual.iter().zip(whole.prescribed()).map(free).collect();
+        for damping in [0.0, 10.0] {
             let tangent = median(|| drop(whole.tangent(&load, &u)));
             let at = whole.tangent(&load, &u);
-            let factor = median(|| drop(at.shifted(drag)));
-            let solver = at.shifted(drag).expect("not singular");
+            let factor = median(|| drop(at.shifted(damping)));
+            let solver = at.shifted(damping).expect("not singular");
             let mut iterations = String::new();
             let solve = median(|| {
                 iterations = match solver.solve(&mut b.clone(), 1e-3, &mut ()) {
@@ -91,7 +92,7 @@ fn far_from_round() {
                 };
             });
             println!(
-                "{name:>8} {:>13} {:>9} {:>8.4} {drag:>7} {tangent:>9.4} {factor:>9.4} {solve:>9.4} {iterations:>5}",
+                "{name:>8} {:>13} {:>9} {:>8.4} {damping:>7} {tangent:>9.4} {factor:>9.4} {solve:>9.4} {iterations:>5}",
                 format!("{} x {} x {}", mesh[0], mesh[1], mesh[2]),
                 u.len(),
                 plan.tube.length_ratio(&load),
@@ -113,7 +114,7 @@ fn main() {
         let rest = vec![0.0; ring.tube.unknowns()];
         let mut path = Path::begin(&ring, plan.tube.rest(), rest, plan.solver.clone())
             .expect("a tube at rest is not inverted");
-        path.set_out(plan.stages[0].load.clone());
+        path.begin_segment(plan.stages[0].load.clone());
         for n in 1..=plan.stages[0].steps {
             path.advance(n as f64 / plan.stages[0].steps as f64, &mut ())
                 .expect("the path can be followed");

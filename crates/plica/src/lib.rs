@@ -20,9 +20,11 @@
 pub mod activation;
 pub mod assembly;
 pub mod case;
+pub mod equilibrium;
 pub mod material;
 pub mod matrix;
 pub mod measure;
+pub mod monitor;
 pub mod rings;
 pub mod solve;
 pub mod spline;

@@ -55,7 +55,7 @@ fn the_tangent_of_every_case_is_the_slope_of_its_residual() {
             &field(1),
             0.05 * plan.tube.thickness,
         );
-        tube.impose(&load, &mut u);
+        tube.apply_prescribed(&load, &mut u);
         let d = field(2);
 
         let residual = |h: f64| {

@@ -4,12 +4,12 @@
 
 use plica::activation::{Direction, Muscle, Profile};
 use plica::assembly::{Point, SplineTube};
+use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
 use plica::solve::{
-    Equilibrium, Integrator, Method, Path, PseudoTime, Scheme, Settings, State, Watch,
+    Equilibrium, Integrator, Method, Monitor, Path, PseudoTime, Scheme, Settings, State,
 };
 use plica::spline::Refinement;
-use plica::study::TubeProblem;
 use plica::tube::{Load, Mesh, Support, Tube};
 use std::f64::consts::PI;
 
@@ -55,12 +55,12 @@ fn problem(tube: &Tube, mesh: &Mesh, rings: usize) -> TubeProblem {
 }
 
 /// The state at the end of legs from rest, each walked in equal steps.
-fn lead(problem: &TubeProblem, settings: Settings, legs: &[(Load, usize)]) -> State<Load> {
+fn lead(problem: &TubeProblem, settings: Settings, segments: &[(Load, usize)]) -> State<Load> {
     let rest = problem.tube.tube.rest();
     let zero = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(problem, rest, zero, settings).unwrap();
-    for (load, steps) in legs {
-        path.set_out(load.clone());
+    for (load, steps) in segments {
+        path.begin_segment(load.clone());
         for i in 1..=*steps {
             path.advance(i as f64 / *steps as f64, &mut ()).unwrap();
         }
@@ -92,7 +92,7 @@ fn volume(problem: &TubeProblem) -> f64 {
         .map(|i| f64::from(u8::from(i / rings % 3 == 0))) // axial components
         .collect();
     let mut weighed = vec![0.0; n];
-    problem.drag(1.0, &shift, &mut weighed);
+    problem.damping(1.0, &shift, &mut weighed);
     let sector: f64 = shift.iter().zip(&weighed).map(|(u, c)| u * c).sum();
     sector * problem.tube.sector.repeats()
 }
@@ -184,13 +184,13 @@ fn main_case() -> (Tube, [(Load, usize); 2]) {
         muscles: vec![circular, longitudinal],
         ..tube.rest()
     };
-    let legs = [(load(0.7, 1.0), 2), (load(0.7, 1.03), 1)];
-    (tube, legs)
+    let segments = [(load(0.7, 1.0), 2), (load(0.7, 1.03), 1)];
+    (tube, segments)
 }
 
 #[test]
 fn the_main_case_is_the_same_for_every_sector() {
-    let (tube, legs) = main_case();
+    let (tube, segments) = main_case();
     let mesh = Mesh {
         axial: 60,
         around: 12,
@@ -205,7 +205,7 @@ fn the_main_case_is_the_same_for_every_sector() {
     };
     let energy = |rings: usize| {
         let problem = problem(&tube, &mesh, rings);
-        whole_energy(&problem, &lead(&problem, tight(), &legs))
+        whole_energy(&problem, &lead(&problem, tight(), &segments))
     };
     let one = energy(1);
     for rings in [2, 3] {
@@ -218,11 +218,11 @@ fn the_main_case_is_the_same_for_every_sector() {
 #[test]
 fn the_energy_that_the_solver_sees_has_the_residual_as_its_slope() {
     // With drag the solver adds energies of its own, so the factor counts, for every sector.
-    let (tube, legs) = main_case();
-    let load = &legs[1].0;
+    let (tube, segments) = main_case();
+    let load = &segments[1].0;
     for rings in [1, 3, 6] {
         let problem = problem(&tube, &mesh(3, [24, 6, 1]), rings);
-        let state = lead(&problem, tight(), &legs[..1]);
+        let state = lead(&problem, tight(), &segments[..1]);
         let direction: Vec<f64> = (0..state.u.len()).map(|i| (0.3 * i as f64).sin()).collect();
         let at = |h: f64| {
             let moved = state.u.iter().zip(&direction).map(|(u, d)| u + h * d);
@@ -239,9 +239,9 @@ fn the_energy_that_the_solver_sees_has_the_residual_as_its_slope() {
 /// Writes down what is left of the residual after every linear solve.
 struct Sequence(Vec<f64>);
 
-impl Watch for Sequence {
-    fn solved(&mut self, _: Method, imbalance: f64) -> bool {
-        self.0.push(imbalance);
+impl Monitor for Sequence {
+    fn solved(&mut self, _: Method, relative_residual: f64) -> bool {
+        self.0.push(relative_residual);
         true
     }
 }
@@ -252,7 +252,7 @@ fn newton_squares_the_residual_at_the_end() {
     let problem = problem(&tube, &mesh(3, [60, 12, 2]), 1);
     let zero = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(&problem, tube.rest(), zero, tight()).unwrap();
-    path.set_out(contracted);
+    path.begin_segment(contracted);
     let mut pairs = 0;
     for t in [0.25, 0.5, 0.75, 1.0] {
         let mut sequence = Sequence(vec![]);
@@ -278,8 +278,8 @@ fn the_paper_s_scheme_arrives_where_newton_does() {
         ..tube.rest()
     };
     // Every step is ramped over ten of pseudo-time.
-    let legs = [(load(0.9, 1.0), 5), (load(0.9, 1.01), 2)];
-    let direct = lead(&problem, tight(), &legs);
+    let segments = [(load(0.9, 1.0), 5), (load(0.9, 1.01), 2)];
+    let direct = lead(&problem, tight(), &segments);
     for integrator in [Integrator::Newmark, Integrator::BackwardEuler] {
         let scheme = Scheme::PseudoTime(PseudoTime {
             integrator,
@@ -289,9 +289,9 @@ fn the_paper_s_scheme_arrives_where_newton_does() {
             scheme,
             ..Settings::default()
         };
-        let dragged = lead(&problem, settings, &legs);
-        let [dragged, direct] = [&dragged, &direct].map(|state| whole_energy(&problem, state));
-        let off = relative(dragged, direct);
+        let damped = lead(&problem, settings, &segments);
+        let [damped, direct] = [&damped, &direct].map(|state| whole_energy(&problem, state));
+        let off = relative(damped, direct);
         assert!(off < 1e-9, "{integrator:?}: {off:e}");
     }
 }

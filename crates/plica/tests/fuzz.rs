@@ -43,7 +43,7 @@ const WORDS: &[&str] = &[
     "{ fold = 60 }",
     "\"geometry\"",
     "\"colon-end\"",
-    "{ wave = { harmonic = 2 } }",
+    "{ wave = { mode = 2 } }",
     "{ random = { seed = 7 } }",
     "{ smooth-box = { edge = 0.25 } }",
     "\"half-sine\"",

@@ -77,7 +77,7 @@ fn an_oval_wall_grows_to_the_side_to_which_it_is_oval() {
             [[imperfections]]
             of = 'geometry'
             amplitude = 1e-4
-            shape = {{ wave = {{ harmonic = 2, phase_degrees = {degrees} }} }}"
+            shape = {{ wave = {{ mode = 2, phase_degrees = {degrees} }} }}"
         );
         let waves = waves(name, &case, 2);
         let [x, y] = waves[4].1;
@@ -102,7 +102,7 @@ fn case(symmetry: &str, around: usize, harmonic: usize, led: &str) -> String {
         [[imperfections]]
         of = 'colon-end'
         amplitude = 1e-4
-        shape = {{ wave = {{ harmonic = {harmonic} }} }}
+        shape = {{ wave = {{ mode = {harmonic} }} }}
         {led}"
     )
 }

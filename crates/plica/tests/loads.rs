@@ -4,10 +4,10 @@
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
 use plica::assembly::SplineTube;
+use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
 use plica::solve::{Path, Settings, State};
 use plica::stability::Harmonics;
-use plica::study::TubeProblem;
 use plica::tube::{Load, Mesh, Pressure, Support, Tube};
 
 fn tube(length: f64, poisson_ratio: f64) -> Tube {
@@ -59,7 +59,7 @@ fn tight() -> Settings {
 fn under(problem: &TubeProblem, load: &Load, steps: usize) -> State<Load> {
     let u = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(problem, problem.tube.tube.rest(), u, tight()).unwrap();
-    path.set_out(load.clone());
+    path.begin_segment(load.clone());
     for n in 1..=steps {
         path.advance(n as f64 / steps as f64, &mut ()).unwrap();
     }

@@ -1,8 +1,9 @@
 //! Tubes of many rings whose ends leave rigid motions open.
 
 use plica::assembly::SplineTube;
+use plica::equilibrium::TubeProblem;
 use plica::solve::{Integrator, Path, PseudoTime, Scheme, State};
-use plica::study::{Plan, TubeProblem};
+use plica::study::Plan;
 use plica::tube::{Axial, Imperfection, Load, Part, Shape, Support, Wave};
 
 /// Ends that leave something to pin, first; what fixed ones cost is what they are held against.
@@ -37,15 +38,15 @@ fn states(plan: &Plan, rings: usize) -> Vec<(f64, usize, usize)> {
     let problem = problem(plan, rings);
     let rest = problem.tube.start();
     let mut path = Path::begin(&problem, plan.tube.rest(), rest, plan.solver.clone()).unwrap();
-    path.set_out(contracted(plan));
+    path.begin_segment(contracted(plan));
     [0.5, 1.0]
         .map(|t| {
             let step = path.advance(t, &mut ()).unwrap();
             let state = path.state();
             assert!(
-                state.imbalance <= plan.solver.tolerance,
+                state.relative_residual <= plan.solver.tolerance,
                 "{}",
-                state.imbalance
+                state.relative_residual
             );
             let energy = state.energy / rings as f64;
             (energy, step.iterations, step.inner_iterations)
@@ -55,10 +56,10 @@ fn states(plan: &Plan, rings: usize) -> Vec<(f64, usize, usize)> {
 
 #[test]
 fn loose_tubes_in_three_dimensions_are_the_axisymmetric_ones_at_the_cost_of_fixed_ones() {
-    let dragged = |integrator| {
+    let damped = |integrator| {
         Scheme::PseudoTime(PseudoTime {
             integrator,
-            drag: 1.0,
+            damping: 1.0,
             ramp: 2,
             tolerance: 1e-3,
             ..PseudoTime::default()
@@ -66,8 +67,8 @@ fn loose_tubes_in_three_dimensions_are_the_axisymmetric_ones_at_the_cost_of_fixe
     };
     let schemes = [
         (Scheme::Static, vec![12, 6]),
-        (dragged(Integrator::Newmark), vec![12]),
-        (dragged(Integrator::BackwardEuler), vec![4]),
+        (damped(Integrator::Newmark), vec![12]),
+        (damped(Integrator::BackwardEuler), vec![4]),
     ];
     for (scheme, sectors) in schemes {
         for rings in sectors {
@@ -106,18 +107,18 @@ fn lopsided(ends: [Support; 2], harmonic: usize, rings: usize, shift: f64) -> St
         let (sin, cos) = tube.sector.ring_angle(ring).sin_cos();
         [shift, shift * cos, -shift * sin]
     });
-    tube.impose(&rest, &mut start);
+    tube.apply_prescribed(&rest, &mut start);
     let mut path = Path::begin(&problem, rest, start, plan.solver.clone()).unwrap();
-    path.set_out(contracted(&plan));
+    path.begin_segment(contracted(&plan));
     path.advance(1.0, &mut ()).unwrap();
     let state = path.state().clone();
-    assert!(state.imbalance <= plan.solver.tolerance);
+    assert!(state.relative_residual <= plan.solver.tolerance);
 
     // With the forces that pins would have to carry.
     let forces = tube.forces(&state.load, &state.u).unwrap();
-    let free = forces.residual.iter().zip(tube.given());
+    let free = forces.residual.iter().zip(tube.prescribed());
     let squares = free.filter(|(_, given)| !**given).map(|(r, _)| r * r);
-    let left = squares.sum::<f64>().sqrt() / forces.in_play;
+    let left = squares.sum::<f64>().sqrt() / forces.residual_scale;
     assert!(left <= 1.1 * plan.solver.tolerance, "{ends:?}: {left:e}");
     state
 }

@@ -3,10 +3,11 @@
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
 use plica::assembly::SplineTube;
+use plica::equilibrium::TubeProblem;
 use plica::matrix::lowest_eigenpairs;
 use plica::solve::{Lowest, Path, Search, relaxation};
 use plica::stability::Harmonics;
-use plica::study::{Plan, TubeProblem};
+use plica::study::Plan;
 use plica::tube::{Load, Support};
 
 /// The main case on a coarse mesh.
@@ -44,7 +45,7 @@ fn a_round_tube_has_the_eigenvalues_of_its_harmonics_each_twice() {
         let load = plan.tube.rest().towards(&plan.stages[0].load, 0.5);
         let rest = vec![0.0; ring.tube.unknowns()];
         let mut path = Path::begin(&ring, plan.tube.rest(), rest, plan.solver.clone()).unwrap();
-        path.set_out(load.clone());
+        path.begin_segment(load.clone());
         for n in 1..=3 {
             path.advance(f64::from(n) / 3.0, &mut ()).unwrap();
         }
@@ -93,8 +94,8 @@ fn an_oval_tube_has_the_eigenvalues_of_its_assembled_tangent() {
         let most = radial.map(|u| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs())));
         assert!(most.fold(0.0, f64::max) > 0.02);
 
-        let (stiffness, mass) = (tube.tangent(&load, &u), tube.drag());
-        let exact = lowest_eigenpairs(&stiffness, &mass, tube.given(), 4).unwrap();
+        let (stiffness, mass) = (tube.tangent(&load, &u), tube.damping());
+        let exact = lowest_eigenpairs(&stiffness, &mass, tube.prescribed(), 4).unwrap();
         let found = lowest(&problem, &load, &u, 4);
         // With harmonics coupled that so few rings do not resolve it took 140.
         assert!(found.iterations < 60, "{}", found.iterations);

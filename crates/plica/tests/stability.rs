@@ -1,10 +1,10 @@
 //! The stability of whole tubes against closed forms.
 
 use plica::assembly::SplineTube;
+use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
 use plica::solve::{Path, Settings};
 use plica::stability::{Harmonics, Tested};
-use plica::study::TubeProblem;
 use plica::tube::{Mesh, Support, Tube};
 use std::f64::consts::PI;
 
@@ -52,7 +52,7 @@ fn a_pressed_tube_bends_sideways_at_euler_s_load() {
     let mut path = Path::begin(&problem, rest.clone(), u, Settings::default()).unwrap();
     let mut pressed = rest;
     pressed.ends[1].displacement = -1.2 * expected * length;
-    path.set_out(pressed);
+    path.begin_segment(pressed);
     let mut tested = |factor: f64| -> Vec<Tested> {
         path.advance(factor / 1.2, &mut ()).unwrap();
         harmonics.test(&path.state().load, &path.state().u).unwrap()
@@ -89,7 +89,7 @@ fn rigid_motions_that_nothing_holds_are_no_modes() {
     let mut path = Path::begin(&problem, rest.clone(), u, Settings::default()).unwrap();
     let mut pressed = rest;
     pressed.pressures[1].follower = 1e-6;
-    path.set_out(pressed);
+    path.begin_segment(pressed);
     for t in [0.0, 1.0] {
         path.advance(t, &mut ()).unwrap();
         let tested = harmonics.test(&path.state().load, &path.state().u).unwrap();

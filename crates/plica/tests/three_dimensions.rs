@@ -1,15 +1,16 @@
 //! A tube of many rings against the axisymmetric one.
 
 use plica::assembly::SplineTube;
+use plica::equilibrium::TubeProblem;
 use plica::solve::{Path, Step};
-use plica::study::{self, Observer, Plan, Row, RunDirectory, TubeProblem};
+use plica::study::{self, Observer, Plan, Row, RunDirectory};
 
 /// The main case on a small mesh, contracted in three steps to Dmin/D = 0.6.
 fn contracted(plan: &Plan, problem: &TubeProblem) -> (Vec<(f64, Step)>, Vec<f64>) {
     let rest = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(problem, plan.tube.rest(), rest, plan.solver.clone()).unwrap();
     let load = plan.tube.rest().towards(&plan.stages[0].load, 0.4 / 0.75);
-    path.set_out(load);
+    path.begin_segment(load);
     let states = (1..=3)
         .map(|n| {
             let step = path.advance(f64::from(n) / 3.0, &mut ()).unwrap();
@@ -100,7 +101,7 @@ fn a_round_state_loses_the_same_harmonics_whatever_is_solved_for() {
         std::fs::remove_dir_all(&path).unwrap();
         assert!(summary.finished(), "{}", summary.ending());
         let rows = summary.rows().iter();
-        rows.map(|row| (row.departure_harmonic, row.unstable_harmonics.clone()))
+        rows.map(|row| (row.asymmetry_mode, row.unstable_modes.clone()))
             .collect::<Vec<_>>()
     };
     let one = unstable("\"axisymmetric\"");

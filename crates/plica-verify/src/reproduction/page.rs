@@ -353,7 +353,11 @@ fn scheme(ran: &Ran) -> String {
     match scheme {
         Scheme::Static => scheme.to_string(),
         Scheme::PseudoTime(p) => {
-            let settled = if p.settle { "settled" } else { "not settled" };
+            let settled = if p.equilibrate {
+                "settled"
+            } else {
+                "not settled"
+            };
             format!("{scheme}, steps ramped over {}, {settled}", p.ramp)
         }
     }

@@ -2,10 +2,10 @@
 
 use super::Trouble;
 use super::runs::Ran;
-use plica_view::draw::{Chart, Curve, Cutaway, Inset, Panel, Stroke};
 use plica::measure::{Face, Rotation, Wall};
-use plica_view::report::opened;
 use plica::study::Row;
+use plica_view::draw::{Chart, Curve, Cutaway, Inset, Panel, Stroke};
+use plica_view::report::opened;
 
 /// Width of pictures, in pixels.
 const WIDTH: usize = 1000;
@@ -13,7 +13,7 @@ const WIDTH: usize = 1000;
 /// A tube cut open at a state, for a [`tubes`] picture.
 pub fn panel(ran: &Ran, row: &Row, label: impl Into<String>) -> Result<Panel, Trouble> {
     let state = ran.state(row)?;
-    let upwards = row.departure_angle_deg.to_radians();
+    let upwards = row.asymmetry_angle_deg.to_radians();
     Ok(Panel {
         label: label.into(),
         surfaces: opened(ran.tube(), &state.load, &state.u, upwards),
@@ -118,7 +118,7 @@ pub fn outlines(outlines: Vec<Outline>, centres: &[Rotation]) -> Result<Vec<u8>,
 
 /// The outer wall of an axisymmetric state; of another, that at its crest.
 pub fn outer(ran: &Ran, row: &Row) -> Result<Wall, Trouble> {
-    ran.wall(row, Face::Outer, row.departure_angle_deg.to_radians())
+    ran.wall(row, Face::Outer, row.asymmetry_angle_deg.to_radians())
 }
 
 /// A chart of curves, for what has no likeness in the paper.

@@ -88,7 +88,7 @@ impl Runs {
         let of: usize = waves.iter().map(Vec::len).sum();
         let queue = Queue {
             folder,
-            watch: Mutex::new(Shared {
+            monitor: Mutex::new(Shared {
                 observer,
                 done: 0,
                 of,
@@ -102,7 +102,7 @@ impl Runs {
         for job in large {
             queue.run(job);
         }
-        let stopped = lock(&queue.watch).stopped;
+        let stopped = lock(&queue.monitor).stopped;
         if stopped {
             return Err(Trouble::Stopped);
         }
@@ -152,7 +152,7 @@ fn plan(job: &Job, text: &str, folder: &Path) -> Result<Plan, case::CaseError> {
 /// Jobs that are done, and those who watch and wait.
 struct Queue<'a> {
     folder: &'a Path,
-    watch: Mutex<Shared<'a>>,
+    monitor: Mutex<Shared<'a>>,
     found: Mutex<Runs>,
 }
 
@@ -194,22 +194,22 @@ impl Queue<'_> {
     }
 
     fn run(&self, job: &Job) {
-        if lock(&self.watch).stop() {
+        if lock(&self.monitor).stop() {
             return;
         }
         let outcome = self.attempt(job);
-        let mut watch = lock(&self.watch);
-        watch.done += 1;
-        let (done, of) = (watch.done, watch.of);
+        let mut monitor = lock(&self.monitor);
+        monitor.done += 1;
+        let (done, of) = (monitor.done, monitor.of);
         let mut found = lock(&self.found);
         match outcome {
             Ok(Some(ran)) => {
-                watch.observer.ran(&ran, done, of);
+                monitor.observer.ran(&ran, done, of);
                 found.done.insert(job.name.clone(), ran);
             }
-            Ok(None) => watch.stopped = true,
+            Ok(None) => monitor.stopped = true,
             Err(why) => {
-                watch.observer.failed(&job.name, &why);
+                monitor.observer.failed(&job.name, &why);
                 found.failed.insert(job.name.clone(), why);
             }
         }
@@ -230,7 +230,7 @@ impl Queue<'_> {
         let trouble = |error: StudyError| error.to_string();
         let mut directory = directory.map_err(trouble)?;
         let mut relay = Relay {
-            watch: &self.watch,
+            monitor: &self.monitor,
             job,
         };
         let summary = study::run(&plan, &mut directory, &mut relay).map_err(trouble)?;
@@ -252,7 +252,7 @@ impl Shared<'_> {
 
 /// Tells the observer of all what one run does.
 struct Relay<'a, 'b> {
-    watch: &'a Mutex<Shared<'b>>,
+    monitor: &'a Mutex<Shared<'b>>,
     job: &'a Job,
 }
 
@@ -260,14 +260,14 @@ impl study::Observer for Relay<'_, '_> {
     fn accepted(&mut self, _: &Row) {}
 
     fn working(&mut self, what: &str, fraction: f64) {
-        let mut watch = lock(self.watch);
-        let all = (watch.done as f64 + fraction) / watch.of.max(1) as f64;
+        let mut monitor = lock(self.monitor);
+        let all = (monitor.done as f64 + fraction) / monitor.of.max(1) as f64;
         let what = format!("{}: {what}", self.job.name);
-        watch.observer.working(&what, all);
+        monitor.observer.working(&what, all);
     }
 
     fn stop(&mut self) -> bool {
-        lock(self.watch).stop()
+        lock(self.monitor).stop()
     }
 }
 

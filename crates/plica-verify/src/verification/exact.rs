@@ -218,7 +218,7 @@ pub fn rest(found: &mut Findings<'_>) -> Result<(), Trouble> {
     // ∫ N N dV₀ on a displacement of one along the axis, twice.
     let along = tube.control_values(|_, _, _| [1.0, 0.0, 0.0]);
     let mut weighed = vec![0.0; along.len()];
-    tube.drag().multiply_add(1.0, &along, &mut weighed);
+    tube.damping().multiply_add(1.0, &along, &mut weighed);
     let volume: f64 = along.iter().zip(&weighed).map(|(u, m)| u * m).sum();
     let (a, b) = (specimen.tube.inner_radius(), 0.5);
     let exact = std::f64::consts::PI * (b * b - a * a) * specimen.tube.length;

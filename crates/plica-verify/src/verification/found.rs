@@ -2,10 +2,10 @@
 
 use super::row::{Row, Tolerance, in_columns, in_markdown};
 use plica::assembly::Inverted;
-use plica_view::draw::{Chart, DrawError};
 use plica::matrix::NoEigenpairs;
 use plica::solve::PathError;
 use plica::study::StudyError;
+use plica_view::draw::{Chart, DrawError};
 
 /// Is told what goes on, and may ask to stop.
 pub trait Observer {
@@ -78,12 +78,12 @@ impl<'a> Findings<'a> {
     /// [`Trouble::Stopped`] if someone asked to stop.
     pub fn case(&mut self, case: impl Into<String>) -> Result<(), Trouble> {
         self.case = case.into();
-        self.go_on()
+        self.resume()
     }
 
     /// # Errors
     /// [`Trouble::Stopped`] if someone asked to stop.
-    pub fn go_on(&mut self) -> Result<(), Trouble> {
+    pub fn resume(&mut self) -> Result<(), Trouble> {
         if self.observer.stop() {
             Err(Trouble::Stopped)
         } else {

@@ -3,8 +3,8 @@
 use super::found::{Findings, Trouble};
 use super::specimen::{Specimen, energy, swelling, under};
 use plica::activation::{Direction, Muscle, Profile};
-use plica_view::draw::{Chart, Curve, Stroke};
 use plica::tube::{Integration, Load, Support};
+use plica_view::draw::{Chart, Curve, Stroke};
 
 /// A = 3, B = 9: the wall is a third of the diameter.
 const A: f64 = 0.5 / 3.0;
@@ -41,7 +41,7 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
         (Integration::Reduced, Stroke::Solid, "reduced"),
     ] {
         for degree in [1, 2, 3] {
-            found.go_on()?;
+            found.resume()?;
             if degree < 3 && volumetric == Integration::Reduced {
                 continue;
             }
@@ -115,7 +115,7 @@ pub fn contraction(found: &mut Findings<'_>) -> Result<(), Trouble> {
     };
     found.case("thick tube that contracts to 0.6, ν = 0.4999")?;
     let fine = W([80, 60, 10], Integration::Full)?;
-    found.go_on()?;
+    found.resume()?;
     let reduced = W([30, 60, 1], Integration::Reduced)?;
     let source = "Plica itself, 80 × 10 elements, full";
     found.within(

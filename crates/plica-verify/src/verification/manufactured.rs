@@ -10,12 +10,12 @@ use super::row::Tolerance;
 use super::specimen::tight;
 use plica::activation::{Direction, Muscle, Profile};
 use plica::assembly::{Inverted, SplineTube};
-use plica_view::draw::{Chart, Curve, Stroke};
+use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
-use plica::solve::{Balance, Equilibrium, newton};
+use plica::solve::{Equilibrium, ResidualEvaluation, newton};
 use plica::spline::gauss_legendre;
-use plica::study::TubeProblem;
 use plica::tube::{Load, Mesh, Support, Tube};
+use plica_view::draw::{Chart, Curve, Stroke};
 use std::f64::consts::{PI, TAU};
 
 const LENGTH: f64 = 1.0;
@@ -203,7 +203,7 @@ impl Manufactured {
             let ([along, outwards], _) = chosen(z, r);
             [along, outwards / circle, 0.0]
         });
-        self.impose(&self.load(), &mut start);
+        self.apply_prescribed(&self.load(), &mut start);
         let found = newton(self, &self.load(), start, &tight(), &mut ());
         let found = found.map_err(|failed| Trouble::Solve(failed.to_string()))?;
         let (mut off, mut all) = ([0.0; 2], [0.0; 2]);
@@ -236,19 +236,19 @@ impl Manufactured {
 
 impl Equilibrium for Manufactured {
     type Load = Load;
-    type Broken = Inverted;
+    type EvaluationError = Inverted;
     type Tangent = <TubeProblem as Equilibrium>::Tangent;
 
-    fn given(&self) -> &[bool] {
-        self.problem.given()
+    fn prescribed(&self) -> &[bool] {
+        self.problem.prescribed()
     }
-    fn impose(&self, load: &Load, u: &mut [f64]) {
-        self.problem.impose(load, u);
+    fn apply_prescribed(&self, load: &Load, u: &mut [f64]) {
+        self.problem.apply_prescribed(load, u);
     }
     fn between(&self, from: &Load, to: &Load, t: f64) -> Load {
         self.problem.between(from, to, t)
     }
-    fn forces(&self, load: &Load, u: &[f64]) -> Result<Balance, Inverted> {
+    fn forces(&self, load: &Load, u: &[f64]) -> Result<ResidualEvaluation, Inverted> {
         let mut balance = self.problem.forces(load, u)?;
         for ((residual, force), u) in balance.residual.iter_mut().zip(&self.forces).zip(u) {
             *residual -= force;
@@ -259,8 +259,8 @@ impl Equilibrium for Manufactured {
     fn tangent(&self, load: &Load, u: &[f64]) -> Self::Tangent {
         self.problem.tangent(load, u)
     }
-    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        self.problem.drag(factor, v, y);
+    fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.problem.damping(factor, v, y);
     }
 }
 
@@ -288,7 +288,7 @@ pub fn orders(found: &mut Findings<'_>) -> Result<(), Trouble> {
         let mut errors = vec![];
         found.case(format!("manufactured solution, p = {degree}"))?;
         for &n in &meshes {
-            found.go_on()?;
+            found.resume()?;
             errors.push(Manufactured::new(degree, [2 * n, n / 2]).errors()?);
         }
         // Of quartics the potential is exact to rounding on all but the coarsest mesh.

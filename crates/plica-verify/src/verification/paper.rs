@@ -5,12 +5,13 @@ use super::found::{Findings, Trouble};
 use super::row::Tolerance;
 use super::specimen::energy;
 use plica::assembly::SplineTube;
-use plica_view::draw::{Chart, Curve};
+use plica::equilibrium::TubeProblem;
 use plica::measure::{Face, Meridians, Wall};
 use plica::solve::{Path, State};
 use plica::stability::Harmonics;
-use plica::study::{Plan, TubeProblem};
+use plica::study::Plan;
 use plica::tube::{Load, Symmetry};
+use plica_view::draw::{Chart, Curve};
 
 /// Okino et al. (2025), Figs. 3C and 4; control points along and through the wall, and steps of Lmax/L, are to be
 /// filled in.
@@ -46,12 +47,12 @@ fn follow(
     let mut path = Path::begin(&problem, plan.tube.rest(), rest, plan.solver.clone())?;
     for (at, stage) in plan.stages.iter().enumerate() {
         let last = at + 1 == plan.stages.len();
-        path.set_out(stage.load.clone());
+        path.begin_segment(stage.load.clone());
         if last {
             show(found, &problem, path.state())?;
         }
         for step in 1..=stage.steps {
-            found.go_on()?;
+            found.resume()?;
             path.advance(step as f64 / stage.steps as f64, &mut ())?;
             if last {
                 show(found, &problem, path.state())?;

@@ -4,11 +4,11 @@ use super::found::{Findings, Trouble};
 use super::one_dimension::{Balanced, Resistance, Wall, first};
 use super::specimen::{Specimen, energy, lost, stress, swelling, under};
 use plica::activation::Direction;
-use plica_view::draw::{Chart, Curve, Stroke};
+use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean, Volumetric};
 use plica::solve::State;
-use plica::study::TubeProblem;
 use plica::tube::Load;
+use plica_view::draw::{Chart, Curve, Stroke};
 use std::f64::consts::PI;
 
 const A: f64 = 0.44;

@@ -3,11 +3,11 @@
 use super::found::{Findings, Trouble};
 use super::specimen::{Specimen, energy, tight, under};
 use plica::activation::{Direction, Muscle, Profile};
+use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean, Volumetric};
 use plica::solve::{
     Equilibrium, Integrator, Path, PseudoTime, Scheme, Settings, Solver, State, Tangent,
 };
-use plica::study::TubeProblem;
 use plica::tube::{Axial, End, Imperfection, Integration, Load, Part, Push, Shape, Support, Wave};
 
 /// A tube whose middle contracts and relaxes, on a coarse mesh.
@@ -93,7 +93,7 @@ pub fn tangents(found: &mut Findings<'_>) -> Result<(), Trouble> {
         ("imperfect geometry", &imperfect, 12),
         ("reduced integration", &reduced, 12),
     ] {
-        found.go_on()?;
+        found.resume()?;
         let problem = specimen.problem(rings);
         let mut load = driven(specimen, 0.8, 1.05);
         load.pressures = specimen.pressed([1e-3, 2e-3]).pressures;
@@ -127,7 +127,7 @@ pub fn solvers(found: &mut Findings<'_>) -> Result<(), Trouble> {
         let b = waves(&problem, 0.4);
         let tangent = problem.tangent(&load, &u);
         let mut harmonic = b.clone();
-        for (x, given) in harmonic.iter_mut().zip(problem.given()) {
+        for (x, given) in harmonic.iter_mut().zip(problem.prescribed()) {
             *x = if *given { 0.0 } else { *x };
         }
         let mut direct = harmonic.clone();
@@ -138,7 +138,7 @@ pub fn solvers(found: &mut Findings<'_>) -> Result<(), Trouble> {
             .solve(&mut harmonic, 1e-10, &mut ())
             .map_err(|_| Trouble::Solve("negative curvature".into()))?;
         let mut matrix = problem.tube.tangent(&load, &u);
-        matrix.constrain(problem.given());
+        matrix.constrain(problem.prescribed());
         let factor = matrix.factor().map_err(|e| Trouble::Solve(e.to_string()))?;
         factor.solve(&mut direct);
         let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -161,7 +161,7 @@ pub fn symmetries(found: &mut Findings<'_>) -> Result<(), Trouble> {
     let load = driven(&specimen, 0.7, 1.03);
     let mut energies = vec![];
     for rings in [1, 4, 12] {
-        found.go_on()?;
+        found.resume()?;
         let problem = specimen.problem(rings);
         energies.push(energy(&problem, &under(&problem, &load, 4)?));
     }
@@ -175,12 +175,12 @@ pub fn symmetries(found: &mut Findings<'_>) -> Result<(), Trouble> {
 fn lead(
     problem: &TubeProblem,
     settings: Settings,
-    legs: &[(Load, usize)],
+    segments: &[(Load, usize)],
 ) -> Result<State<Load>, Trouble> {
     let u = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(problem, problem.tube.tube.rest(), u, settings)?;
-    for (load, steps) in legs {
-        path.set_out(load.clone());
+    for (load, steps) in segments {
+        path.begin_segment(load.clone());
         for n in 1..=*steps {
             path.advance(n as f64 / *steps as f64, &mut ())?;
         }
@@ -192,17 +192,17 @@ fn lead(
 pub fn schemes(found: &mut Findings<'_>) -> Result<(), Trouble> {
     let specimen = small(12);
     let problem = specimen.problem(1);
-    let legs = [
+    let segments = [
         (driven(&specimen, 0.9, 1.0), 5),
         (driven(&specimen, 0.9, 1.01), 2),
     ];
-    let direct = energy(&problem, &lead(&problem, tight(), &legs)?);
+    let direct = energy(&problem, &lead(&problem, tight(), &segments)?);
     found.case("contracting tube, small mesh")?;
     for (name, integrator) in [
         ("the paper's Newmark scheme", Integrator::Newmark),
         ("backward Euler", Integrator::BackwardEuler),
     ] {
-        found.go_on()?;
+        found.resume()?;
         let settings = Settings {
             scheme: Scheme::PseudoTime(PseudoTime {
                 integrator,
@@ -210,16 +210,16 @@ pub fn schemes(found: &mut Findings<'_>) -> Result<(), Trouble> {
             }),
             ..Settings::default()
         };
-        let dragged = energy(&problem, &lead(&problem, settings, &legs)?);
+        let damped = energy(&problem, &lead(&problem, settings, &segments)?);
         found.within(
             1e-8,
             format!("W, {name}"),
-            dragged,
+            damped,
             (direct, "Newton along the path"),
         );
     }
     let rest = vec![0.0; problem.tube.unknowns()];
-    let relaxed = plica::solve::relaxation(&problem, &legs[1].0, rest, &tight(), &mut ())
+    let relaxed = plica::solve::relaxation(&problem, &segments[1].0, rest, &tight(), &mut ())
         .map_err(|e| Trouble::Solve(e.to_string()))?;
     let relaxed = relaxed.forces.energy * problem.tube.sector.repeats();
     let quantity = "W, relaxation from rest in one step";

@@ -4,10 +4,10 @@
 use super::found::Trouble;
 use plica::activation::{Direction, Muscle, Profile};
 use plica::assembly::{Point, SplineTube};
+use plica::equilibrium::TubeProblem;
 use plica::material::{Law, Material, NeoHookean};
 use plica::solve::{Path, Settings, State};
 use plica::stability::Harmonics;
-use plica::study::TubeProblem;
 use plica::tube::{Integration, Load, Mesh, Pressure, Support, Tube};
 
 /// A tube, and the elements along, around and through it.
@@ -101,7 +101,7 @@ impl Specimen {
 pub fn under(problem: &TubeProblem, load: &Load, steps: usize) -> Result<State<Load>, Trouble> {
     let u = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(problem, problem.tube.tube.rest(), u, tight())?;
-    path.set_out(load.clone());
+    path.begin_segment(load.clone());
     for n in 1..=steps {
         path.advance(n as f64 / steps as f64, &mut ())?;
     }

@@ -20,11 +20,11 @@ mod fields;
 mod node;
 mod nodes;
 
-use plica::assembly::SplineTube;
-use plica::study::{Plan, Row, SavedState, Scale};
 use crate::vtk::{Column, Document, Movie};
 use fields::FIELDS;
 use nodes::Nodes;
+use plica::assembly::SplineTube;
+use plica::study::{Plan, Row, SavedState, Scale};
 
 /// Writes states of a run.
 pub struct Exporter {

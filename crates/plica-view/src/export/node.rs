@@ -126,9 +126,9 @@ fn pointed(v: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixture;
     use plica::assembly::{Point, SplineTube};
     use plica::material::{Material, NeoHookean, Volumetric};
-    use crate::fixture;
     use plica::tube::{Integration, Mesh, Tube};
 
     /// With both laws of volume, integrated with the rest and apart.

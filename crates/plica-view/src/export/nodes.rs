@@ -1,9 +1,9 @@
 //! Points of a lattice over the wall, and what is known there.
 
 use super::node::{Node, Turn};
+use crate::vtk::Lattice;
 use plica::assembly::{Point, SplineTube};
 use plica::tube::Load;
-use crate::vtk::Lattice;
 use rayon::prelude::*;
 
 /// The points of one sector, outwards, then around, then along; the others are those, turned.

@@ -26,10 +26,10 @@ mod words;
 use crate::draw::Map;
 use crate::draw::colour::line_colour;
 use crate::report::{Column, upright};
-use plica::study::{Plan, Row, RunDirectory, SavedState, Scale};
 use known::Known;
 use minijinja::value::{Serde, Value};
 use minijinja::{Environment, context};
+use plica::study::{Plan, Row, RunDirectory, SavedState, Scale};
 use sheet::Sheet;
 use stops::Parts;
 

@@ -1,13 +1,13 @@
 //! The walls of a path as numbers that a browser draws: sampled, quantised, packed.
 
-use plica::assembly::{Point, Sample, SplineTube};
 use crate::draw::Map;
 use crate::report::Field;
-use plica::study::{Plan, SavedState};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use plica::assembly::{Point, Sample, SplineTube};
+use plica::study::{Plan, SavedState};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -294,8 +294,8 @@ fn packed(data: &[u8]) -> String {
 mod tests {
     use super::*;
     use crate::fixture::{plan, state};
-    use plica::tube::Symmetry;
     use flate2::read::ZlibDecoder;
+    use plica::tube::Symmetry;
     use std::io::Read;
 
     /// What the page's script does, in Rust.

@@ -5,9 +5,9 @@ use super::stability::Stability;
 use super::{Run, words};
 use crate::draw::label;
 use crate::report::{Column, Role};
-use plica::study::{Findings, Row, Scale};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use plica::study::{Findings, Row, Scale};
 use serde::Serialize;
 
 /// A run as words, tables and pictures.
@@ -79,7 +79,7 @@ impl Sheet {
             step: row.step,
             stage: row.stage.clone(),
             shape: row.shape.clone(),
-            unstable: row.unstable_harmonics.clone(),
+            unstable: row.unstable_modes.clone(),
             method: row.method.clone(),
             numbers: tabled.iter().map(|c| number(c.values[i])).collect(),
             drawn: known.scene.rows.contains(&row.step),

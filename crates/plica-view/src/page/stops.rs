@@ -82,8 +82,8 @@ pub fn of_row(row: &Row, scale: &Scale) -> Parts {
     let pressures = [
         row.inner_pressure,
         row.outer_pressure,
-        row.inner_dead_pressure,
-        row.outer_dead_pressure,
+        row.inner_dead_load,
+        row.outer_dead_load,
     ];
     let pressures = pressures.map(|p| p.unwrap_or(0.0) / scale.stress);
     outside(ends, pressures).collect()
@@ -128,8 +128,8 @@ fn apart(a: &Parts, b: &Parts, sizes: &Parts) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plica::activation::Direction;
     use crate::fixture;
+    use plica::activation::Direction;
     use plica::tube::Symmetry;
 
     fn state(muscle: f64, dead: f64) -> SavedState {

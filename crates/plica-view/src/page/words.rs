@@ -41,9 +41,9 @@ fn did(last: &Row, findings: &Findings<'_>) -> Vec<String> {
             last.overhang
         ),
     };
-    let far = format!("{:.3} {unit}", last.departure);
-    let leans = match last.departure_harmonic {
-        _ if last.departure <= VISIBLE * findings.scale.length => None,
+    let far = format!("{:.3} {unit}", last.asymmetry);
+    let leans = match last.asymmetry_mode {
+        _ if last.asymmetry <= VISIBLE * findings.scale.length => None,
         1 => Some(format!(
             "It is not axisymmetric: its wall has moved sideways by {far}."
         )),
@@ -215,7 +215,7 @@ pub fn all_well(run: &Run<'_>) -> String {
     let tested = match run.plan.symmetry {
         Symmetry::Axisymmetric => format!(
             "no state was found unstable (harmonics 0 to {} were tested; only 0 of one that is twisted)",
-            run.plan.output.harmonics
+            run.plan.output.stability_modes
         ),
         _ => {
             "no negative eigenvalue showed in the iterations that were allowed, which proves little"
@@ -240,9 +240,9 @@ mod tests {
     /// A state of which nothing is to be said.
     fn row(step: usize) -> Row {
         let csv = "step,stage,length_ratio,diameter_ratio,colon_displacement,ileum_displacement,colon_twist_deg,ileum_twist_deg,energy,\
-            energy_ungrown_volume,residual,drag_work,method,equilibrium,iterations,cg_iterations,seconds,outer_radius_min,z_at_min,\
-            max_wall_angle_deg,overhang,side,flatness,gap,lumen,shape,departure,departure_harmonic,departure_angle_deg,min_det_fe,\
-            unstable_harmonics\n0,s,1,1,0,0,0,0,0,0,0,0,newton,yes,4,0,0.1,0.5,1,0,0,none,0,0.06,0.8,V,0,0,0,1,none\n";
+            energy_ungrown_volume,residual,damping_work,method,equilibrium,iterations,cg_iterations,seconds,outer_radius_min,z_at_min,\
+            max_wall_angle_deg,overhang,side,flatness,gap,lumen,shape,asymmetry,asymmetry_mode,asymmetry_angle_deg,min_det_fe,\
+            unstable_modes\n0,s,1,1,0,0,0,0,0,0,0,0,newton,yes,4,0,0.1,0.5,1,0,0,none,0,0.06,0.8,V,0,0,0,1,none\n";
         let mut table = csv::Reader::from_reader(csv.as_bytes());
         let mut row: Row = table.deserialize().next().unwrap().unwrap();
         row.step = step;
@@ -286,37 +286,37 @@ mod tests {
                 "another branch",
             ),
             (
-                |row| row.unstable_harmonics = "unknown".into(),
+                |row| row.unstable_modes = "unknown".into(),
                 Symmetry::None,
                 "not shown to be",
             ),
             (
-                |row| row.unstable_harmonics = "any:1".into(),
+                |row| row.unstable_modes = "any:1".into(),
                 Symmetry::None,
                 "saddles",
             ),
             (
-                |row| row.unstable_harmonics = "1:2".into(),
+                |row| row.unstable_modes = "1:2".into(),
                 Symmetry::None,
                 "saddles",
             ),
             (
-                |row| row.unstable_harmonics = "0:1".into(),
+                |row| row.unstable_modes = "0:1".into(),
                 Symmetry::Axisymmetric,
                 "saddles",
             ),
             (
-                |row| row.unstable_harmonics = "1:2".into(),
+                |row| row.unstable_modes = "1:2".into(),
                 Symmetry::Axisymmetric,
                 "keeps from growing",
             ),
             (
-                |row| row.unstable_harmonics = "4:2".into(),
+                |row| row.unstable_modes = "4:2".into(),
                 Symmetry::Fold(2),
                 "saddles",
             ),
             (
-                |row| row.unstable_harmonics = "3:2".into(),
+                |row| row.unstable_modes = "3:2".into(),
                 Symmetry::Fold(2),
                 "keeps from growing",
             ),

@@ -97,14 +97,14 @@ impl Column {
                 row.outer_pressure
             }),
             (
-                "inner_dead_pressure",
+                "inner_dead_load",
                 "dead pressure on the inner wall",
-                |row| row.inner_dead_pressure,
+                |row| row.inner_dead_load,
             ),
             (
-                "outer_dead_pressure",
+                "outer_dead_load",
                 "dead pressure on the outer wall",
-                |row| row.outer_dead_pressure,
+                |row| row.outer_dead_load,
             ),
         ];
         for (name, words, of) in pressures {
@@ -154,12 +154,12 @@ impl Column {
             Role::Tabled,
             &|row| Some(row.lumen),
         );
-        if rows.iter().any(|row| row.departure_harmonic > 0) {
+        if rows.iter().any(|row| row.asymmetry_mode > 0) {
             add(
-                "departure",
-                length("departure from axisymmetry"),
+                "asymmetry",
+                length("asymmetry from axisymmetry"),
                 Role::Tabled,
-                &|row| Some(row.departure),
+                &|row| Some(row.asymmetry),
             );
         }
         add(
@@ -169,10 +169,10 @@ impl Column {
             &|row| Some(row.min_det_fe),
         );
         add(
-            "drag_work",
+            "damping_work",
             energy("energy spent on drag"),
             Role::Other,
-            &|row| Some(row.drag_work),
+            &|row| Some(row.damping_work),
         );
         add(
             "residual",

@@ -1,7 +1,7 @@
 //! Fields that a picture may be coloured by.
 
-use plica::assembly::Sample;
 use crate::draw::{Map, Range};
+use plica::assembly::Sample;
 use plica::study::{Plan, Scale};
 
 /// A number at every point of the wall.

@@ -1,9 +1,9 @@
 //! The pictures of the lowest modes of a three-dimensional run.
 
-use plica::assembly::{Point, SplineTube};
 use crate::draw::{
     Chart, Curve, Cutaway, DrawError, HALF, Map, Opening, Panel, Range, Stroke, Surface,
 };
+use plica::assembly::{Point, SplineTube};
 use plica::stability::{Eigenvalue, Shown, Spectra, Spectrum};
 use plica::study::Plan;
 use plica::tube::Tube;

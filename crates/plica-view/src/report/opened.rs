@@ -2,8 +2,8 @@
 
 use super::Field;
 use super::tolerance::{Meshed, Seen, Tolerance};
-use plica::assembly::{Point, SplineTube};
 use crate::draw::{Cutaway, DrawError, HALF, Opening, Range, Surface};
+use plica::assembly::{Point, SplineTube};
 use plica::tube::Load;
 use std::cell::RefCell;
 use std::collections::HashMap;

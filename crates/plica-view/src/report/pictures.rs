@@ -5,8 +5,8 @@ use super::opened::{Look, looked_at};
 use super::upright::upright;
 use super::walls::{Wall, walls};
 use super::{Field, Story};
-use plica::assembly::SplineTube;
 use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Packing, Panel, Rule};
+use plica::assembly::SplineTube;
 use plica::study::{Plan, Row, Scale, Snapshot, Summary};
 use rayon::prelude::*;
 

@@ -2,8 +2,8 @@
 
 use super::walls::{Wall, walls};
 use super::{Column, Shown};
-use plica::assembly::SplineTube;
 use crate::draw::{Chart, Curve, Rule};
+use plica::assembly::SplineTube;
 use plica::study::{Plan, Row, Scale};
 
 /// A column against another, or against the number of the state; none if the run has no such column.

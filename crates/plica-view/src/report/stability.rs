@@ -1,10 +1,10 @@
 //! The pictures of a test of stability.
 
-use plica::assembly::{Point, SplineTube};
 use crate::draw::{
     Chart, Curve, Cutaway, DrawError, HALF, Image, Map, Marker, Opening, Packing, Panel, Range,
     Rule, Stroke, Surface,
 };
+use plica::assembly::{Point, SplineTube};
 use plica::stability::{Change, How, Mode, Quantity, Stability, Station};
 use plica::study::{Plan, effect};
 use plica::tube::Tube;

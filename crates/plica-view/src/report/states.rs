@@ -5,10 +5,10 @@ use super::columns::bar;
 use super::opened::{ALONG, Look, looked_at};
 use super::pictures::energy_label;
 use super::upright::upright;
-use plica::assembly::SplineTube;
 use crate::draw::{
     Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, Surface, animation,
 };
+use plica::assembly::SplineTube;
 use plica::study::{Plan, Row, SavedState, Scale};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};

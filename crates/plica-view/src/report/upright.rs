@@ -8,7 +8,7 @@ pub const VISIBLE: f64 = 2e-3;
 /// The angle around the tube that points up in all pictures of some states, in radians: that of the crest of the largest wave
 /// around that can be seen in any of them. A picture that moves, or shows several states, does not turn the tube.
 pub fn upright<'a>(rows: impl IntoIterator<Item = &'a Row>, scale: &Scale) -> f64 {
-    let largest = (rows.into_iter()).max_by(|a, b| a.departure.total_cmp(&b.departure));
-    let visible = largest.filter(|row| row.departure > VISIBLE * scale.length);
-    visible.map_or(0.0, |row| row.departure_angle_deg.to_radians())
+    let largest = (rows.into_iter()).max_by(|a, b| a.asymmetry.total_cmp(&b.asymmetry));
+    let visible = largest.filter(|row| row.asymmetry > VISIBLE * scale.length);
+    visible.map_or(0.0, |row| row.asymmetry_angle_deg.to_radians())
 }

@@ -2,9 +2,9 @@
 
 use super::VISIBLE;
 use super::columns::unit;
-use plica::assembly::SplineTube;
 use crate::draw::{Chart, Curve, Stroke};
-use plica::measure::{Departure, Face, Meridians};
+use plica::assembly::SplineTube;
+use plica::measure::{Asymmetry, Face, Meridians};
 use plica::study::{Plan, Scale};
 use plica::tube::Load;
 
@@ -23,8 +23,8 @@ pub struct Wall<'a> {
 }
 
 /// The largest departure from axisymmetry among states: all are drawn in its plane.
-pub(super) fn departure(tube: &SplineTube, states: &[Wall<'_>]) -> Departure {
-    let of = |state: &Wall<'_>| Meridians::of(tube, state.load, state.u).departure();
+pub(super) fn asymmetry(tube: &SplineTube, states: &[Wall<'_>]) -> Asymmetry {
+    let of = |state: &Wall<'_>| Meridians::of(tube, state.load, state.u).asymmetry();
     let largest = states.iter().map(of);
     let largest = largest.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
     largest.unwrap_or_default()
@@ -35,9 +35,9 @@ pub(super) fn departure(tube: &SplineTube, states: &[Wall<'_>]) -> Departure {
 pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Chart {
     let scale = Scale::of(plan.units.as_ref());
     let length = scale.length;
-    let departure = departure(tube, states);
-    let both = departure.crest_and_trough();
-    let one_line = departure.amplitude < VISIBLE;
+    let asymmetry = asymmetry(tube, states);
+    let both = asymmetry.crest_and_trough();
+    let one_line = asymmetry.amplitude < VISIBLE;
     let angles = if one_line { &both[..1] } else { &both };
     let z = tube
         .axial

@@ -13,7 +13,7 @@
 
 use super::SplineTube;
 use super::pencil::{AVERAGED, PencilInput, pencil_moduli};
-use super::ring_drag::RingDrag;
+use super::ring_damping::RingDamping;
 use super::spline_tube::{with_degree, with_law_and_degree};
 use super::tables::{Around, Layer, Slab};
 use crate::material::Material;
@@ -103,22 +103,22 @@ impl LowHarmonics {
     /// For every unknown of harmonic n of the sector, numbered (row, function, component), whether a
     /// support gives it. A single point that is pinned takes all functions of its row along, so that
     /// none of them moves it.
-    pub fn given_in_harmonic(&self, tube: &SplineTube, n: usize) -> Vec<bool> {
+    pub fn prescribed_in_harmonic(&self, tube: &SplineTube, n: usize) -> Vec<bool> {
         let points = tube.wall.functions();
-        let given = tube.given_in_harmonic(n * (tube.sector.around / tube.sector.rings));
+        let prescribed = tube.prescribed_in_harmonic(n * (tube.sector.around / tube.sector.rings));
         let row = |row: &[bool]| {
-            let any = |i: usize| row.iter().skip(i).step_by(3).any(|given| *given);
-            let given = [0, 1, 2].map(any);
-            (0..3 * THROUGH).map(move |at| given[at % 3])
+            let any = |i: usize| row.iter().skip(i).step_by(3).any(|prescribed| *prescribed);
+            let prescribed = [0, 1, 2].map(any);
+            (0..3 * THROUGH).map(move |at| prescribed[at % 3])
         };
-        given.chunks_exact(3 * points).flat_map(row).collect()
+        prescribed.chunks_exact(3 * points).flat_map(row).collect()
     }
 
     /// The same for all modes, numbered as [`LowHarmonics::row`] says.
-    pub fn given(&self, tube: &SplineTube) -> Vec<bool> {
+    pub fn prescribed(&self, tube: &SplineTube) -> Vec<bool> {
         let modes = self.modes();
         let harmonics: Vec<_> = (0..=self.highest)
-            .map(|n| self.given_in_harmonic(tube, n))
+            .map(|n| self.prescribed_in_harmonic(tube, n))
             .collect();
         (0..tube.axial.functions() * self.row())
             .map(|at| {
@@ -132,7 +132,7 @@ impl LowHarmonics {
     pub fn add_drag(
         &self,
         tube: &SplineTube,
-        drag: &RingDrag,
+        damping: &RingDamping,
         alpha: f64,
         matrix: &mut BlockBanded,
     ) {
@@ -142,7 +142,7 @@ impl LowHarmonics {
             let n = mode.div_ceil(2);
             let waves = if n == 0 { 1.0 } else { 0.5 } * tube.sector.rings as f64;
             let mut block = BlockBanded::zeros(rows, points * 3, tube.degree());
-            drag.add_harmonic(alpha * waves, n * repeats, &mut block);
+            damping.add_harmonic(alpha * waves, n * repeats, &mut block);
             self.project(
                 &block,
                 |row, column| {

@@ -200,7 +200,7 @@ impl SplineTube {
         };
         // What ends are displaced from there.
         let mut held = u.clone();
-        self.impose(&self.tube.rest(), &mut held);
+        self.apply_prescribed(&self.tube.rest(), &mut held);
         let (m, z) = (self.row_size(), self.axial.greville());
         let from_shape = |row: usize| -> Vec<f64> {
             let row = row * m..(row + 1) * m;
@@ -217,7 +217,7 @@ impl SplineTube {
                 u[row * m + i] += (1.0 - x) * first[i] + x * last[i];
             }
         }
-        self.impose(&self.tube.rest(), &mut u);
+        self.apply_prescribed(&self.tube.rest(), &mut u);
         u
     }
 }

@@ -22,7 +22,7 @@ pub struct Columns<S> {
     around: S,
     across: S,
     outwards: S,
-    departure: Option<Departure<S>>,
+    imperfection_map: Option<Departure<S>>,
 }
 
 impl<S: Real> Columns<S> {
@@ -35,22 +35,22 @@ impl<S: Real> Columns<S> {
             around: inverse_around.times(1.0 / (radius * b)),
             across: inverse_around.times(-point.outwards / (b * point.radius)),
             outwards: inverse_along.like(1.0 / point.radius),
-            departure: None,
+            imperfection_map: None,
         }
     }
 
     /// The same of an imperfect wall.
     #[inline(always)]
-    pub fn measured_from(mut self, departure: Option<Departure<S>>) -> Self {
-        self.departure = departure;
+    pub fn measured_from(mut self, imperfection_map: Option<Departure<S>>) -> Self {
+        self.imperfection_map = imperfection_map;
         self
     }
 
     /// A volume dV₀ of the perfect tube, as the wall has it where it is free of stress.
     #[inline(always)]
     pub fn volume(&self, volume: S) -> S {
-        match &self.departure {
-            Some(departure) => departure.volume(volume),
+        match &self.imperfection_map {
+            Some(imperfection_map) => imperfection_map.volume(volume),
             None => volume,
         }
     }
@@ -80,8 +80,8 @@ impl<S: Real> Columns<S> {
             Fe[i][1] = r[i] * self.outwards;
             Fe[i][2] = s[i].mul_add(self.around, r[i] * self.across);
         }
-        match &self.departure {
-            Some(departure) => departure.onto(Tensor2(Fe)),
+        match &self.imperfection_map {
+            Some(imperfection_map) => imperfection_map.onto(Tensor2(Fe)),
             None => Tensor2(Fe),
         }
     }
@@ -89,8 +89,8 @@ impl<S: Real> Columns<S> {
     /// The transpose of [`Columns::elastic`]: stresses on gradients over ζ, s and R.
     #[inline(always)]
     pub fn pulled_back(&self, P: &Tensor2<S>) -> [Vector<S>; 3] {
-        let P = match &self.departure {
-            Some(departure) => departure.back(*P).0,
+        let P = match &self.imperfection_map {
+            Some(imperfection_map) => imperfection_map.back(*P).0,
             None => P.0,
         };
         let mut q = P;
@@ -108,9 +108,9 @@ impl<S: Real> Columns<S> {
     #[inline(always)]
     pub fn moduli(&self, A: &crate::material::Moduli<S>, weight: S) -> [[[S; 3]; 3]; 6] {
         let seen;
-        let A = match &self.departure {
-            Some(departure) => {
-                seen = departure.moduli(A);
+        let A = match &self.imperfection_map {
+            Some(imperfection_map) => {
+                seen = imperfection_map.moduli(A);
                 &seen
             }
             None => A,

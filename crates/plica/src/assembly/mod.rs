@@ -24,7 +24,7 @@
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
 mod coupling;
-mod drag;
+mod damping;
 mod forces;
 mod imperfection;
 mod kinematics;
@@ -34,7 +34,7 @@ mod place;
 #[cfg(test)]
 mod plain;
 mod pressure;
-mod ring_drag;
+mod ring_damping;
 mod sample;
 mod slab;
 mod spline_tube;
@@ -48,6 +48,6 @@ mod tests;
 pub use coupling::LowHarmonics;
 pub use linearised::Linearised;
 pub use place::Place;
-pub use ring_drag::RingDrag;
+pub use ring_damping::RingDamping;
 pub use sample::{Point, Sample};
 pub use spline_tube::{Forces, Inverted, SplineTube};

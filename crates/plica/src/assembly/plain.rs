@@ -47,7 +47,7 @@ pub struct PlainForces {
     pub energy_ungrown: f64,
     pub residual: Vec<f64>,
     /// Root of the sum of squares of what the elements add to the residual.
-    pub in_play: f64,
+    pub residual_scale: f64,
 }
 
 impl<'a> PlainTube<'a> {
@@ -290,7 +290,7 @@ impl<'a> PlainTube<'a> {
             energy,
             energy_ungrown,
             residual: self.cylindrical(&residual),
-            in_play: squares.sqrt(),
+            residual_scale: squares.sqrt(),
         }
     }
 
@@ -345,7 +345,7 @@ impl<'a> PlainTube<'a> {
     }
 
     /// C = ∫ N N dV₀, dense, row after row.
-    pub fn drag(&self) -> Vec<f64> {
+    pub fn damping(&self) -> Vec<f64> {
         let mut C = vec![0.0; 9 * self.nodes() * self.nodes()];
         for element in self.elements() {
             let nodes = self.element_nodes(element);

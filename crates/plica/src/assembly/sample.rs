@@ -120,14 +120,14 @@ impl SplineTube {
         let (value, gradients) = self.displaced(u, &near);
         let (theta_z, theta_t) = self.tube.stretches_at(at.z, at.angle, load);
         let (inverse_along, inverse_around) = (1.0 / theta_z, 1.0 / theta_t);
-        let departure = self.imperfect.as_ref().map(|imperfect| {
+        let imperfection_map = self.imperfect.as_ref().map(|imperfect| {
             let columns = Columns::new(point, at.radius, 1.0, 1.0);
             let (_, gradients) = self.displaced(&imperfect.displacement, &near);
             let A = columns.elastic(point, at.radius, gradients);
             Departure::of(A, inverse_along, inverse_around)
         });
         let columns = Columns::new(point, at.radius, inverse_along, inverse_around);
-        let columns = columns.measured_from(departure);
+        let columns = columns.measured_from(imperfection_map);
         let Fe = columns.elastic(point, at.radius, gradients);
         let reference = [at.z, at.radius * point.circle.0, at.radius * point.circle.1];
         let position = [0, 1, 2].map(|i| reference[i] + value[i]);

@@ -52,7 +52,7 @@ impl SlabInput<'_> {
         let columns = Columns::new(&self.around[qs], radius, inverse_along, inverse_around);
         columns.measured_from(self.stress_free.map(|at| {
             let at = &at[(((t * self.rings + element) * points + qz) * points + qr) * points + qs];
-            at.departure(simd, inverse_along, inverse_around)
+            at.imperfection_map(simd, inverse_along, inverse_around)
         }))
     }
 

@@ -1,11 +1,11 @@
 //! A tube laid out in splines: numbering, slabs over threads, sums in their order.
 
-use super::drag::drag;
+use super::damping::damping;
 use super::forces::{SlabForces, Worst, slab_forces};
 use super::imperfection::geometry;
 use super::pencil::RingLanes;
 use super::place::Place;
-use super::ring_drag::RingDrag;
+use super::ring_damping::RingDamping;
 use super::slab::SlabInput;
 use super::stress_free::StressFree;
 use super::supports::{Supports, left_by, motions_in_harmonic};
@@ -73,7 +73,7 @@ pub struct Forces {
     pub residual: Vec<f64>,
     /// The forces in play: root of the sum of squares of what the elements add to R, before it
     /// cancels.
-    pub in_play: f64,
+    pub residual_scale: f64,
     /// The smallest det Fe at any quadrature point; of those at which the resistance to a change of volume is
     /// integrated, if that is done apart.
     pub smallest_jacobian: f64,
@@ -241,13 +241,13 @@ impl SplineTube {
 
     /// For every unknown, whether a support gives it: at a held end, or of one ring so that a loose
     /// tube does not drift (of more see [`SplineTube::take_out_pins`]).
-    pub fn given(&self) -> &[bool] {
-        &self.supports.given
+    pub fn prescribed(&self) -> &[bool] {
+        &self.supports.prescribed
     }
 
     /// Displacements pinned so that a loose tube does not drift.
-    pub fn anchors(&self) -> usize {
-        self.supports.anchors
+    pub fn rigid_body_constraints(&self) -> usize {
+        self.supports.rigid_body_constraints
     }
 
     /// Takes the pinned displacements of a tube of many rings out of `u`, by orthogonal projection:
@@ -259,8 +259,8 @@ impl SplineTube {
     }
 
     /// Writes what the ends prescribe under a load into `u`.
-    pub fn impose(&self, load: &Load, u: &mut [f64]) {
-        self.supports.impose(load, u);
+    pub fn apply_prescribed(&self, load: &Load, u: &mut [f64]) {
+        self.supports.apply_prescribed(load, u);
     }
 
     /// Energy and residual of a state `u` under a load.
@@ -270,7 +270,7 @@ impl SplineTube {
             let apart = volume.elastic_forces(load, u)?;
             forces.energy += apart.energy;
             forces.energy_ungrown += apart.energy_ungrown;
-            forces.in_play = forces.in_play.hypot(apart.in_play);
+            forces.residual_scale = forces.residual_scale.hypot(apart.residual_scale);
             // Where volume is not resisted det Fe may be anything, as long as it is positive.
             forces.smallest_jacobian = apart.smallest_jacobian;
             for (sum, part) in forces.residual.iter_mut().zip(&apart.residual) {
@@ -304,7 +304,7 @@ impl SplineTube {
             energy_ungrown: 0.0,
             potential: 0.0,
             residual: vec![0.0; u.len()],
-            in_play: 0.0,
+            residual_scale: 0.0,
             smallest_jacobian: f64::INFINITY,
         };
         for (slab, part) in self.slabs.iter().zip(&slabs) {
@@ -329,13 +329,13 @@ impl SplineTube {
             forces.smallest_jacobian = forces.smallest_jacobian.min(jacobian);
             forces.energy += repeats * part.energy;
             forces.energy_ungrown += repeats * part.energy_ungrown;
-            forces.in_play += part.squares;
+            forces.residual_scale += part.squares;
             let rows = &mut forces.residual[slab.first * self.row_size()..];
             for (sum, part) in rows.iter_mut().zip(&part.residual) {
                 *sum += part;
             }
         }
-        forces.in_play = forces.in_play.sqrt();
+        forces.residual_scale = forces.residual_scale.sqrt();
         Ok(forces)
     }
 
@@ -362,7 +362,7 @@ impl SplineTube {
 
     /// For every unknown of circumferential harmonic n of the tube, whether a support gives it or it
     /// is pinned against a rigid motion of that harmonic.
-    pub fn given_in_harmonic(&self, n: usize) -> Vec<bool> {
+    pub fn prescribed_in_harmonic(&self, n: usize) -> Vec<bool> {
         self.supports.in_harmonic(n)
     }
 
@@ -459,9 +459,9 @@ impl SplineTube {
     }
 
     /// The drag matrix ∫ N N dV₀ of the sector.
-    pub fn drag(&self) -> BlockBanded {
+    pub fn damping(&self) -> BlockBanded {
         let shape = [self.axial.functions(), self.wall.functions()];
-        drag(
+        damping(
             &self.slabs,
             &self.layers,
             &self.around,
@@ -472,8 +472,8 @@ impl SplineTube {
     }
 
     /// The drag matrix of the sector as a product of three small ones.
-    pub fn ring_drag(&self) -> RingDrag {
-        RingDrag::new(
+    pub fn ring_damping(&self) -> RingDamping {
+        RingDamping::new(
             &self.slabs,
             &self.layers,
             &self.around,

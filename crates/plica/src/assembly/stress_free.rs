@@ -55,7 +55,7 @@ impl StressFree {
 
     /// For 1/θζ and 1/θη.
     #[inline(always)]
-    pub fn departure<S: Simd>(
+    pub fn imperfection_map<S: Simd>(
         &self,
         simd: S,
         inverse_along: f64x8<S>,

@@ -14,14 +14,14 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug)]
 pub struct Supports {
     /// For every unknown, whether it is given: at the ends, and what is pinned if there is one ring.
-    pub given: Vec<bool>,
+    pub prescribed: Vec<bool>,
     /// What is pinned if there are many.
     pins: Vec<Pin>,
     /// The unknowns of a ring that are pinned in harmonics 0 and 1 of the tube.
     pinned: [Vec<usize>; 2],
     /// Number of displacements that are pinned so that a loose tube does not drift. They are as few
     /// as there are rigid motions left, so that they carry no force in equilibrium.
-    pub anchors: usize,
+    pub rigid_body_constraints: usize,
     ends: Vec<EndUnknown>,
     rings: usize,
 }
@@ -56,7 +56,7 @@ impl Supports {
         shape: Option<&[f64]>,
     ) -> Self {
         let size = r.len() * 3 * sector.rings;
-        let mut given = vec![false; z.len() * size];
+        let mut prescribed = vec![false; z.len() * size];
         let mut ends = vec![];
         for (end, row, name) in [(0, 0, End::Colon), (1, z.len() - 1, End::Ileum)] {
             let face = end_face(tube, sector, name, r);
@@ -69,7 +69,7 @@ impl Supports {
                 for (c, &radius) in r.iter().enumerate() {
                     for ring in 0..sector.rings {
                         let unknown = row * size + (c * 3 + component) * sector.rings + ring;
-                        given[unknown] = true;
+                        prescribed[unknown] = true;
                         let mut shift = face[c * sector.rings + ring];
                         for (i, shift) in shift.iter_mut().enumerate() {
                             let own = row * size + (c * 3 + i) * sector.rings + ring;
@@ -87,7 +87,7 @@ impl Supports {
             }
         }
         let rings = sector.rings;
-        let held = held(&ends, given.len(), rings);
+        let held = held(&ends, prescribed.len(), rings);
         let whole = rings == sector.around;
         let points: Vec<[f64; 2]> = z
             .iter()
@@ -97,7 +97,7 @@ impl Supports {
         let mut pins = vec![];
         if rings == 1 {
             for &unknown in &pinned[0] {
-                given[unknown] = true;
+                prescribed[unknown] = true;
             }
         } else {
             let of_harmonic = |n: usize| pinned[n].iter().flat_map(move |&at| waves(at, n, rings));
@@ -105,12 +105,12 @@ impl Supports {
             pins.extend(of_harmonic(1).filter(|_| whole));
         }
         Self {
-            anchors: if rings == 1 {
+            rigid_body_constraints: if rings == 1 {
                 pinned[0].len()
             } else {
                 pins.len()
             },
-            given,
+            prescribed,
             pins,
             pinned,
             ends,
@@ -120,16 +120,16 @@ impl Supports {
 
     /// The given unknowns of circumferential harmonic n of the tube, of one ring.
     pub fn in_harmonic(&self, n: usize) -> Vec<bool> {
-        let mut given = self.held();
+        let mut prescribed = self.held();
         for &unknown in self.pinned.get(n).into_iter().flatten() {
-            given[unknown] = true;
+            prescribed[unknown] = true;
         }
-        given
+        prescribed
     }
 
     /// For every unknown of a ring, whether an end gives it; loose motions are not pinned.
     pub fn held(&self) -> Vec<bool> {
-        held(&self.ends, self.given.len(), self.rings)
+        held(&self.ends, self.prescribed.len(), self.rings)
     }
 
     /// Takes what is pinned at many rings out of a displacement.
@@ -144,7 +144,7 @@ impl Supports {
     }
 
     /// Writes the given unknowns of a load into `u`.
-    pub fn impose(&self, load: &Load, u: &mut [f64]) {
+    pub fn apply_prescribed(&self, load: &Load, u: &mut [f64]) {
         for e in &self.ends {
             let motion = load.ends[e.end];
             let ([axial, radial, around], (sin, cos)) = (e.shift, motion.twist.sin_cos());
@@ -206,8 +206,8 @@ pub fn motions_in_harmonic(n: usize, points: &[[f64; 2]]) -> Vec<Vec<f64>> {
 }
 
 /// Each motion that the given unknowns leave is stopped at the unknown where it is largest.
-fn pins_of(motions: Vec<Vec<f64>>, given: &[bool]) -> Vec<usize> {
-    let mut motions = left_by(motions, given);
+fn pins_of(motions: Vec<Vec<f64>>, prescribed: &[bool]) -> Vec<usize> {
+    let mut motions = left_by(motions, prescribed);
     let mut pins = vec![];
     while let Some(i) = eliminate(&mut motions, |_| true) {
         pins.push(i);
@@ -216,8 +216,8 @@ fn pins_of(motions: Vec<Vec<f64>>, given: &[bool]) -> Vec<usize> {
 }
 
 /// The motions that the given unknowns do not stop; they are zero there.
-pub fn left_by(mut motions: Vec<Vec<f64>>, given: &[bool]) -> Vec<Vec<f64>> {
-    while eliminate(&mut motions, |i| given[i]).is_some() {}
+pub fn left_by(mut motions: Vec<Vec<f64>>, prescribed: &[bool]) -> Vec<Vec<f64>> {
+    while eliminate(&mut motions, |i| prescribed[i]).is_some() {}
     motions
 }
 

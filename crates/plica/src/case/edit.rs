@@ -130,7 +130,7 @@ drive.circular.diameter_ratio = 0.25 # narrow
             ("mesh.control_points.axial", "90"),
             ("stages[1].drive.circular.diameter_ratio", "0.3"),
             ("stages[1].drive.colon.displacement", "0.1"),
-            ("solver.pseudo_time.drag", "5.0"),
+            ("solver.pseudo_time.damping", "5.0"),
         ];
         let text = edited(CASE, &changes).unwrap();
         let table: toml::Table = text.parse().unwrap();
@@ -146,7 +146,10 @@ drive.circular.diameter_ratio = 0.25 # narrow
         let drive = &table["stages"][0]["drive"];
         assert_eq!(drive["circular"]["diameter_ratio"].as_float(), Some(0.3));
         assert_eq!(drive["colon"]["displacement"].as_float(), Some(0.1));
-        assert_eq!(table["solver"]["pseudo_time"]["drag"].as_float(), Some(5.0));
+        assert_eq!(
+            table["solver"]["pseudo_time"]["damping"].as_float(),
+            Some(5.0)
+        );
         assert!(text.contains("# what it is") && text.contains("# narrow"));
         assert_eq!(edited(CASE, &[("", ""); 0]).unwrap(), CASE);
     }

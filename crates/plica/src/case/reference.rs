@@ -55,7 +55,7 @@ const SECTIONS: &[(&str, &str)] = &[
     ),
     ("solver.scheme", "## `[solver]`"),
     (
-        "solver.pseudo_time.drag",
+        "solver.pseudo_time.damping",
         "### `[solver.pseudo_time]`\n\nFor the schemes `\"newmark\"` and `\"dragged\"` only.",
     ),
     ("output.pictures", "## `[output]`"),

@@ -49,34 +49,34 @@ drive.ileum.displacement = -2.0
 drive.colon.twist_degrees = 10
 [[stages]]
 drive.inner-wall.pressure = 0.5
-drive.outer-wall.dead_pressure = 0.25
+drive.outer-wall.dead_load = 0.25
 drive.next.diameter_ratio = 0.9
 [[imperfections]]
 of = "colon-end"
 direction = "axial"
 amplitude = 0.01
-shape = { wave = { harmonic = 2, phase_degrees = 20 } }
+shape = { wave = { mode = 2, phase_degrees = 20 } }
 [[imperfections]]
 of = { muscle = "ring" }
 amplitude = 0.1
-shape = { random = { seed = 7, harmonics = 4, half_waves = 2 } }
+shape = { random = { seed = 7, modes = 4, half_waves = 2 } }
 [[imperfections]]
 of = "geometry"
 amplitude = 0.01
-shape = { wave = { harmonic = 4, axial = { zone = [20.0, 40.0] } } }
+shape = { wave = { mode = 4, axial = { zone = [20.0, 40.0] } } }
 [solver]
 scheme = "newmark"
 tolerance = 1e-7
 newton_iterations = 20
 relaxation_steps = 100
-relaxation_drag = 2.0
-halvings = 6
-pseudo_time = { drag = 50.0, ramp = 5, tolerance = 1e-6, hold = 1000, settle = false }
+relaxation_damping = 2.0
+max_step_halvings = 6
+pseudo_time = { damping = 50.0, ramp = 5, tolerance = 1e-6, max_steps = 1000, equilibrate = false }
 [output]
 pictures = false
 profiles_every = 2
 states_every = 2
-harmonics = 2
+stability_modes = 2
 wall_points = 101
 "#;
 
@@ -106,15 +106,15 @@ drive.ileum.displacement = 0.2
 [[imperfections]]
 of = "geometry"
 amplitude = 0.01
-shape = { wave = { harmonic = 4, axial = "uniform" } }
+shape = { wave = { mode = 4, axial = "uniform" } }
 [[imperfections]]
 of = "ileum-end"
 direction = "axial"
 amplitude = 0.01
-shape = { wave = { harmonic = 3 } }
+shape = { wave = { mode = 3 } }
 [solver]
-scheme = "dragged"
-pseudo_time = { drag = 5.0 }
+scheme = "backward-euler"
+pseudo_time = { damping = 5.0 }
 "#;
 
 /// Those two and the cases that come along, by their names.
@@ -316,11 +316,11 @@ fn a_key_one_table_too_high_is_one_message() {
             &["muscles.a.edge"],
         ),
         (
-            "[[imperfections]]\nof = 'geometry'\namplitude = 1e-3\nwave = { harmonic = 0 }\n",
+            "[[imperfections]]\nof = 'geometry'\namplitude = 1e-3\nwave = { mode = 0 }\n",
             &["imperfections[1].wave"],
         ),
         (
-            "[[imperfections]]\nof = 'geometry'\namplitude = 1e-3\nshape = { harmonic = 0 }\n",
+            "[[imperfections]]\nof = 'geometry'\namplitude = 1e-3\nshape = { mode = 0 }\n",
             &["imperfections[1].shape.harmonic"],
         ),
         (
@@ -356,7 +356,7 @@ fn slips_of_toml_hide_nothing_where_the_keys_are_known() {
         ("[tube]\nlength = -3\n[tube]\nthickness = 'x'\n", &[2, 3, 4]),
         ("[muscles.a]\ndirection\nzone = [2.0, 1.0]\n", &[2, 3]),
         (
-            "[[imperfections]]\nof\namplitude = 'x'\nshape = { wave = { harmonic = 0 } }\n",
+            "[[imperfections]]\nof\namplitude = 'x'\nshape = { wave = { mode = 0 } }\n",
             &[2, 3],
         ),
         (
@@ -389,7 +389,7 @@ fn slips_of_every_kind_are_told_together() {
         [mesh]\ncontrol_points = { axial = 2, around = 'many' }\n\
         [[stages]]\ndrive.a.length_ratio = 1.5\ndrive.b.diameter_ratio = true\ndrive.c.length_ratio = 1.5\n\
         drive.d.diameter_ratio = 0.5\n\
-        [solver]\nhalvings = 0.5\npseudo_time = { drag = 1.0 }\n";
+        [solver]\nhalvings = 0.5\npseudo_time = { damping = 1.0 }\n";
     let problems = read(text, "case").unwrap_err().problems;
     let keys: Vec<&str> = problems.iter().map(|p| p.key.as_str()).collect();
     let expected = [
@@ -403,7 +403,7 @@ fn slips_of_every_kind_are_told_together() {
         "stages[1].drive.a.length_ratio",
         "stages[1].drive.b.diameter_ratio",
         "stages[1].drive.d",
-        "solver.halvings",
+        "solver.max_step_halvings",
         "solver.pseudo_time",
     ];
     assert_eq!(keys, expected);

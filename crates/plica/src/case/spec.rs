@@ -184,7 +184,7 @@ pub(super) struct Drive {
     pub displacement: Option<f64>,
     pub twist_degrees: Option<f64>,
     pub pressure: Option<f64>,
-    pub dead_pressure: Option<f64>,
+    pub dead_load: Option<f64>,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -223,7 +223,7 @@ pub(super) enum Shape {
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Wave {
-    pub harmonic: usize,
+    pub mode: usize,
     #[serde(default)]
     pub phase_degrees: f64,
     pub axial: Option<Axial>,
@@ -241,7 +241,7 @@ pub(super) enum Axial {
 #[serde(deny_unknown_fields)]
 pub(super) struct Random {
     pub seed: u64,
-    pub harmonics: Option<usize>,
+    pub modes: Option<usize>,
     pub half_waves: Option<usize>,
 }
 
@@ -252,8 +252,8 @@ pub(super) struct Solver {
     pub tolerance: f64,
     pub newton_iterations: usize,
     pub relaxation_steps: usize,
-    pub relaxation_drag: f64,
-    pub halvings: usize,
+    pub relaxation_damping: f64,
+    pub max_step_halvings: usize,
     pub pseudo_time: Option<PseudoTime>,
 }
 
@@ -263,17 +263,17 @@ pub(super) enum Scheme {
     #[default]
     Static,
     Newmark,
-    Dragged,
+    BackwardEuler,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct PseudoTime {
-    pub drag: Option<f64>,
+    pub damping: Option<f64>,
     pub ramp: usize,
     pub tolerance: f64,
-    pub hold: usize,
-    pub settle: bool,
+    pub max_steps: usize,
+    pub equilibrate: bool,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -282,7 +282,7 @@ pub(super) struct Output {
     pub pictures: bool,
     pub profiles_every: usize,
     pub states_every: usize,
-    pub harmonics: usize,
+    pub stability_modes: usize,
     pub wall_points: usize,
 }
 
@@ -359,8 +359,8 @@ impl Default for Solver {
             tolerance: usual.tolerance,
             newton_iterations: usual.newton_iterations,
             relaxation_steps: usual.relaxation_steps,
-            relaxation_drag: usual.relaxation_drag,
-            halvings: usual.halvings,
+            relaxation_damping: usual.relaxation_damping,
+            max_step_halvings: usual.max_step_halvings,
             pseudo_time: None,
         }
     }
@@ -370,11 +370,11 @@ impl Default for PseudoTime {
     fn default() -> Self {
         let usual = solve::PseudoTime::default();
         Self {
-            drag: None,
+            damping: None,
             ramp: usual.ramp,
             tolerance: usual.tolerance,
-            hold: usual.hold,
-            settle: usual.settle,
+            max_steps: usual.max_steps,
+            equilibrate: usual.equilibrate,
         }
     }
 }
@@ -386,7 +386,7 @@ impl Default for Output {
             pictures: usual.pictures,
             profiles_every: usual.profiles_every,
             states_every: usual.states_every,
-            harmonics: usual.harmonics,
+            stability_modes: usual.stability_modes,
             wall_points: usual.wall_points,
         }
     }

@@ -93,7 +93,7 @@ pub const KEYS: &[Key] = &[
     key("stages[].drive.<name>.pressure", Number, "stress", OrElse(BEFORE_0, "0.0"), ANY,
         "For `inner-wall`, which it pushes outwards, or `outer-wall`, which it pushes inwards: true pressure, per area as it is and \
          normal to the wall as it is. Needs both ends held (fixed or sliding)."),
-    key("stages[].drive.<name>.dead_pressure", Number, "stress", OrElse(BEFORE_0, "0.0"), ANY,
+    key("stages[].drive.<name>.dead_load", Number, "stress", OrElse(BEFORE_0, "0.0"), ANY,
         "For `inner-wall` or `outer-wall`: a dead load, per area at rest and normal to the wall at rest."),
 
     key("imperfections", Tables, "", Or("[]"), ANY,
@@ -107,10 +107,10 @@ pub const KEYS: &[Key] = &[
     key("imperfections[].direction", Word(&["across", "axial"]), "", OrElse("across", "\"across\""), ANY,
         "For an end: `\"across\"` in its plane, normal to the wall and around it so that no ring changes length; harmonic 1 shifts \
          the end sideways. `\"axial\"` along the axis; harmonic 1 tilts it."),
-    key("imperfections[].shape", Choice, "", Always("{ wave = { harmonic = 1 } }"), ANY,
-        "How it is spread: `shape = { wave = { harmonic = 2 } }`, `shape = { random = { seed = 7 } }` or, of the geometry, \
+    key("imperfections[].shape", Choice, "", Always("{ wave = { mode = 1 } }"), ANY,
+        "How it is spread: `shape = { wave = { mode = 2 } }`, `shape = { random = { seed = 7 } }` or, of the geometry, \
          `shape = { mode = \"…\" }`."),
-    key("imperfections[].shape.wave.harmonic", Count, "", Always("1"), from(0.0).to(1024.0),
+    key("imperfections[].shape.wave.mode", Count, "", Always("1"), from(0.0).to(1024.0),
         "Waves around the tube, n in cos n(φ − φ₀). 0 is the same all around, 1 goes sideways, 2 is oval."),
     key("imperfections[].shape.wave.phase_degrees", Number, "degrees", Or("0.0"), from(-360.0).to(360.0),
         "φ₀, the angle of a crest."),
@@ -120,7 +120,7 @@ pub const KEYS: &[Key] = &[
         "`axial = { zone = [0.5, 1.0] }`: ½(1 − cos 2πx) over a zone, and nothing elsewhere."),
     key("imperfections[].shape.random.seed", Count, "", Always("7"), from(0.0).to(1e9),
         "Any number; the same seed gives the same shape for ever, another seed another one."),
-    key("imperfections[].shape.random.harmonics", Count, "", OrElse("4, or as many as the rings tell apart", "4"), from(0.0).to(50.0),
+    key("imperfections[].shape.random.modes", Count, "", OrElse("4, or as many as the rings tell apart", "4"), from(0.0).to(50.0),
         "Harmonics 0 to this around the tube, of those that the symmetry allows; all are as likely to be large."),
     key("imperfections[].shape.random.half_waves", Count, "", Or("4"), from(1.0).to(50.0),
         "1 to this half-waves along the zone of the muscle, or the tube. Not for an end."),
@@ -128,7 +128,7 @@ pub const KEYS: &[Key] = &[
         "Path of a mode that `plica stability` has left in an axisymmetric run, from the folder of the case file on, lying as `start.state` does; for \
          the geometry only. A mode of harmonic n has a crest at angle zero."),
 
-    key("solver.scheme", Word(&["static", "newmark", "dragged"]), "", Or("\"static\""), ANY,
+    key("solver.scheme", Word(&["static", "newmark", "backward-euler"]), "", Or("\"static\""), ANY,
         "`\"static\"`: equilibrium after equilibrium, with relaxation where the path breaks off. `\"newmark\"`: the pseudo-time of \
          Okino et al. (2025). `\"dragged\"`: pseudo-time by backward Euler."),
     key("solver.tolerance", Number, "", Or("1e-8"), above(0.0).to(1e-6).because("a looser state is not an equilibrium"),
@@ -137,20 +137,20 @@ pub const KEYS: &[Key] = &[
         "Newton iterations before a step is given to relaxation."),
     key("solver.relaxation_steps", Count, "", Or("200"), from(1.0).to(1e6),
         "Relaxation steps before a step is halved."),
-    key("solver.relaxation_drag", Number, "E/D²", Or("1.0"), above(0.0).to(1e6),
+    key("solver.relaxation_damping", Number, "E/D²", Or("1.0"), above(0.0).to(1e6),
         "Drag at which relaxation starts, per unit volume."),
-    key("solver.halvings", Count, "", Or("8"), from(0.0).to(20.0),
+    key("solver.max_step_halvings", Count, "", Or("8"), from(0.0).to(20.0),
         "How often a step may be halved before the run stops."),
 
-    key("solver.pseudo_time.drag", Number, "", OrElse("100 for newmark, 5 for dragged", "100.0"), above(0.0).to(1e9),
+    key("solver.pseudo_time.damping", Number, "", OrElse("100 for newmark, 5 for dragged", "100.0"), above(0.0).to(1e9),
         "ηD/(EΔτ), the drag per pseudo-time step. The side to which a tube folds can depend on it, and on `ramp`."),
     key("solver.pseudo_time.ramp", Count, "", Or("10"), from(1.0).to(100000.0),
         "Pseudo-time steps over which each step of a stage is ramped."),
     key("solver.pseudo_time.tolerance", Number, "D", Or("1e-5"), above(0.0).to(0.01),
         "After the ramp, pseudo-time goes on until no control point moves more than this in a step."),
-    key("solver.pseudo_time.hold", Count, "", Or("2000"), from(1.0).to(1e7),
+    key("solver.pseudo_time.max_steps", Count, "", Or("2000"), from(1.0).to(1e7),
         "Pseudo-time steps after the ramp before the run stops."),
-    key("solver.pseudo_time.settle", Switch, "", Or("true"), ANY,
+    key("solver.pseudo_time.equilibrate", Switch, "", Or("true"), ANY,
         "Whether each state is then taken to equilibrium without drag. If not, states are accepted as in the paper, and say how far from equilibrium they are."),
 
     key("output.pictures", Switch, "", Or("true"), ANY,
@@ -159,7 +159,7 @@ pub const KEYS: &[Key] = &[
         "Wall profiles are written for every n-th state and for the last of a stage; 0 for none."),
     key("output.states_every", Count, "", Or("1"), from(0.0).to(100000.0),
         "Every n-th state and the last of a stage are saved in full; 0 for none. `plica stability` and cases that start from a state need them."),
-    key("output.harmonics", Count, "", Or("4"), from(0.0).to(100.0),
+    key("output.stability_modes", Count, "", Or("4"), from(0.0).to(100.0),
         "Circumferential harmonics that each axisymmetric state is tested for stability against: 0 to this. 1 tilts or shifts sideways, 2 turns oval, and so on."),
     key("output.wall_points", Count, "", Or("601"), from(51.0).to(20001.0),
         "Points along the tube at which a wall is sampled for profiles and pictures."),

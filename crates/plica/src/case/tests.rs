@@ -34,7 +34,7 @@ fn base(key: &Key) -> Table {
         let shape = match key.path {
             "imperfections[].shape.mode" => "mode = 'mode'",
             path if path.contains(".random") => "random = { seed = 1 }",
-            _ => "wave = { harmonic = 2 }",
+            _ => "wave = { mode = 2 }",
         };
         let of = match key.path {
             "imperfections[].direction" => "'colon-end'",
@@ -171,7 +171,7 @@ fn every_field_of_the_structs_is_in_the_table() {
         displacement: Some(0.0),
         twist_degrees: Some(0.0),
         pressure: Some(0.0),
-        dead_pressure: Some(0.0),
+        dead_load: Some(0.0),
     };
     let spec = Spec {
         title: Some("t".into()),
@@ -229,7 +229,7 @@ fn every_field_of_the_structs_is_in_the_table() {
                 amplitude: 0.1,
                 direction: Some(Push::Axial),
                 shape: Shape::Wave(Wave {
-                    harmonic: 1,
+                    mode: 1,
                     phase_degrees: 0.0,
                     axial: Some(Axial::Zone([0.0, 1.0])),
                 }),
@@ -239,7 +239,7 @@ fn every_field_of_the_structs_is_in_the_table() {
                 amplitude: 0.1,
                 direction: None,
                 shape: Shape::Wave(Wave {
-                    harmonic: 1,
+                    mode: 1,
                     phase_degrees: 0.0,
                     axial: Some(Axial::Uniform),
                 }),
@@ -250,7 +250,7 @@ fn every_field_of_the_structs_is_in_the_table() {
                 direction: None,
                 shape: Shape::Random(Random {
                     seed: 1,
-                    harmonics: Some(2),
+                    modes: Some(2),
                     half_waves: Some(3),
                 }),
             },
@@ -262,25 +262,25 @@ fn every_field_of_the_structs_is_in_the_table() {
             },
         ],
         solver: Solver {
-            scheme: Scheme::Dragged,
+            scheme: Scheme::BackwardEuler,
             tolerance: 1e-8,
             newton_iterations: 1,
             relaxation_steps: 1,
-            relaxation_drag: 1.0,
-            halvings: 1,
+            relaxation_damping: 1.0,
+            max_step_halvings: 1,
             pseudo_time: Some(PseudoTime {
-                drag: Some(1.0),
+                damping: Some(1.0),
                 ramp: 1,
                 tolerance: 1.0,
-                hold: 1,
-                settle: true,
+                max_steps: 1,
+                equilibrate: true,
             }),
         },
         output: Output {
             pictures: true,
             profiles_every: 1,
             states_every: 3,
-            harmonics: 1,
+            stability_modes: 1,
             wall_points: 1,
         },
     };
@@ -480,7 +480,10 @@ fn a_case_means_what_it_says() {
         panic!("{:?}", plan.solver.scheme)
     };
     assert_eq!(scheme.integrator, crate::solve::Integrator::BackwardEuler);
-    assert_eq!((scheme.drag, scheme.ramp, scheme.settle), (5.0, 10, true));
+    assert_eq!(
+        (scheme.damping, scheme.ramp, scheme.equilibrate),
+        (5.0, 10, true)
+    );
 }
 
 #[test]

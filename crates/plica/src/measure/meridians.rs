@@ -25,7 +25,7 @@ pub struct Meridians<'a> {
 
 /// How far a state is from axisymmetric: the largest wave around its outer face.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Departure {
+pub struct Asymmetry {
     /// Amplitude of the wave's displacement along the axis and of the radius, together; in D.
     pub amplitude: f64,
     /// Its waves around the tube, at least 1; 0 if the tube is axisymmetric.
@@ -34,7 +34,7 @@ pub struct Departure {
     pub crest: f64,
 }
 
-impl Departure {
+impl Asymmetry {
     /// Reference angles of a crest and of the trough beside it: both sides of a tube that leans,
     /// the widest and the narrowest meridian of an oval one.
     pub fn crest_and_trough(&self) -> [f64; 2] {
@@ -108,8 +108,8 @@ impl<'a> Meridians<'a> {
     }
 
     /// The largest wave around the outer face.
-    pub fn departure(&self) -> Departure {
-        let mut largest = Departure::default();
+    pub fn asymmetry(&self) -> Asymmetry {
+        let mut largest = Asymmetry::default();
         if self.mean.is_none() {
             return largest;
         }
@@ -133,7 +133,7 @@ impl<'a> Meridians<'a> {
                     } else {
                         im.atan2(re)
                     };
-                    largest = Departure {
+                    largest = Asymmetry {
                         amplitude,
                         harmonic,
                         crest: angle / harmonic as f64,
@@ -144,7 +144,7 @@ impl<'a> Meridians<'a> {
         if largest.amplitude > ROUND {
             largest
         } else {
-            Departure::default()
+            Asymmetry::default()
         }
     }
 

@@ -32,7 +32,7 @@ mod rotation;
 mod shape;
 mod wall;
 
-pub use meridians::{Departure, Meridians};
+pub use meridians::{Asymmetry, Meridians};
 pub use overlay::Overlay;
 pub use rotation::{Flank, Rotation};
 pub use shape::{Shape, Side};
@@ -63,7 +63,7 @@ pub struct Measures {
     /// What the contracting region looks like.
     pub shape: Shape,
     /// How far it is from axisymmetric.
-    pub departure: Departure,
+    pub asymmetry: Asymmetry,
 }
 
 /// Points along the outer face from which measures are taken, per element along the tube.
@@ -74,8 +74,8 @@ impl Measures {
     /// it is most, of sixteen from the crest of its departure on.
     pub fn of(tube: &SplineTube, load: &Load, u: &[f64]) -> Self {
         let meridians = Meridians::of(tube, load, u);
-        let departure = meridians.departure();
-        let angles = meridians.around(departure.crest);
+        let asymmetry = meridians.asymmetry();
+        let angles = meridians.around(asymmetry.crest);
         let z = tube
             .axial
             .spread(tube.axial.elements() * POINTS_PER_ELEMENT + 1);
@@ -121,7 +121,7 @@ impl Measures {
                 angle,
                 tube.tube.diameter_ratio(load),
             ),
-            departure,
+            asymmetry,
         }
     }
 }

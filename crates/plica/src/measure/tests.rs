@@ -1,6 +1,6 @@
 //! Tilted, shifted, oval and twisted tubes, whose measures are known.
 
-use super::{Departure, Measures, Meridians, Side};
+use super::{Asymmetry, Measures, Meridians, Side};
 use crate::assembly::SplineTube;
 use crate::material::{Material, NeoHookean};
 use crate::tube::{Mesh, Support, Tube};
@@ -59,7 +59,7 @@ fn a_tube_that_is_round_has_the_measures_of_one_ring_though_it_twists() {
         measures(&one, &moved(&one, narrow)),
         measures(&whole, &moved(&whole, narrow)),
     );
-    assert_eq!(b.departure, Departure::default());
+    assert_eq!(b.asymmetry, Asymmetry::default());
     assert!((a.outer_radius_min - b.outer_radius_min).abs() < 1e-5);
     let off = a.max_wall_angle_deg - b.max_wall_angle_deg;
     assert!(off.abs() < 1e-2, "{off}");
@@ -75,11 +75,11 @@ fn a_shift_that_takes_the_axis_out_of_the_lumen_bends_no_wall_and_narrows_nothin
         [z, x + 0.5 * z * cos, y + 0.5 * z * sin]
     });
     let found = measures(&whole, &u);
-    let Departure {
+    let Asymmetry {
         amplitude,
         harmonic,
         crest,
-    } = found.departure;
+    } = found.asymmetry;
     assert_eq!(harmonic, 1);
     assert!((amplitude - 1.5).abs() < 1e-6, "{amplitude}");
     assert!((crest - 0.7).abs() < 1e-6, "{crest}");
@@ -91,7 +91,7 @@ fn a_shift_that_takes_the_axis_out_of_the_lumen_bends_no_wall_and_narrows_nothin
     // The meridian on the lee side goes through the axis as straight as it came.
     let rest = whole.tube.rest();
     let meridians = Meridians::of(&whole, &rest, &u);
-    let lee = found.departure.crest_and_trough()[1];
+    let lee = found.asymmetry.crest_and_trough()[1];
     let wall = &meridians.walls(super::Face::Outer, &[lee], &[0.5, 2.5])[0];
     for &(z, radius) in &wall.points {
         assert!((radius - (0.5 - 0.5 * z)).abs() < 2e-5, "{wall:?}");
@@ -106,11 +106,11 @@ fn a_tube_turned_about_an_axis_across_it_leans_by_that_angle() {
         [z * cos - x * sin, z * sin + x * cos, y]
     });
     let found = measures(&whole, &u);
-    assert_eq!(found.departure.harmonic, 1);
-    assert!(found.departure.crest.abs() < 1e-6);
+    assert_eq!(found.asymmetry.harmonic, 1);
+    assert!(found.asymmetry.crest.abs() < 1e-6);
     // At its far end: 3 sin β sideways, ½ sin β along.
     let expected = 3.0_f64.hypot(0.5) * sin;
-    assert!((found.departure.amplitude - expected).abs() < 1e-5);
+    assert!((found.asymmetry.amplitude - expected).abs() < 1e-5);
     assert!((found.max_wall_angle_deg - 0.3_f64.to_degrees()).abs() < 1e-4);
 }
 
@@ -129,10 +129,10 @@ fn an_oval_is_as_narrow_as_its_short_axis_wherever_that_points() {
         let round = measures(&whole, &moved(&whole, narrow));
         let found = measures(&whole, &u);
         let expected = 0.8 * round.outer_radius_min;
-        assert_eq!(found.departure.harmonic, 2);
-        assert!((found.departure.crest - phase).abs() < 1e-3, "{found:?}");
+        assert_eq!(found.asymmetry.harmonic, 2);
+        assert!((found.asymmetry.crest - phase).abs() < 1e-3, "{found:?}");
         assert!(
-            (found.departure.amplitude / 0.1 - 1.0).abs() < 1e-3,
+            (found.asymmetry.amplitude / 0.1 - 1.0).abs() < 1e-3,
             "{found:?}"
         );
         assert!(
@@ -155,7 +155,7 @@ fn departures_of_a_fold_are_its_harmonics() {
     // A crest lies across from a trough: nowhere is it narrower than a round one, but for what waves of the second
     // order and a polygon of 24 make of it.
     assert!((measured.lumen / 0.88 - 1.0).abs() < 1e-3, "{measured:?}");
-    let found = measured.departure;
+    let found = measured.asymmetry;
     assert_eq!(found.harmonic, 3);
     // e^{iφ} cos 3φ: waves of four turns and of two, flattened as the splines draw them.
     let drawn = |turns| fold.sector.control_wave(1) / fold.sector.control_wave(turns);

@@ -2,7 +2,7 @@
 //! turn out not to be (Hestenes and Stiefel 1952; the truncation is Steihaug's, 1983).
 
 use super::operator::{Operator, add, dot, hold};
-use super::{NegativeCurvature, Solved, Watch};
+use super::{Monitor, NegativeCurvature, Solved};
 
 /// What a step adds to the fall of the energy, relative to all before, where rounding takes over.
 const IDLE: f64 = f64::EPSILON * f64::EPSILON;
@@ -30,15 +30,15 @@ pub fn conjugate_gradients<O: Operator>(
     b: &mut [f64],
     accuracy: f64,
     iterations: usize,
-    watch: &mut dyn Watch,
+    monitor: &mut dyn Monitor,
 ) -> Result<Solved, NegativeCurvature> {
-    let given = operator.given();
+    let prescribed = operator.prescribed();
     let mut r = b.to_vec();
     hold(operator, &mut r);
     let mut x = vec![0.0; b.len()];
-    let outcome = iterate(operator, &mut r, &mut x, accuracy, iterations, watch);
+    let outcome = iterate(operator, &mut r, &mut x, accuracy, iterations, monitor);
     for i in 0..b.len() {
-        if !given[i] {
+        if !prescribed[i] {
             b[i] = x[i];
         }
     }
@@ -52,7 +52,7 @@ fn iterate<O: Operator>(
     x: &mut [f64],
     accuracy: f64,
     iterations: usize,
-    watch: &mut dyn Watch,
+    monitor: &mut dyn Monitor,
 ) -> Result<Solved, NegativeCurvature> {
     let size = dot(r, r).sqrt();
     let target = accuracy * size;
@@ -94,7 +94,7 @@ fn iterate<O: Operator>(
         add(length, &p, x);
         add(-length, &Ap, r);
         let reached = dot(r, r).sqrt() <= target;
-        if reached || !watch.iterating() {
+        if reached || !monitor.iterating() {
             return ended(done + 1, reached);
         }
         // Twice what ½ x · A x − b · x falls by.
@@ -194,7 +194,7 @@ mod tests {
     /// Someone who wants no more than so many iterations.
     struct Stops(usize);
 
-    impl Watch for Stops {
+    impl Monitor for Stops {
         fn solved(&mut self, _: Method, _: f64) -> bool {
             self.0 > 0
         }
@@ -208,9 +208,9 @@ mod tests {
     fn a_long_solve_is_cut_off_when_the_watch_says_so() {
         let spectrum: Vec<f64> = (0..80).map(|i| 1e-2 * 1.15_f64.powi(i)).collect();
         let operator = Reflected::new(&spectrum, 10.0);
-        let solved = |iterations: usize, watch: &mut dyn Watch| {
+        let solved = |iterations: usize, monitor: &mut dyn Monitor| {
             let mut x = waves(80);
-            let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations, watch);
+            let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations, monitor);
             (taken.unwrap(), x)
         };
         assert!(solved(1000, &mut ()).0.iterations > 30);
@@ -254,7 +254,7 @@ mod tests {
         let spectrum: Vec<f64> = (0..30).map(|i| 1.0 + i as f64).collect();
         let mut operator = Reflected::new(&spectrum, 2.0);
         for i in [0, 7, 29] {
-            operator.given[i] = true;
+            operator.prescribed[i] = true;
         }
         let b = waves(30);
         let mut x = b.clone();
@@ -266,7 +266,7 @@ mod tests {
         let mut r = vec![0.0; 30];
         operator.apply(&x, &mut r);
         for i in 0..30 {
-            assert!(operator.given[i] || (r[i] - b[i]).abs() < 1e-10);
+            assert!(operator.prescribed[i] || (r[i] - b[i]).abs() < 1e-10);
         }
     }
 
@@ -274,7 +274,7 @@ mod tests {
     fn what_is_pinned_takes_no_part() {
         let spectrum: Vec<f64> = (0..30).map(|i| 1.0 + i as f64).collect();
         let mut operator = Reflected::new(&spectrum, 2.0);
-        operator.given[7] = true;
+        operator.prescribed[7] = true;
         let wave = |i| if i == 7 { 0.0 } else { 1.0 / 29.0_f64.sqrt() };
         let pinned: Vec<f64> = (0..30).map(wave).collect();
         operator.pinned = Some(pinned.clone());

@@ -474,7 +474,7 @@ mod tests {
         let spectrum: Vec<f64> = (0..40).map(|i| 1.0 + i as f64).collect();
         let mut operator = Reflected::new(&spectrum, 3.0);
         for i in [0, 11, 39] {
-            operator.given[i] = true;
+            operator.prescribed[i] = true;
         }
         let found = lowest_of(&operator, &seeds(40, 2), &search(1));
         let x = &found.vectors[0];

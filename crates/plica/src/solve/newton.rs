@@ -1,7 +1,9 @@
 //! Newton's method with the energy as judge.
 
 use super::forcing::Forcing;
-use super::{Balance, Equilibrium, Failure, Found, Method, Settings, Solver, Tangent, Watch};
+use super::{
+    Equilibrium, Failure, Method, Monitor, ResidualEvaluation, Settings, Solution, Solver, Tangent,
+};
 
 /// A residual this small, relative to the forces in play, is equilibrium even if rounding keeps
 /// the solver from its own, finer tolerance.
@@ -27,19 +29,19 @@ pub fn newton<P: Equilibrium>(
     load: &P::Load,
     mut u: Vec<f64>,
     settings: &Settings,
-    watch: &mut dyn Watch,
-) -> Result<Found, Failure<P::Broken>> {
-    let given = problem.given();
-    let mut forces = problem.forces(load, &u).map_err(Failure::Broken)?;
-    let mut imbalance = forces.imbalance(given);
+    monitor: &mut dyn Monitor,
+) -> Result<Solution, Failure<P::EvaluationError>> {
+    let prescribed = problem.prescribed();
+    let mut forces = problem.forces(load, &u).map_err(Failure::Evaluation)?;
+    let mut relative_residual = forces.relative_residual(prescribed);
     let mut forcing = Forcing::new(settings.tolerance);
     let (mut iterations, mut unsolved) = (0, 0);
-    while imbalance > settings.tolerance || imbalance.is_nan() {
+    while relative_residual > settings.tolerance || relative_residual.is_nan() {
         if iterations == settings.newton_iterations {
             return Err(Failure::NotConverged {
                 iterations,
-                imbalance,
-                worst: forces.worst(given),
+                relative_residual,
+                worst: forces.worst(prescribed),
             });
         }
         let solver = problem.tangent(load, &u).into_shifted(0.0)?;
@@ -49,74 +51,74 @@ pub fn newton<P: Equilibrium>(
                 negative_pivots: solver.negative_pivots(),
             });
         }
-        let mut step = free_part(&forces.residual, given, -1.0);
-        match solver.solve(&mut step, forcing.accuracy(imbalance), watch) {
+        let mut step = free_part(&forces.residual, prescribed, -1.0);
+        match solver.solve(&mut step, forcing.accuracy(relative_residual), monitor) {
             Ok(solved) => {
-                watch.iterated(solved.iterations);
-                let enough = solved.reached || imbalance <= EQUILIBRIUM;
+                monitor.iterated(solved.iterations);
+                let enough = solved.reached || relative_residual <= EQUILIBRIUM;
                 unsolved = if enough { 0 } else { unsolved + 1 };
                 if unsolved == UNSOLVED {
-                    if !watch.solved(Method::Newton, imbalance) {
+                    if !monitor.solved(Method::Newton, relative_residual) {
                         return Err(Failure::Stopped);
                     }
                     return Err(Failure::Unsolved {
                         iterations,
-                        imbalance,
-                        worst: forces.worst(given),
+                        relative_residual,
+                        worst: forces.worst(prescribed),
                     });
                 }
             }
             Err(down) => {
-                watch.iterated(down.iterations);
+                monitor.iterated(down.iterations);
                 return Err(Failure::Indefinite { negative_pivots: 1 });
             }
         }
         let (length, next, next_forces) = match descend(problem, load, &u, &step, &forces) {
             Ok(found) => found,
             // Rounding: the energy no longer tells the states apart.
-            Err(Descent::None) if imbalance <= EQUILIBRIUM => break,
-            Err(Descent::Broken(broken)) => return Err(Failure::Broken(broken)),
+            Err(Descent::None) if relative_residual <= EQUILIBRIUM => break,
+            Err(Descent::EvaluationError(broken)) => return Err(Failure::Evaluation(broken)),
             Err(Descent::None) => {
                 return Err(Failure::NoDescent {
                     iterations,
-                    imbalance,
-                    worst: forces.worst(given),
+                    relative_residual,
+                    worst: forces.worst(prescribed),
                 });
             }
         };
-        let before = imbalance;
-        imbalance = next_forces.imbalance(given);
-        if !watch.solved(Method::Newton, imbalance) {
+        let before = relative_residual;
+        relative_residual = next_forces.relative_residual(prescribed);
+        if !monitor.solved(Method::Newton, relative_residual) {
             return Err(Failure::Stopped);
         }
-        if before <= EQUILIBRIUM && length == 1.0 && imbalance > 0.5 * before {
+        if before <= EQUILIBRIUM && length == 1.0 && relative_residual > 0.5 * before {
             // Rounding keeps the residual where it is; the better of the two stays.
-            if imbalance < before {
+            if relative_residual < before {
                 (u, forces) = (next, next_forces);
             }
             break;
         }
         (u, forces) = (next, next_forces);
     }
-    Ok(Found {
+    Ok(Solution {
         u,
         forces,
-        drag_work: 0.0,
+        damping_work: 0.0,
         iterations,
     })
 }
 
 /// `factor` times the free entries of a vector; zero where a support gives the unknown.
-pub fn free_part(vector: &[f64], given: &[bool], factor: f64) -> Vec<f64> {
+pub fn free_part(vector: &[f64], prescribed: &[bool], factor: f64) -> Vec<f64> {
     vector
         .iter()
-        .zip(given)
-        .map(|(x, &given)| if given { 0.0 } else { factor * x })
+        .zip(prescribed)
+        .map(|(x, &prescribed)| if prescribed { 0.0 } else { factor * x })
         .collect()
 }
 
 enum Descent<B> {
-    Broken(B),
+    EvaluationError(B),
     None,
 }
 
@@ -126,8 +128,8 @@ fn descend<P: Equilibrium>(
     load: &P::Load,
     u: &[f64],
     step: &[f64],
-    forces: &Balance,
-) -> Result<(f64, Vec<f64>, Balance), Descent<P::Broken>> {
+    forces: &ResidualEvaluation,
+) -> Result<(f64, Vec<f64>, ResidualEvaluation), Descent<P::EvaluationError>> {
     let slope: f64 = forces.residual.iter().zip(step).map(|(r, s)| r * s).sum();
     let (mut length, mut broken) = (1.0, None);
     for _ in 0..=HALVINGS {
@@ -141,5 +143,5 @@ fn descend<P: Equilibrium>(
         }
         length *= 0.5;
     }
-    Err(broken.map_or(Descent::None, Descent::Broken))
+    Err(broken.map_or(Descent::None, Descent::EvaluationError))
 }

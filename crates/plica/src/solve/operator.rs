@@ -6,7 +6,7 @@
 /// pinned, and what is written there does not count.
 pub trait Operator {
     /// For every unknown, whether a support gives it.
-    fn given(&self) -> &[bool];
+    fn prescribed(&self) -> &[bool];
     /// Takes out of `v` what else must not move, by orthogonal projection: combinations of unknowns
     /// that supports pin.
     fn take_out_pins(&self, _v: &mut [f64]) {}
@@ -18,12 +18,12 @@ pub trait Operator {
     fn metric(&self, v: &[f64], out: &mut [f64]);
 }
 
-/// Takes out of `v` all that supports hold: the unknowns that they give, and what they pin.
+/// Takes out of `v` all that supports max_steps: the unknowns that they give, and what they pin.
 pub(super) fn hold<O: Operator>(operator: &O, v: &mut [f64]) {
     for (x, _) in v
         .iter_mut()
-        .zip(operator.given())
-        .filter(|(_, given)| **given)
+        .zip(operator.prescribed())
+        .filter(|(_, prescribed)| **prescribed)
     {
         *x = 0.0;
     }

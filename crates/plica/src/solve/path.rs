@@ -2,8 +2,8 @@
 
 use super::newton::EQUILIBRIUM;
 use super::{
-    Balance, Equilibrium, Failure, Found, Method, PseudoTime, Scheme, Settings, Solver, State,
-    Tangent, Watch, newton, pseudo_time, relaxation,
+    Equilibrium, Failure, Method, Monitor, PseudoTime, ResidualEvaluation, Scheme, Settings,
+    Solution, Solver, State, Tangent, newton, pseudo_time, relaxation,
 };
 
 /// How often a step is halved for Newton before relaxation takes over.
@@ -31,9 +31,9 @@ pub struct Path<'a, P: Equilibrium> {
     to: P::Load,
     t: f64,
     /// The state before on this leg, unless a snap lies between.
-    behind: Option<Behind>,
+    previous: Option<PreviousPoint>,
     /// How often the last step had to be halved; the next begins there, or one halving longer.
-    pace: usize,
+    halving_level: usize,
     /// u̇ of the pseudo-time.
     velocity: Vec<f64>,
 }
@@ -42,7 +42,7 @@ type SolverOf<P> = <<P as Equilibrium>::Tangent as Tangent>::Solver;
 
 /// A state of the path and its tangent du/dt.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Behind {
+pub struct PreviousPoint {
     /// How far along the leg.
     pub t: f64,
     /// The unknowns.
@@ -53,13 +53,13 @@ pub struct Behind {
 
 /// What a path keeps of its way beside its state: with both it goes on as if it had never been left.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Memory {
+pub struct ContinuationState {
     /// How far along its leg it is, 0 to 1.
     pub reached: f64,
     /// How often the last step had to be halved.
-    pub pace: usize,
+    pub halving_level: usize,
     /// The state before on this leg, unless a snap lies between.
-    pub behind: Option<Behind>,
+    pub previous: Option<PreviousPoint>,
     /// u̇ of the pseudo-time.
     pub velocity: Vec<f64>,
 }
@@ -74,7 +74,7 @@ pub struct Step {
     /// Iterations inside the linear solves; 0 where the solver is direct.
     pub inner_iterations: usize,
     /// Energy spent on drag.
-    pub drag_work: f64,
+    pub damping_work: f64,
 }
 
 /// Where a path ended, and why: what was tried from there, in order.
@@ -114,7 +114,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         load: P::Load,
         u: Vec<f64>,
         settings: Settings,
-    ) -> Result<Self, P::Broken> {
+    ) -> Result<Self, P::EvaluationError> {
         let forces = problem.forces(&load, &u)?;
         let velocity = vec![0.0; u.len()];
         let (state, solver) = accepted(problem, load.clone(), u, &forces);
@@ -128,38 +128,38 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             from,
             to,
             t: 0.0,
-            behind: None,
-            pace: 0,
+            previous: None,
+            halving_level: 0,
             velocity,
         })
     }
 
     /// Goes on from an accepted state of a leg between two loads.
-    pub fn go_on(
+    pub fn resume(
         problem: &'a P,
         [from, to]: [P::Load; 2],
         load: P::Load,
         u: Vec<f64>,
-        memory: Memory,
+        memory: ContinuationState,
         settings: Settings,
-    ) -> Result<Self, P::Broken> {
+    ) -> Result<Self, P::EvaluationError> {
         Ok(Self {
             from,
             to,
             t: memory.reached,
-            behind: memory.behind,
-            pace: memory.pace,
+            previous: memory.previous,
+            halving_level: memory.halving_level,
             velocity: memory.velocity,
             ..Self::begin(problem, load, u, settings)?
         })
     }
 
     /// What it takes to go on later from the last accepted state.
-    pub fn memory(&self) -> Memory {
-        Memory {
+    pub fn continuation_state(&self) -> ContinuationState {
+        ContinuationState {
             reached: self.t,
-            pace: self.pace,
-            behind: self.behind.clone(),
+            halving_level: self.halving_level,
+            previous: self.previous.clone(),
             velocity: self.velocity.clone(),
         }
     }
@@ -180,9 +180,9 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     }
 
     /// Sets out on a leg from where the path is to a load.
-    pub fn set_out(&mut self, to: P::Load) {
+    pub fn begin_segment(&mut self, to: P::Load) {
         (self.from, self.to, self.t) = (self.state.load.clone(), to, 0.0);
-        (self.tangent, self.behind, self.pace) = (None, None, 0);
+        (self.tangent, self.previous, self.halving_level) = (None, None, 0);
     }
 
     /// How far along its leg the path is, 0 to 1.
@@ -192,20 +192,24 @@ impl<'a, P: Equilibrium> Path<'a, P> {
 
     /// Goes on to `t` of the leg. On failure the path stays at the last state that it found on
     /// the way.
-    pub fn advance(&mut self, t: f64, watch: &mut dyn Watch) -> Result<Step, PathError<P::Broken>> {
-        let watch = &mut Counted {
-            watch,
+    pub fn advance(
+        &mut self,
+        t: f64,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Step, PathError<P::EvaluationError>> {
+        let monitor = &mut Counted {
+            monitor,
             inner_iterations: 0,
         };
         let mut advanced = match self.settings.scheme.clone() {
-            Scheme::Static => self.advance_static(t, watch),
-            Scheme::PseudoTime(scheme) => self.advance_dragged(t, &scheme, watch),
+            Scheme::Static => self.advance_static(t, monitor),
+            Scheme::PseudoTime(scheme) => self.advance_damped(t, &scheme, monitor),
         };
         let step = match &mut advanced {
             Ok(step) => step,
             Err(error) => &mut error.step,
         };
-        step.inner_iterations = watch.inner_iterations;
+        step.inner_iterations = monitor.inner_iterations;
         advanced
     }
 
@@ -215,17 +219,17 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     fn advance_static(
         &mut self,
         target: f64,
-        watch: &mut dyn Watch,
-    ) -> Result<Step, PathError<P::Broken>> {
+        monitor: &mut dyn Monitor,
+    ) -> Result<Step, PathError<P::EvaluationError>> {
         let mut step = Step {
             method: Method::Newton,
             iterations: 0,
             inner_iterations: 0,
-            drag_work: 0.0,
+            damping_work: 0.0,
         };
         let (begin, whole) = (self.t, target - self.t);
         // The step is cut into 2^halvings pieces, `done` of them behind.
-        let (mut halvings, mut done) = (self.pace, 0_u64);
+        let (mut halvings, mut done) = (self.halving_level, 0_u64);
         while done < 1 << halvings {
             let reach = if done + 1 == 1 << halvings {
                 target
@@ -233,7 +237,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                 begin + whole * (done + 1) as f64 / (1_u64 << halvings) as f64
             };
             let mut tried = vec![];
-            let mut arrived = match self.try_newton(reach, &mut step, watch) {
+            let mut arrived = match self.try_newton(reach, &mut step, monitor) {
                 Ok(()) => Some(done + 1),
                 Err(failed) => {
                     tried.push((Method::Newton, failed));
@@ -245,14 +249,14 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             let unsolved = |(_, failed): &(_, _)| matches!(failed, Failure::Unsolved { .. });
             let halve_first = self.state.negative_pivots == 0
                 && !tried.iter().any(unsolved)
-                && halvings < NEWTON_HALVINGS.min(self.settings.halvings);
+                && halvings < NEWTON_HALVINGS.min(self.settings.max_step_halvings);
             let stopped = |tried: &[(_, _)]| {
                 tried
                     .iter()
                     .any(|(_, failed)| matches!(failed, Failure::Stopped))
             };
             if arrived.is_none() && !halve_first && !stopped(&tried) {
-                match self.try_relaxation(reach, &mut step, watch) {
+                match self.try_relaxation(reach, &mut step, monitor) {
                     Ok(()) => arrived = Some(done + 1),
                     Err(failed) => tried.push((Method::Relaxation, failed)),
                 }
@@ -263,9 +267,9 @@ impl<'a, P: Equilibrium> Path<'a, P> {
                     if halvings > 0 && done % 2 == 0 {
                         (halvings, done) = (halvings - 1, done / 2);
                     }
-                    self.pace = halvings;
+                    self.halving_level = halvings;
                 }
-                None if stopped(&tried) || halvings >= self.settings.halvings => {
+                None if stopped(&tried) || halvings >= self.settings.max_step_halvings => {
                     return Err(PathError { tried, step });
                 }
                 None => (halvings, done) = (halvings + 1, 2 * done),
@@ -278,11 +282,11 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         &mut self,
         t: f64,
         step: &mut Step,
-        watch: &mut dyn Watch,
-    ) -> Result<(), Failure<P::Broken>> {
+        monitor: &mut dyn Monitor,
+    ) -> Result<(), Failure<P::EvaluationError>> {
         // To ask for it may tell that the state is unstable.
         let stable = self.state.negative_pivots == 0;
-        let tangent = if stable { self.tangent(watch) } else { None };
+        let tangent = if stable { self.tangent(monitor) } else { None };
         if self.state.negative_pivots > 0 {
             // The tangent leads away from an unstable state, not along it.
             return Err(Failure::Indefinite {
@@ -292,15 +296,15 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         let load = self.load_at(t);
         let start = self.predict(t, &load, tangent.as_deref());
         self.solver = None;
-        let found = newton(self.problem, &load, start, &self.settings, watch)
+        let found = newton(self.problem, &load, start, &self.settings, monitor)
             .inspect_err(|failed| step.iterations += spent(failed))?;
-        let behind = tangent.map(|tangent| Behind {
+        let previous = tangent.map(|tangent| PreviousPoint {
             t: self.t,
             u: self.state.u.clone(),
             tangent,
         });
         self.accept(t, load, found, step);
-        self.behind = behind;
+        self.previous = previous;
         Ok(())
     }
 
@@ -308,23 +312,23 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         &mut self,
         t: f64,
         step: &mut Step,
-        watch: &mut dyn Watch,
-    ) -> Result<(), Failure<P::Broken>> {
+        monitor: &mut dyn Monitor,
+    ) -> Result<(), Failure<P::EvaluationError>> {
         let load = self.load_at(t);
         // The last state, if its ends need not move; else along the tangent, which moves them
         // gently.
         let mut start = self.state.u.clone();
-        self.problem.impose(&load, &mut start);
+        self.problem.apply_prescribed(&load, &mut start);
         if start != self.state.u {
-            self.behind = None;
-            let tangent = self.tangent(watch);
+            self.previous = None;
+            let tangent = self.tangent(monitor);
             start = self.predict(t, &load, tangent.as_deref());
         }
         self.solver = None;
-        let found = relaxation(self.problem, &load, start, &self.settings, watch)
+        let found = relaxation(self.problem, &load, start, &self.settings, monitor)
             .inspect_err(|failed| step.iterations += spent(failed))?;
         self.accept(t, load, found, step);
-        self.behind = None;
+        self.previous = None;
         step.method = Method::Relaxation;
         Ok(())
     }
@@ -333,25 +337,25 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         self.problem.between(&self.from, &self.to, t)
     }
 
-    fn accept(&mut self, t: f64, load: P::Load, found: Found, step: &mut Step) {
+    fn accept(&mut self, t: f64, load: P::Load, found: Solution, step: &mut Step) {
         step.iterations += found.iterations + 1;
-        step.drag_work += found.drag_work;
+        step.damping_work += found.damping_work;
         (self.state, self.solver) = accepted(self.problem, load, found.u, &found.forces);
         (self.tangent, self.t) = (None, t);
     }
 
     /// Pseudo-time with a fixed drag, then to equilibrium without if the scheme says so.
-    fn advance_dragged(
+    fn advance_damped(
         &mut self,
         t: f64,
         scheme: &PseudoTime,
-        watch: &mut dyn Watch,
-    ) -> Result<Step, PathError<P::Broken>> {
+        monitor: &mut dyn Monitor,
+    ) -> Result<Step, PathError<P::EvaluationError>> {
         let mut step = Step {
             method: Method::PseudoTime,
             iterations: 0,
             inner_iterations: 0,
-            drag_work: 0.0,
+            damping_work: 0.0,
         };
         self.solver = None;
         let (load, settings) = (self.load_at(t), &self.settings);
@@ -360,27 +364,27 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             step,
         };
         let mut velocity = self.velocity.clone();
-        let dragged = pseudo_time(
+        let damped = pseudo_time(
             self.problem,
             [&self.state.load, &load],
             self.state.u.clone(),
             &mut velocity,
             scheme,
             settings,
-            watch,
+            monitor,
         )
         .map_err(|failed| fail(Method::PseudoTime, failed, step))?;
-        step.iterations += dragged.iterations;
-        step.drag_work += dragged.drag_work;
-        let found = if scheme.settle {
+        step.iterations += damped.iterations;
+        step.damping_work += damped.damping_work;
+        let found = if scheme.equilibrate {
             velocity.fill(0.0);
-            relaxation(self.problem, &load, dragged.u, settings, watch)
+            relaxation(self.problem, &load, damped.u, settings, monitor)
                 .map_err(|failed| fail(Method::Relaxation, failed, step))?
         } else {
-            Found {
+            Solution {
                 iterations: 0,
-                drag_work: 0.0,
-                ..dragged
+                damping_work: 0.0,
+                ..damped
             }
         };
         self.velocity = velocity;
@@ -391,22 +395,22 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     /// The path's tangent du/dt at the state. None where the tangent stiffness is singular or the
     /// residual does not exist, where the solver does not come far enough, and where it meets negative
     /// curvature: the state is then known to be unstable.
-    fn tangent(&mut self, watch: &mut dyn Watch) -> Option<Vec<f64>> {
+    fn tangent(&mut self, monitor: &mut dyn Monitor) -> Option<Vec<f64>> {
         if self.tangent.is_none() {
-            self.tangent = Some(self.solve_for_tangent(watch));
+            self.tangent = Some(self.solve_for_tangent(monitor));
         }
         self.tangent.clone().flatten()
     }
 
     /// K du/dt = −∂R/∂t, the supports moving as they do.
-    fn solve_for_tangent(&mut self, watch: &mut dyn Watch) -> Option<Vec<f64>> {
+    fn solve_for_tangent(&mut self, monitor: &mut dyn Monitor) -> Option<Vec<f64>> {
         self.solver()?;
-        let (problem, given, u) = (self.problem, self.problem.given(), &self.state.u);
+        let (problem, prescribed, u) = (self.problem, self.problem.prescribed(), &self.state.u);
         // Central difference in t; the residual is smooth in the load.
         let at = |t: f64| {
             let load = self.load_at(t);
             let mut held = u.clone();
-            problem.impose(&load, &mut held);
+            problem.apply_prescribed(&load, &mut held);
             problem
                 .forces(&load, u)
                 .ok()
@@ -427,19 +431,19 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             K.multiply_add(-1.0, &motion, &mut tangent);
         }
         for i in 0..tangent.len() {
-            if given[i] {
+            if prescribed[i] {
                 tangent[i] = motion[i];
             }
         }
         let solver = self.solver.as_ref()?;
-        match solver.solve(&mut tangent, PREDICTION, watch) {
+        match solver.solve(&mut tangent, PREDICTION, monitor) {
             Ok(solved) => {
-                watch.iterated(solved.iterations);
+                monitor.iterated(solved.iterations);
                 // What was cut off is no du/dt.
                 solved.reached.then_some(tangent)
             }
             Err(down) => {
-                watch.iterated(down.iterations);
+                monitor.iterated(down.iterations);
                 self.state.negative_pivots = self.state.negative_pivots.max(1);
                 None
             }
@@ -452,16 +456,16 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         let (problem, u, ahead) = (self.problem, &self.state.u, t - self.t);
         let Some(tangent) = tangent else {
             let mut u = u.clone();
-            problem.impose(load, &mut u);
+            problem.apply_prescribed(load, &mut u);
             return u;
         };
         let mut line: Vec<f64> = u.iter().zip(tangent).map(|(u, v)| u + ahead * v).collect();
-        problem.impose(load, &mut line);
-        let Some(behind) = &self.behind else {
+        problem.apply_prescribed(load, &mut line);
+        let Some(previous) = &self.previous else {
             return line;
         };
         // Hermite's cubic on [0, 1] = [behind, state], read at s beyond 1.
-        let back = self.t - behind.t;
+        let back = self.t - previous.t;
         let s = 1.0 + ahead / back;
         let [a, b, c, d] = [
             (2.0 * s - 3.0) * s * s + 1.0,
@@ -470,14 +474,16 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             (s - 1.0) * s * s * back,
         ];
         let mut cubic: Vec<f64> = (0..u.len())
-            .map(|i| a * behind.u[i] + b * behind.tangent[i] + c * u[i] + d * tangent[i])
+            .map(|i| a * previous.u[i] + b * previous.tangent[i] + c * u[i] + d * tangent[i])
             .collect();
-        problem.impose(load, &mut cubic);
-        let imbalance = |u: &[f64]| {
+        problem.apply_prescribed(load, &mut cubic);
+        let relative_residual = |u: &[f64]| {
             let forces = problem.forces(load, u);
-            forces.map_or(f64::INFINITY, |forces| forces.imbalance(problem.given()))
+            forces.map_or(f64::INFINITY, |forces| {
+                forces.relative_residual(problem.prescribed())
+            })
         };
-        if imbalance(&cubic) < imbalance(&line) {
+        if relative_residual(&cubic) < relative_residual(&line) {
             cubic
         } else {
             line
@@ -498,20 +504,20 @@ fn spent<B: std::error::Error>(failure: &Failure<B>) -> usize {
 
 /// Counts the iterations inside the linear solves, those of failed tries too.
 struct Counted<'a> {
-    watch: &'a mut dyn Watch,
+    monitor: &'a mut dyn Monitor,
     inner_iterations: usize,
 }
 
-impl Watch for Counted<'_> {
-    fn solved(&mut self, method: Method, imbalance: f64) -> bool {
-        self.watch.solved(method, imbalance)
+impl Monitor for Counted<'_> {
+    fn solved(&mut self, method: Method, relative_residual: f64) -> bool {
+        self.monitor.solved(method, relative_residual)
     }
     fn iterated(&mut self, inner_iterations: usize) {
         self.inner_iterations += inner_iterations;
-        self.watch.iterated(inner_iterations);
+        self.monitor.iterated(inner_iterations);
     }
     fn iterating(&mut self) -> bool {
-        self.watch.iterating()
+        self.monitor.iterating()
     }
 }
 
@@ -521,17 +527,17 @@ fn accepted<P: Equilibrium>(
     problem: &P,
     load: P::Load,
     u: Vec<f64>,
-    forces: &Balance,
+    forces: &ResidualEvaluation,
 ) -> (State<P::Load>, Option<SolverOf<P>>) {
     let solver = problem.tangent(&load, &u).into_shifted(0.0).ok();
     let negative = |solver: &SolverOf<P>| {
-        let away = usize::from(solver.leads_away());
+        let away = usize::from(solver.is_unstable());
         solver.negative_pivots().max(away)
     };
     let state = State {
         load,
         energy: forces.energy,
-        imbalance: forces.imbalance(problem.given()),
+        relative_residual: forces.relative_residual(problem.prescribed()),
         negative_pivots: solver.as_ref().map_or(1, negative),
         u,
     };
@@ -541,6 +547,6 @@ fn accepted<P: Equilibrium>(
 impl<L> State<L> {
     /// Whether the residual without drag is small against the forces in play.
     pub fn in_equilibrium(&self) -> bool {
-        self.imbalance <= EQUILIBRIUM
+        self.relative_residual <= EQUILIBRIUM
     }
 }

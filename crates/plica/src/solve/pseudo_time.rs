@@ -3,8 +3,8 @@
 use super::newton::newton;
 use super::state::largest;
 use super::{
-    Balance, Equilibrium, Failure, Found, Integrator, Method, PseudoTime, Settings, Tangent, Watch,
-    relaxation,
+    Equilibrium, Failure, Integrator, Method, Monitor, PseudoTime, ResidualEvaluation, Settings,
+    Solution, Tangent, relaxation,
 };
 use crate::matrix::Singular;
 
@@ -23,41 +23,41 @@ pub fn pseudo_time<P: Equilibrium>(
     velocity: &mut Vec<f64>,
     scheme: &PseudoTime,
     settings: &Settings,
-    watch: &mut dyn Watch,
-) -> Result<Found, Failure<P::Broken>> {
-    let watch = &mut Renamed(watch);
-    let (mut iterations, mut drag_work, mut moved) = (0, 0.0, (0, 0.0));
-    for n in 1..=scheme.ramp + scheme.hold {
+    monitor: &mut dyn Monitor,
+) -> Result<Solution, Failure<P::EvaluationError>> {
+    let monitor = &mut Renamed(monitor);
+    let (mut iterations, mut damping_work, mut moved) = (0, 0.0, (0, 0.0));
+    for n in 1..=scheme.ramp + scheme.max_steps {
         let t = (n as f64 / scheme.ramp as f64).min(1.0);
         let load = problem.between(from, target, t);
         let mut start = u.clone();
-        problem.impose(&load, &mut start);
-        let dragged = Dragged::new(problem, scheme, &u, velocity);
-        let next = match newton(&dragged, &load, start.clone(), settings, watch) {
+        problem.apply_prescribed(&load, &mut start);
+        let damped = Dragged::new(problem, scheme, &u, velocity);
+        let next = match newton(&damped, &load, start.clone(), settings, monitor) {
             Ok(next) => next,
             Err(Failure::Stopped) => return Err(Failure::Stopped),
             // The same step, approached with more drag that shrinks back to the scheme's.
-            Err(_) => relaxation(&dragged, &load, start, settings, watch)?,
+            Err(_) => relaxation(&damped, &load, start, settings, monitor)?,
         };
-        let now = dragged.velocity_at(&next.u);
-        let force = dragged.drag_force(&next.u);
+        let now = damped.velocity_at(&next.u);
+        let force = damped.drag_force(&next.u);
         let step: Vec<f64> = next.u.iter().zip(&u).map(|(a, b)| a - b).collect();
         iterations += next.iterations;
-        drag_work += force.iter().zip(&step).map(|(f, s)| f * s).sum::<f64>();
+        damping_work += force.iter().zip(&step).map(|(f, s)| f * s).sum::<f64>();
         moved = largest(step.iter().copied().enumerate());
         (u, *velocity) = (next.u, now);
         if n >= scheme.ramp && moved.1 < scheme.tolerance {
-            let forces = problem.forces(&load, &u).map_err(Failure::Broken)?;
-            return Ok(Found {
+            let forces = problem.forces(&load, &u).map_err(Failure::Evaluation)?;
+            return Ok(Solution {
                 u,
                 forces,
-                drag_work,
+                damping_work,
                 iterations,
             });
         }
     }
     Err(Failure::StillMoving {
-        steps: scheme.hold,
+        steps: scheme.max_steps,
         moved: moved.1,
         worst: moved.0,
     })
@@ -70,7 +70,7 @@ struct Dragged<'a, P: Equilibrium> {
     problem: &'a P,
     u: &'a [f64],
     velocity: &'a [f64],
-    drag: f64,
+    damping: f64,
     rate: f64,
     kept: f64,
 }
@@ -85,7 +85,7 @@ impl<'a, P: Equilibrium> Dragged<'a, P> {
             problem,
             u,
             velocity,
-            drag: scheme.drag,
+            damping: scheme.damping,
             rate,
             kept,
         }
@@ -103,26 +103,26 @@ impl<'a, P: Equilibrium> Dragged<'a, P> {
 
     fn times_drag(&self, v: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; v.len()];
-        self.problem.drag(self.drag, v, &mut force);
+        self.problem.damping(self.damping, v, &mut force);
         force
     }
 }
 
 impl<'a, P: Equilibrium> Equilibrium for Dragged<'a, P> {
     type Load = P::Load;
-    type Broken = P::Broken;
+    type EvaluationError = P::EvaluationError;
     type Tangent = DraggedTangent<'a, P>;
 
-    fn given(&self) -> &[bool] {
-        self.problem.given()
+    fn prescribed(&self) -> &[bool] {
+        self.problem.prescribed()
     }
-    fn impose(&self, load: &P::Load, u: &mut [f64]) {
-        self.problem.impose(load, u);
+    fn apply_prescribed(&self, load: &P::Load, u: &mut [f64]) {
+        self.problem.apply_prescribed(load, u);
     }
     fn between(&self, from: &P::Load, to: &P::Load, t: f64) -> P::Load {
         self.problem.between(from, to, t)
     }
-    fn forces(&self, load: &P::Load, x: &[f64]) -> Result<Balance, P::Broken> {
+    fn forces(&self, load: &P::Load, x: &[f64]) -> Result<ResidualEvaluation, P::EvaluationError> {
         let mut forces = self.problem.forces(load, x)?;
         // ½ rate d·d − kept u̇·d = d · (½ rate d − kept u̇)
         let mean: Vec<f64> = (0..x.len())
@@ -141,11 +141,11 @@ impl<'a, P: Equilibrium> Equilibrium for Dragged<'a, P> {
         DraggedTangent {
             problem: self.problem,
             stiffness: self.problem.tangent(load, x),
-            drag: self.rate * self.drag,
+            damping: self.rate * self.damping,
         }
     }
-    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        self.problem.drag(factor, v, y);
+    fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.problem.damping(factor, v, y);
     }
 }
 
@@ -153,7 +153,7 @@ impl<'a, P: Equilibrium> Equilibrium for Dragged<'a, P> {
 struct DraggedTangent<'a, P: Equilibrium> {
     problem: &'a P,
     stiffness: P::Tangent,
-    drag: f64,
+    damping: f64,
 }
 
 impl<P: Equilibrium> Tangent for DraggedTangent<'_, P> {
@@ -161,22 +161,22 @@ impl<P: Equilibrium> Tangent for DraggedTangent<'_, P> {
 
     fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         self.stiffness.multiply_add(factor, v, y);
-        self.problem.drag(factor * self.drag, v, y);
+        self.problem.damping(factor * self.damping, v, y);
     }
     fn shifted(&self, alpha: f64) -> Result<Self::Solver, Singular> {
-        self.stiffness.shifted(self.drag + alpha)
+        self.stiffness.shifted(self.damping + alpha)
     }
     fn into_shifted(self, alpha: f64) -> Result<Self::Solver, Singular> {
-        self.stiffness.into_shifted(self.drag + alpha)
+        self.stiffness.into_shifted(self.damping + alpha)
     }
 }
 
 /// Tells the watcher of pseudo-time, whatever solves its steps.
-struct Renamed<'a>(&'a mut dyn Watch);
+struct Renamed<'a>(&'a mut dyn Monitor);
 
-impl Watch for Renamed<'_> {
-    fn solved(&mut self, _: Method, imbalance: f64) -> bool {
-        self.0.solved(Method::PseudoTime, imbalance)
+impl Monitor for Renamed<'_> {
+    fn solved(&mut self, _: Method, relative_residual: f64) -> bool {
+        self.0.solved(Method::PseudoTime, relative_residual)
     }
     fn iterated(&mut self, inner_iterations: usize) {
         self.0.iterated(inner_iterations);

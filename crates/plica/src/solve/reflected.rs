@@ -6,7 +6,7 @@ use super::operator::{Operator, add, dot};
 /// C = Bᵀ B, A = Bᵀ H₁ diag(ν) H₁ B, M = Bᵀ H₂ diag(m) H₂ B with m within a factor of |ν|, so that
 /// A x = ν C x has the eigenvalues ν, and M is near A but has other eigenvectors.
 pub struct Reflected {
-    pub given: Vec<bool>,
+    pub prescribed: Vec<bool>,
     /// A vector of length one.
     pub pinned: Option<Vec<f64>>,
     spectrum: Vec<f64>,
@@ -41,7 +41,7 @@ impl Reflected {
             normal.iter().map(|x| x / size).collect()
         };
         Self {
-            given: vec![false; n],
+            prescribed: vec![false; n],
             pinned: None,
             spectrum: spectrum.to_vec(),
             scales: (0..n).map(|i| 1.0 + 0.5 * (2.0 * i as f64).sin()).collect(),
@@ -67,8 +67,8 @@ impl Reflected {
 }
 
 impl Operator for Reflected {
-    fn given(&self) -> &[bool] {
-        &self.given
+    fn prescribed(&self) -> &[bool] {
+        &self.prescribed
     }
     fn take_out_pins(&self, v: &mut [f64]) {
         if let Some(pinned) = &self.pinned {

@@ -3,7 +3,9 @@
 use super::forcing::Forcing;
 use super::newton::{EQUILIBRIUM, free_part};
 use super::operator::dot;
-use super::{Balance, Equilibrium, Failure, Found, Method, Settings, Solver, Tangent, Watch};
+use super::{
+    Equilibrium, Failure, Method, Monitor, ResidualEvaluation, Settings, Solution, Solver, Tangent,
+};
 
 /// Drag after a step along which the energy did not fall, over the drag before.
 const STIFFER: f64 = 8.0;
@@ -50,34 +52,34 @@ pub fn relaxation<P: Equilibrium>(
     load: &P::Load,
     mut u: Vec<f64>,
     settings: &Settings,
-    watch: &mut dyn Watch,
-) -> Result<Found, Failure<P::Broken>> {
-    let given = problem.given();
-    let mut forces = problem.forces(load, &u).map_err(Failure::Broken)?;
-    let mut imbalance = forces.imbalance(given);
+    monitor: &mut dyn Monitor,
+) -> Result<Solution, Failure<P::EvaluationError>> {
+    let prescribed = problem.prescribed();
+    let mut forces = problem.forces(load, &u).map_err(Failure::Evaluation)?;
+    let mut relative_residual = forces.relative_residual(prescribed);
     let mut forcing = Forcing::new(settings.tolerance);
-    let mut accuracy = forcing.accuracy(imbalance);
-    let mut alpha = settings.relaxation_drag;
+    let mut accuracy = forcing.accuracy(relative_residual);
+    let mut alpha = settings.relaxation_damping;
     // Drag with which solves come as far as they are to, and how many in a row have.
     let (mut solvable, mut in_a_row) = (0.0, 0);
-    let (mut iterations, mut drag_work) = (0, 0.0);
+    let (mut iterations, mut damping_work) = (0, 0.0);
     let mut tangent = None;
     let (mut refused, mut rejected) = (None, 0);
     // Whether it was met at u.
     let mut negative_curvature = false;
-    while imbalance > settings.tolerance || imbalance.is_nan() {
+    while relative_residual > settings.tolerance || relative_residual.is_nan() {
         if alpha > LARGEST_DRAG {
             return Err(refused.unwrap_or(Failure::NoDescent {
                 iterations,
-                imbalance,
-                worst: forces.worst(given),
+                relative_residual,
+                worst: forces.worst(prescribed),
             }));
         }
         if iterations == settings.relaxation_steps {
             return Err(Failure::NotConverged {
                 iterations,
-                imbalance,
-                worst: forces.worst(given),
+                relative_residual,
+                worst: forces.worst(prescribed),
             });
         }
         let K = tangent.take().unwrap_or_else(|| {
@@ -86,7 +88,7 @@ pub fn relaxation<P: Equilibrium>(
         });
         let solver = K.shifted(alpha);
         iterations += 1;
-        if !watch.solved(Method::Relaxation, imbalance) {
+        if !monitor.solved(Method::Relaxation, relative_residual) {
             return Err(Failure::Stopped);
         }
         let positive = solver.ok().filter(|solver| solver.negative_pivots() == 0);
@@ -94,23 +96,24 @@ pub fn relaxation<P: Equilibrium>(
             (alpha, tangent) = (alpha * STIFFER, Some(K));
             continue;
         };
-        let mut step = free_part(&forces.residual, given, -1.0);
-        let reached = match solver.solve(&mut step, accuracy, watch) {
+        let mut step = free_part(&forces.residual, prescribed, -1.0);
+        let reached = match solver.solve(&mut step, accuracy, monitor) {
             Ok(solved) => {
-                watch.iterated(solved.iterations);
-                solved.reached || imbalance <= EQUILIBRIUM
+                monitor.iterated(solved.iterations);
+                solved.reached || relative_residual <= EQUILIBRIUM
             }
             Err(down) => {
-                watch.iterated(down.iterations);
+                monitor.iterated(down.iterations);
                 negative_curvature = true;
                 // Here the energy falls both where the solver came and along what it met.
-                let leapt = leap(problem, load, &u, &step, &down.direction, &forces);
+                let leapt =
+                    negative_curvature_step(problem, load, &u, &step, &down.direction, &forces);
                 alpha += 2.0 * down.curvature.abs();
                 if let Some((length, next, f)) = leapt {
-                    drag_work += forces.energy - f.energy;
+                    damping_work += forces.energy - f.energy;
                     (u, forces) = (next, f);
-                    imbalance = forces.imbalance(given);
-                    accuracy = forcing.accuracy(imbalance);
+                    relative_residual = forces.relative_residual(prescribed);
+                    accuracy = forcing.accuracy(relative_residual);
                     if length < 1.0 {
                         alpha *= stiffer(length);
                     }
@@ -130,12 +133,12 @@ pub fn relaxation<P: Equilibrium>(
                 solvable *= 0.5;
             }
         }
-        let mut drag = vec![0.0; u.len()];
-        problem.drag(alpha, &step, &mut drag);
+        let mut damping = vec![0.0; u.len()];
+        problem.damping(alpha, &step, &mut damping);
         // α s · C s, and s · K s = −R · s − α s · C s.
-        let (slope, work) = (dot(&forces.residual, &step), dot(&drag, &step));
+        let (slope, work) = (dot(&forces.residual, &step), dot(&damping, &step));
         let predicted = 0.5 * (slope - work);
-        match shorten(problem, load, &u, &step, &forces, slope) {
+        match backtrack(problem, load, &u, &step, &forces, slope) {
             Ok((length, next, f)) => {
                 // As far as rounding lets it be seen, and the step was not too long.
                 let trust = if length < 1.0 {
@@ -147,22 +150,24 @@ pub fn relaxation<P: Equilibrium>(
                 };
                 let curved_down = negative_curvature && length == 1.0 && -slope < work;
                 let (next, f) = if curved_down {
-                    lengthen(problem, load, &u, step, (next, f))
+                    expand(problem, load, &u, step, (next, f))
                 } else {
                     (next, f)
                 };
                 // The load stays: what the energy falls by is spent on drag.
-                drag_work += forces.energy - f.energy;
+                damping_work += forces.energy - f.energy;
                 (u, forces) = (next, f);
-                let before = imbalance;
-                imbalance = forces.imbalance(given);
-                accuracy = forcing.accuracy(imbalance);
+                let before = relative_residual;
+                relative_residual = forces.relative_residual(prescribed);
+                accuracy = forcing.accuracy(relative_residual);
                 alpha *= if !reached {
                     STIFFER
                 } else if trust >= TRUSTED.0 {
                     // Not below what is solvable, unless it is already.
                     let floor = (solvable / alpha).clamp(SOFTER.1, 1.0);
-                    (imbalance / before).clamp(SOFTER.1, SOFTER.0).max(floor)
+                    (relative_residual / before)
+                        .clamp(SOFTER.1, SOFTER.0)
+                        .max(floor)
                 } else if trust < TRUSTED.1 {
                     stiffer(length)
                 } else {
@@ -171,21 +176,21 @@ pub fn relaxation<P: Equilibrium>(
                 (refused, rejected) = (None, 0);
             }
             // Rounding keeps the residual where it is, with whatever drag.
-            Err(None) if imbalance <= EQUILIBRIUM && rejected >= 3 => break,
+            Err(None) if relative_residual <= EQUILIBRIUM && rejected >= 3 => break,
             Err(None) => {
                 rejected += 1;
                 (alpha, tangent) = (alpha * STIFFER, Some(K));
             }
             Err(Some(broken)) => {
-                refused = Some(Failure::Broken(broken));
+                refused = Some(Failure::Evaluation(broken));
                 (alpha, tangent) = (alpha * STIFFER, Some(K));
             }
         }
     }
-    Ok(Found {
+    Ok(Solution {
         u,
         forces,
-        drag_work,
+        damping_work,
         iterations,
     })
 }
@@ -194,14 +199,14 @@ pub fn relaxation<P: Equilibrium>(
 /// met, in which the energy falls too: at first as far again, or [`LEAP`], then twofold each time as
 /// long as the energy falls. The part of it that was left, and where that leads; none if the energy
 /// does not fall at all.
-fn leap<P: Equilibrium>(
+fn negative_curvature_step<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
     u: &[f64],
     step: &[f64],
     direction: &[f64],
-    forces: &Balance,
-) -> Option<(f64, Vec<f64>, Balance)> {
+    forces: &ResidualEvaluation,
+) -> Option<(f64, Vec<f64>, ResidualEvaluation)> {
     let tau = largest(step).max(LEAP) / largest(direction);
     let step: Vec<f64> = step
         .iter()
@@ -209,11 +214,11 @@ fn leap<P: Equilibrium>(
         .map(|(s, d)| s + tau * d)
         .collect();
     let slope = dot(&forces.residual, &step);
-    let (length, next, balance) = shorten(problem, load, u, &step, forces, slope).ok()?;
+    let (length, next, balance) = backtrack(problem, load, u, &step, forces, slope).ok()?;
     let (next, balance) = if length < 1.0 {
         (next, balance)
     } else {
-        lengthen(problem, load, u, step, (next, balance))
+        expand(problem, load, u, step, (next, balance))
     };
     Some((length, next, balance))
 }
@@ -231,20 +236,20 @@ fn stiffer(length: f64) -> f64 {
 /// # Errors
 ///
 /// How the shortest step that was tried is broken, if it is.
-fn shorten<P: Equilibrium>(
+fn backtrack<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
     u: &[f64],
     step: &[f64],
-    forces: &Balance,
+    forces: &ResidualEvaluation,
     slope: f64,
-) -> Result<(f64, Vec<f64>, Balance), Option<P::Broken>> {
-    let given = problem.given();
+) -> Result<(f64, Vec<f64>, ResidualEvaluation), Option<P::EvaluationError>> {
+    let prescribed = problem.prescribed();
     let (mut length, mut broken) = ((LONGEST / largest(step)).min(1.0), None);
     for _ in 0..=SHORTENINGS {
         let next: Vec<f64> = u.iter().zip(step).map(|(u, s)| u + length * s).collect();
         let left = match problem.forces(load, &next) {
-            Ok(f) if falls(forces, &f, given) => return Ok((length, next, f)),
+            Ok(f) if falls(forces, &f, prescribed) => return Ok((length, next, f)),
             Ok(f) => {
                 broken = None;
                 let rise = f.energy - forces.energy - length * slope;
@@ -267,13 +272,13 @@ fn largest(step: &[f64]) -> f64 {
 
 /// Doubles a step from `u` as long as that lowers the energy beyond rounding and is not longer than
 /// [`LONGEST`]; where it leads, at first and then.
-fn lengthen<P: Equilibrium>(
+fn expand<P: Equilibrium>(
     problem: &P,
     load: &P::Load,
     u: &[f64],
     mut step: Vec<f64>,
-    (mut next, mut balance): (Vec<f64>, Balance),
-) -> (Vec<f64>, Balance) {
+    (mut next, mut balance): (Vec<f64>, ResidualEvaluation),
+) -> (Vec<f64>, ResidualEvaluation) {
     while 2.0 * largest(&step) <= LONGEST {
         step.iter_mut().for_each(|s| *s *= 2.0);
         let further: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + s).collect();
@@ -288,7 +293,8 @@ fn lengthen<P: Equilibrium>(
 }
 
 /// Whether the energy falls, or, where rounding hides that, the residual.
-fn falls(from: &Balance, to: &Balance, given: &[bool]) -> bool {
+fn falls(from: &ResidualEvaluation, to: &ResidualEvaluation, prescribed: &[bool]) -> bool {
     to.energy < from.energy - from.rounding
-        || (to.energy <= from.energy + from.rounding && to.imbalance(given) < from.imbalance(given))
+        || (to.energy <= from.energy + from.rounding
+            && to.relative_residual(prescribed) < from.relative_residual(prescribed))
 }

@@ -13,9 +13,9 @@ pub struct Settings {
     /// Relaxation steps before a step is halved.
     pub relaxation_steps: usize,
     /// Drag at which relaxation starts, in E/D² per unit volume.
-    pub relaxation_drag: f64,
+    pub relaxation_damping: f64,
     /// How often a step may be halved before the run stops.
-    pub halvings: usize,
+    pub max_step_halvings: usize,
 }
 
 /// How the tube gets from one state to the next.
@@ -34,7 +34,7 @@ impl Scheme {
             Self::Static => "static",
             Self::PseudoTime(p) => match p.integrator {
                 Integrator::Newmark => "newmark",
-                Integrator::BackwardEuler => "dragged",
+                Integrator::BackwardEuler => "backward-euler",
             },
         }
     }
@@ -45,7 +45,7 @@ impl std::fmt::Display for Scheme {
         f.write_str(self.name())?;
         match self {
             Self::Static => Ok(()),
-            Self::PseudoTime(p) => write!(f, ", drag {}", p.drag),
+            Self::PseudoTime(p) => write!(f, ", damping {}", p.damping),
         }
     }
 }
@@ -56,17 +56,17 @@ pub struct PseudoTime {
     /// How the velocity follows from the displacements.
     pub integrator: Integrator,
     /// ηD/(EΔτ); the paper's is 100.
-    pub drag: f64,
+    pub damping: f64,
     /// Pseudo-time steps over which each step of a stage is ramped.
     pub ramp: usize,
     /// After the ramp, pseudo-time goes on until no control point moves more than this in a step,
     /// in D; the paper's is 1e-5.
     pub tolerance: f64,
     /// Pseudo-time steps after the ramp before the run stops.
-    pub hold: usize,
+    pub max_steps: usize,
     /// Whether the state is then taken to equilibrium without drag. If not, states are accepted
     /// as the paper accepts them, and say how far from equilibrium they are.
-    pub settle: bool,
+    pub equilibrate: bool,
 }
 
 /// How the velocity follows from the displacements.
@@ -85,8 +85,8 @@ impl Default for Settings {
             tolerance: 1e-8,
             newton_iterations: 12,
             relaxation_steps: 200,
-            relaxation_drag: 1.0,
-            halvings: 8,
+            relaxation_damping: 1.0,
+            max_step_halvings: 8,
         }
     }
 }
@@ -95,11 +95,11 @@ impl Default for PseudoTime {
     fn default() -> Self {
         Self {
             integrator: Integrator::Newmark,
-            drag: 100.0,
+            damping: 100.0,
             ramp: 10,
             tolerance: 1e-5,
-            hold: 2000,
-            settle: true,
+            max_steps: 2000,
+            equilibrate: true,
         }
     }
 }

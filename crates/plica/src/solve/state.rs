@@ -12,53 +12,61 @@ pub trait Equilibrium {
     /// What drives it.
     type Load: Clone;
     /// Why its energy does not exist at some state.
-    type Broken: std::error::Error + Clone;
+    type EvaluationError: std::error::Error + Clone;
     /// Its tangent stiffness.
     type Tangent: Tangent;
 
     /// For every unknown, whether a support gives it.
-    fn given(&self) -> &[bool];
+    fn prescribed(&self) -> &[bool];
     /// Writes the given unknowns of a load into `u`.
-    fn impose(&self, load: &Self::Load, u: &mut [f64]);
+    fn apply_prescribed(&self, load: &Self::Load, u: &mut [f64]);
     /// The load a fraction `t` of the way from one to another.
     fn between(&self, from: &Self::Load, to: &Self::Load, t: f64) -> Self::Load;
     /// Energy and residual.
-    fn forces(&self, load: &Self::Load, u: &[f64]) -> Result<Balance, Self::Broken>;
+    fn forces(
+        &self,
+        load: &Self::Load,
+        u: &[f64],
+    ) -> Result<ResidualEvaluation, Self::EvaluationError>;
     /// Tangent stiffness K at a state.
     fn tangent(&self, load: &Self::Load, u: &[f64]) -> Self::Tangent;
     /// y += factor · C v with the drag matrix C, every unknown free that is not pinned.
-    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]);
+    fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]);
 }
 
 /// Energy and residual at a state.
 #[derive(Clone, Debug)]
-pub struct Balance {
+pub struct ResidualEvaluation {
     /// The energy W.
     pub energy: f64,
     /// R = ∂W/∂u, for every unknown, without its part along what is pinned.
     pub residual: Vec<f64>,
     /// The size of the forces whose balance R is; never zero.
-    pub in_play: f64,
+    pub residual_scale: f64,
     /// How much the energy may be off by rounding.
     pub rounding: f64,
 }
 
-impl Balance {
+impl ResidualEvaluation {
     /// |R| over the free unknowns, relative to the forces in play.
-    pub fn imbalance(&self, given: &[bool]) -> f64 {
-        self.free(given).map(|(_, r)| r * r).sum::<f64>().sqrt() / self.in_play
+    pub fn relative_residual(&self, prescribed: &[bool]) -> f64 {
+        self.free(prescribed)
+            .map(|(_, r)| r * r)
+            .sum::<f64>()
+            .sqrt()
+            / self.residual_scale
     }
 
     /// The free unknown that is farthest from balance.
-    pub fn worst(&self, given: &[bool]) -> usize {
-        largest(self.free(given)).0
+    pub fn worst(&self, prescribed: &[bool]) -> usize {
+        largest(self.free(prescribed)).0
     }
 
     /// The free unknowns and their entries of R.
-    fn free<'a>(&'a self, given: &'a [bool]) -> impl Iterator<Item = (usize, f64)> + 'a {
+    fn free<'a>(&'a self, prescribed: &'a [bool]) -> impl Iterator<Item = (usize, f64)> + 'a {
         let all = self.residual.iter().copied().enumerate();
-        all.zip(given)
-            .filter_map(|(entry, given)| (!given).then_some(entry))
+        all.zip(prescribed)
+            .filter_map(|(entry, prescribed)| (!prescribed).then_some(entry))
     }
 }
 
@@ -78,7 +86,7 @@ pub struct State<L> {
     /// Its energy.
     pub energy: f64,
     /// Its residual without drag, relative to the forces in play.
-    pub imbalance: f64,
+    pub relative_residual: f64,
     /// Negative eigenvalues of its tangent that the solver knows of. A direct solver knows all: 0
     /// if the state is stable. One that iterates knows of one at least where its average does, and may learn of one
     /// when the path goes on from here.
@@ -88,13 +96,13 @@ pub struct State<L> {
 
 /// A solution on its way to becoming a state.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct Solution {
     /// Unknowns.
     pub u: Vec<f64>,
     /// Energy and residual there.
-    pub forces: Balance,
+    pub forces: ResidualEvaluation,
     /// Energy spent on drag.
-    pub drag_work: f64,
+    pub damping_work: f64,
     /// Linear solves.
     pub iterations: usize,
 }
@@ -134,36 +142,38 @@ pub enum Failure<B: std::error::Error> {
     },
     /// The energy does not exist where the solver went.
     #[error(transparent)]
-    Broken(B),
+    Evaluation(B),
     /// No step lowered the energy.
-    #[error("no step lowered the energy (residual {imbalance:.1e} after {iterations} solves)")]
+    #[error(
+        "no step lowered the energy (residual {relative_residual:.1e} after {iterations} solves)"
+    )]
     NoDescent {
         /// Linear solves so far.
         iterations: usize,
         /// Residual reached.
-        imbalance: f64,
+        relative_residual: f64,
         /// The free unknown that was farthest from balance.
         worst: usize,
     },
     /// The linear systems were not solved as exactly as was asked for.
     #[error(
-        "linear systems are hard to solve here (residual {imbalance:.1e} after {iterations} solves)"
+        "linear systems are hard to solve here (residual {relative_residual:.1e} after {iterations} solves)"
     )]
     Unsolved {
         /// Linear solves so far.
         iterations: usize,
         /// Residual reached.
-        imbalance: f64,
+        relative_residual: f64,
         /// The free unknown that was farthest from balance.
         worst: usize,
     },
     /// The iterations ran out.
-    #[error("not in equilibrium after {iterations} solves (residual {imbalance:.1e})")]
+    #[error("not in equilibrium after {iterations} solves (residual {relative_residual:.1e})")]
     NotConverged {
         /// Linear solves so far.
         iterations: usize,
         /// Residual reached.
-        imbalance: f64,
+        relative_residual: f64,
         /// The free unknown that was farthest from balance.
         worst: usize,
     },
@@ -193,16 +203,18 @@ impl<B: std::error::Error> Failure<B> {
             | Self::Unsolved { worst, .. }
             | Self::NotConverged { worst, .. }
             | Self::StillMoving { worst, .. } => Some(*worst),
-            Self::Indefinite { .. } | Self::Broken(_) | Self::Singular(_) | Self::Stopped => None,
+            Self::Indefinite { .. } | Self::Evaluation(_) | Self::Singular(_) | Self::Stopped => {
+                None
+            }
         }
     }
 }
 
 /// Someone who watches a solver at work.
-pub trait Watch {
+pub trait Monitor {
     /// A linear solve was done: in what method, and what is left of the residual. The solver
     /// stops if this returns false.
-    fn solved(&mut self, method: Method, imbalance: f64) -> bool;
+    fn solved(&mut self, method: Method, relative_residual: f64) -> bool;
     /// A linear solve took so many iterations of its own; 0 if it was direct.
     fn iterated(&mut self, _inner_iterations: usize) {}
     /// Asked after each iteration inside a linear solve; if false it is cut off there. Who says so
@@ -213,7 +225,7 @@ pub trait Watch {
 }
 
 /// Nobody watches.
-impl Watch for () {
+impl Monitor for () {
     fn solved(&mut self, _: Method, _: f64) -> bool {
         true
     }

@@ -1,7 +1,7 @@
 //! The tangent stiffness as the drivers see it: something that multiplies, and that can be solved
 //! with once a drag is added.
 
-use super::Watch;
+use super::Monitor;
 use crate::matrix::{BlockBanded, Factor, Singular};
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ pub trait Solver {
 
     /// Whether what it leads to is known to lie on an unstable branch, without an iteration: the matrix is not
     /// positive definite on displacements that the state's own symmetry allows.
-    fn leads_away(&self) -> bool {
+    fn is_unstable(&self) -> bool {
         self.negative_pivots() > 0
     }
 
@@ -59,7 +59,7 @@ pub trait Solver {
         &self,
         b: &mut [f64],
         accuracy: f64,
-        watch: &mut dyn Watch,
+        monitor: &mut dyn Monitor,
     ) -> Result<Solved, NegativeCurvature>;
 }
 
@@ -89,20 +89,20 @@ pub struct NegativeCurvature {
 #[derive(Clone, Debug)]
 pub struct Direct {
     stiffness: BlockBanded,
-    drag: Arc<BlockBanded>,
-    given: Arc<[bool]>,
+    damping: Arc<BlockBanded>,
+    prescribed: Arc<[bool]>,
 }
 
 impl Direct {
     /// Of an assembled stiffness K and drag matrix C, every unknown free, and the unknowns that
     /// supports give. Panics if their sizes differ.
-    pub fn new(stiffness: BlockBanded, drag: Arc<BlockBanded>, given: Arc<[bool]>) -> Self {
-        assert_eq!(stiffness.unknowns(), drag.unknowns());
-        assert_eq!(stiffness.unknowns(), given.len());
+    pub fn new(stiffness: BlockBanded, damping: Arc<BlockBanded>, prescribed: Arc<[bool]>) -> Self {
+        assert_eq!(stiffness.unknowns(), damping.unknowns());
+        assert_eq!(stiffness.unknowns(), prescribed.len());
         Self {
             stiffness,
-            drag,
-            given,
+            damping,
+            prescribed,
         }
     }
 }
@@ -121,9 +121,9 @@ impl Tangent for Direct {
     fn into_shifted(self, alpha: f64) -> Result<Factor, Singular> {
         let mut A = self.stiffness;
         if alpha != 0.0 {
-            A.add_scaled(alpha, &self.drag);
+            A.add_scaled(alpha, &self.damping);
         }
-        A.constrain(&self.given);
+        A.constrain(&self.prescribed);
         A.factor()
     }
 }
@@ -133,7 +133,12 @@ impl Solver for Factor {
         Factor::negative_pivots(self)
     }
 
-    fn solve(&self, b: &mut [f64], _: f64, _: &mut dyn Watch) -> Result<Solved, NegativeCurvature> {
+    fn solve(
+        &self,
+        b: &mut [f64],
+        _: f64,
+        _: &mut dyn Monitor,
+    ) -> Result<Solved, NegativeCurvature> {
         Factor::solve(self, b);
         Ok(Solved {
             iterations: 0,

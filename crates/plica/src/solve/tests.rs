@@ -1,9 +1,9 @@
 //! The solver on energies of one or two unknowns, whose equilibria are known.
 
 use super::{
-    Balance, Direct, Equilibrium, Failure, Method, NegativeCurvature, Operator, Path, PseudoTime,
-    Scheme, Settings, Solved, Solver, State, Tangent, Watch, conjugate_gradients, newton,
-    relaxation,
+    Direct, Equilibrium, Failure, Method, Monitor, NegativeCurvature, Operator, Path, PseudoTime,
+    ResidualEvaluation, Scheme, Settings, Solved, Solver, State, Tangent, conjugate_gradients,
+    newton, relaxation,
 };
 use crate::matrix::{BlockBanded, Singular};
 use std::sync::Arc;
@@ -17,7 +17,7 @@ struct Toy<const N: usize> {
     jet: fn(f64, [f64; N]) -> Jet<N>,
     /// Where the first unknown may not go.
     wall: f64,
-    drag: Arc<BlockBanded>,
+    damping: Arc<BlockBanded>,
 }
 
 /// The first unknown is past the wall.
@@ -33,7 +33,7 @@ fn toy<const N: usize>(jet: fn(f64, [f64; N]) -> Jet<N>) -> Toy<N> {
     Toy {
         jet,
         wall: f64::INFINITY,
-        drag: Arc::new(matrix(unit)),
+        damping: Arc::new(matrix(unit)),
     }
 }
 
@@ -53,34 +53,34 @@ fn matrix<const N: usize>(entries: [[f64; N]; N]) -> BlockBanded {
 
 impl<const N: usize> Equilibrium for Toy<N> {
     type Load = f64;
-    type Broken = PastTheWall;
+    type EvaluationError = PastTheWall;
     type Tangent = Direct;
 
-    fn given(&self) -> &[bool] {
+    fn prescribed(&self) -> &[bool] {
         &[false; 2][..N]
     }
-    fn impose(&self, _: &f64, _: &mut [f64]) {}
+    fn apply_prescribed(&self, _: &f64, _: &mut [f64]) {}
     fn between(&self, from: &f64, to: &f64, t: f64) -> f64 {
         from + t * (to - from)
     }
-    fn forces(&self, load: &f64, u: &[f64]) -> Result<Balance, PastTheWall> {
+    fn forces(&self, load: &f64, u: &[f64]) -> Result<ResidualEvaluation, PastTheWall> {
         if u[0] >= self.wall {
             return Err(PastTheWall);
         }
         let (energy, residual, _) = (self.jet)(*load, u.try_into().unwrap());
-        Ok(Balance {
+        Ok(ResidualEvaluation {
             energy,
             residual: residual.to_vec(),
-            in_play: 1.0,
+            residual_scale: 1.0,
             rounding: 1e-15,
         })
     }
     fn tangent(&self, load: &f64, u: &[f64]) -> Direct {
         let stiffness = matrix((self.jet)(*load, u.try_into().unwrap()).2);
-        Direct::new(stiffness, self.drag.clone(), self.given().into())
+        Direct::new(stiffness, self.damping.clone(), self.prescribed().into())
     }
-    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        self.drag.multiply_add(factor, v, y);
+    fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.damping.multiply_add(factor, v, y);
     }
 }
 
@@ -124,16 +124,16 @@ fn stiffening_spring() -> Toy<1> {
     }
 }
 
-fn set_out<P>(problem: &P, from: f64, u: impl Into<Vec<f64>>, to: f64) -> Path<'_, P>
+fn begin_segment<P>(problem: &P, from: f64, u: impl Into<Vec<f64>>, to: f64) -> Path<'_, P>
 where
-    P: Equilibrium<Load = f64, Broken = PastTheWall>,
+    P: Equilibrium<Load = f64, EvaluationError = PastTheWall>,
 {
     let settings = Settings {
         scheme: Scheme::Static,
         ..Settings::default()
     };
     let mut path = Path::begin(problem, from, u.into(), settings).unwrap();
-    path.set_out(to);
+    path.begin_segment(to);
     path
 }
 
@@ -151,16 +151,16 @@ fn assert_at<const N: usize>(state: &State<f64>, u: [f64; N]) {
 #[test]
 fn a_truss_is_followed_by_newton_and_snaps_to_the_far_well() {
     let truss = truss();
-    let mut path = set_out(&truss, 0.0, [-1.0], 0.5);
+    let mut path = begin_segment(&truss, 0.0, [-1.0], 0.5);
     for t in [0.2, 0.4, 0.6] {
         let step = path.advance(t, &mut ()).unwrap();
-        assert_eq!((step.method, step.drag_work), (Method::Newton, 0.0));
+        assert_eq!((step.method, step.damping_work), (Method::Newton, 0.0));
         assert!(path.state().u[0] < -1.0 / 3.0_f64.sqrt());
     }
     let near = path.state().u.clone();
     let step = path.advance(0.8, &mut ()).unwrap();
     assert_eq!(step.method, Method::Relaxation);
-    assert!(step.drag_work > 0.0);
+    assert!(step.damping_work > 0.0);
     let state = path.state();
     assert_eq!((state.load, path.reached()), (0.4, 0.8));
     assert!(state.energy < truss.forces(&0.4, &near).unwrap().energy);
@@ -175,7 +175,7 @@ fn a_truss_is_followed_by_newton_and_snaps_to_the_far_well() {
 #[test]
 fn a_state_that_symmetry_keeps_on_a_saddle_is_never_called_stable() {
     let strut = strut();
-    let mut path = set_out(&strut, 1.5, [1.5, 0.0], 2.0);
+    let mut path = begin_segment(&strut, 1.5, [1.5, 0.0], 2.0);
     assert_eq!(path.state().negative_pivots, 1);
     path.advance(1.0, &mut ()).unwrap();
     let state = path.state();
@@ -186,7 +186,7 @@ fn a_state_that_symmetry_keeps_on_a_saddle_is_never_called_stable() {
     // The least push off it leads to the bent branch.
     let pushed = vec![2.0, 1e-3];
     let found = relaxation(&strut, &2.0, pushed, &Settings::default(), &mut ()).unwrap();
-    let mut path = set_out(&strut, 2.0, found.u, 2.1);
+    let mut path = begin_segment(&strut, 2.0, found.u, 2.1);
     assert_at(path.state(), [3.0, 2.0_f64.sqrt()]);
     assert_eq!(path.state().negative_pivots, 0);
     let step = path.advance(1.0, &mut ()).unwrap();
@@ -210,7 +210,7 @@ fn newton_refuses_an_indefinite_tangent() {
 #[test]
 fn steps_that_lead_past_a_wall_are_shortened() {
     let spring = stiffening_spring();
-    let mut path = set_out(&spring, 0.0, [0.0], 3.0);
+    let mut path = begin_segment(&spring, 0.0, [0.0], 3.0);
     // The tangent alone leads to u = 3.
     let step = path.advance(1.0, &mut ()).unwrap();
     assert_eq!(step.method, Method::Newton);
@@ -220,10 +220,10 @@ fn steps_that_lead_past_a_wall_are_shortened() {
 #[test]
 fn a_path_that_ends_at_a_wall_says_so_and_stays_before_it() {
     let spring = spring_before_a_wall();
-    let mut path = set_out(&spring, 0.0, [0.0], 2.0);
+    let mut path = begin_segment(&spring, 0.0, [0.0], 2.0);
     path.advance(0.4, &mut ()).unwrap();
     let error = path.advance(0.9, &mut ()).unwrap_err();
-    let broken = (Method::Newton, Failure::Broken(PastTheWall));
+    let broken = (Method::Newton, Failure::Evaluation(PastTheWall));
     assert!(error.tried.contains(&broken), "{error}");
     assert!(error.to_string().contains("past the wall"), "{error}");
     assert!(!error.stopped());
@@ -238,7 +238,7 @@ fn a_path_that_ends_at_a_wall_says_so_and_stays_before_it() {
 /// Someone who has seen enough.
 struct Stops;
 
-impl Watch for Stops {
+impl Monitor for Stops {
     fn solved(&mut self, _: Method, _: f64) -> bool {
         false
     }
@@ -247,7 +247,7 @@ impl Watch for Stops {
 #[test]
 fn a_path_that_is_stopped_stays_where_it_was() {
     let truss = truss();
-    let mut path = set_out(&truss, 0.0, [-1.0], 0.5);
+    let mut path = begin_segment(&truss, 0.0, [-1.0], 0.5);
     path.advance(0.2, &mut ()).unwrap();
     let before = path.state().clone();
     // Before the snap and past it.
@@ -264,7 +264,7 @@ fn a_path_that_is_stopped_stays_where_it_was() {
 #[test]
 fn on_a_smooth_branch_no_step_costs_more_than_the_first() {
     let truss = truss();
-    let mut path = set_out(&truss, 0.0, [1.0], 4.0);
+    let mut path = begin_segment(&truss, 0.0, [1.0], 4.0);
     let costs: Vec<usize> = (1..=10)
         .map(|i| path.advance(f64::from(i) / 10.0, &mut ()).unwrap())
         .map(|step| step.iterations)
@@ -293,8 +293,8 @@ fn iterated<const N: usize>(toy: Toy<N>) -> Iterated<N> {
 
 struct IteratedTangent {
     stiffness: Direct,
-    drag: Arc<BlockBanded>,
-    given: Vec<bool>,
+    damping: Arc<BlockBanded>,
+    prescribed: Vec<bool>,
     alpha: f64,
     at_most: usize,
     cut_off: Arc<AtomicUsize>,
@@ -302,33 +302,33 @@ struct IteratedTangent {
 
 impl<const N: usize> Equilibrium for Iterated<N> {
     type Load = f64;
-    type Broken = PastTheWall;
+    type EvaluationError = PastTheWall;
     type Tangent = IteratedTangent;
 
-    fn given(&self) -> &[bool] {
-        self.toy.given()
+    fn prescribed(&self) -> &[bool] {
+        self.toy.prescribed()
     }
-    fn impose(&self, load: &f64, u: &mut [f64]) {
-        self.toy.impose(load, u);
+    fn apply_prescribed(&self, load: &f64, u: &mut [f64]) {
+        self.toy.apply_prescribed(load, u);
     }
     fn between(&self, from: &f64, to: &f64, t: f64) -> f64 {
         self.toy.between(from, to, t)
     }
-    fn forces(&self, load: &f64, u: &[f64]) -> Result<Balance, PastTheWall> {
+    fn forces(&self, load: &f64, u: &[f64]) -> Result<ResidualEvaluation, PastTheWall> {
         self.toy.forces(load, u)
     }
     fn tangent(&self, load: &f64, u: &[f64]) -> IteratedTangent {
         IteratedTangent {
             stiffness: self.toy.tangent(load, u),
-            drag: self.toy.drag.clone(),
-            given: self.given().to_vec(),
+            damping: self.toy.damping.clone(),
+            prescribed: self.prescribed().to_vec(),
             alpha: 0.0,
             at_most: self.at_most,
             cut_off: self.cut_off.clone(),
         }
     }
-    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        self.toy.drag(factor, v, y);
+    fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.toy.damping(factor, v, y);
     }
 }
 
@@ -341,8 +341,8 @@ impl Tangent for IteratedTangent {
     fn shifted(&self, alpha: f64) -> Result<Self, Singular> {
         Ok(Self {
             stiffness: self.stiffness.clone(),
-            drag: self.drag.clone(),
-            given: self.given.clone(),
+            damping: self.damping.clone(),
+            prescribed: self.prescribed.clone(),
             alpha,
             at_most: self.at_most,
             cut_off: self.cut_off.clone(),
@@ -358,9 +358,9 @@ impl Solver for IteratedTangent {
         &self,
         b: &mut [f64],
         accuracy: f64,
-        watch: &mut dyn Watch,
+        monitor: &mut dyn Monitor,
     ) -> Result<Solved, NegativeCurvature> {
-        let solved = conjugate_gradients(self, b, accuracy, self.at_most, watch)?;
+        let solved = conjugate_gradients(self, b, accuracy, self.at_most, monitor)?;
         self.cut_off
             .fetch_add(usize::from(!solved.reached), Ordering::Relaxed);
         Ok(solved)
@@ -368,28 +368,28 @@ impl Solver for IteratedTangent {
 }
 
 impl Operator for IteratedTangent {
-    fn given(&self) -> &[bool] {
-        &self.given
+    fn prescribed(&self) -> &[bool] {
+        &self.prescribed
     }
     fn apply(&self, v: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         self.stiffness.multiply_add(1.0, v, out);
-        self.drag.multiply_add(self.alpha, v, out);
+        self.damping.multiply_add(self.alpha, v, out);
     }
     fn precondition(&self, r: &[f64], out: &mut [f64]) {
         out.copy_from_slice(r);
     }
     fn metric(&self, v: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.drag.multiply_add(1.0, v, out);
+        self.damping.multiply_add(1.0, v, out);
     }
 }
 
 #[test]
 fn a_path_by_iteration_leads_through_the_same_states() {
     let (direct, other) = (truss(), iterated(truss()));
-    let mut one = set_out(&direct, 0.0, [-1.0], 0.5);
-    let mut other = set_out(&other, 0.0, [-1.0], 0.5);
+    let mut one = begin_segment(&direct, 0.0, [-1.0], 0.5);
+    let mut other = begin_segment(&other, 0.0, [-1.0], 0.5);
     for t in [0.2, 0.4, 0.6, 0.8, 1.0] {
         let exact = one.advance(t, &mut ()).unwrap();
         let step = other.advance(t, &mut ()).unwrap();
@@ -407,7 +407,7 @@ struct StopsWithin {
     asked: usize,
 }
 
-impl Watch for StopsWithin {
+impl Monitor for StopsWithin {
     fn solved(&mut self, _: Method, _: f64) -> bool {
         self.asked == 0
     }
@@ -438,12 +438,12 @@ fn whoever_cuts_off_a_linear_solve_stops_what_asked_for_it() {
             ..Settings::default()
         };
         let mut path = Path::begin(&strut, 2.5, vec![4.0, 3.0_f64.sqrt()], settings).unwrap();
-        path.set_out(3.0);
+        path.begin_segment(3.0);
         // du/dt is cut off at first, then a step.
-        let mut watch = StopsWithin::default();
-        let error = path.advance(1.0, &mut watch).unwrap_err();
+        let mut monitor = StopsWithin::default();
+        let error = path.advance(1.0, &mut monitor).unwrap_err();
         assert!(error.stopped(), "{error}");
-        assert!(watch.asked <= 2);
+        assert!(monitor.asked <= 2);
         assert_eq!((path.reached(), path.state().load), (0.0, 2.5));
         path.advance(1.0, &mut ()).unwrap();
         assert_at(path.state(), [5.0, 2.0]);
@@ -493,7 +493,7 @@ fn newton_gives_up_where_linear_systems_are_cut_off_and_relaxation_goes_on() {
         ..settings
     };
     let mut path = Path::begin(&springs, 0.0, vec![0.0; 2], settings).unwrap();
-    path.set_out(0.5);
+    path.begin_segment(0.5);
     let step = path.advance(1.0, &mut ()).unwrap();
     assert_eq!(step.method, Method::Relaxation);
     assert_eq!(path.reached(), 1.0);

@@ -1,8 +1,8 @@
 //! Between two states of a run that differ in stability.
 
 use super::{Harmonics, How, Quantity, StabilityError};
-use crate::solve::{Method, Path, Settings, State, Watch};
-use crate::study::TubeProblem;
+use crate::equilibrium::TubeProblem;
+use crate::solve::{Method, Monitor, Path, Settings, State};
 use crate::tube::Load;
 
 /// Largest distance of two solutions that are the same state, in D.
@@ -52,15 +52,15 @@ impl Bisection<'_> {
         &self,
         a: &Point,
         b: &Point,
-        watch: &mut dyn Watch,
+        monitor: &mut dyn Monitor,
     ) -> Result<Vec<Bracket>, StabilityError> {
         let mut found = vec![];
         if a.negative == b.negative {
             return Ok(found);
         }
         // A path that begins anew must lead where the run went, or what lies between is another's.
-        match self.way(a, b, watch)? {
-            (_, true) => self.narrow(a, b, HALVINGS, &mut found, watch)?,
+        match self.way(a, b, monitor)? {
+            (_, true) => self.narrow(a, b, HALVINGS, &mut found, monitor)?,
             (Way::Lost, _) => found.push(bracket(a, b, How::Unfollowed)),
             _ => found.push(bracket(a, b, How::Snap)),
         }
@@ -73,7 +73,7 @@ impl Bisection<'_> {
         b: &Point,
         halvings: usize,
         found: &mut Vec<Bracket>,
-        watch: &mut dyn Watch,
+        monitor: &mut dyn Monitor,
     ) -> Result<(), StabilityError> {
         if a.negative == b.negative {
             return Ok(());
@@ -86,7 +86,7 @@ impl Bisection<'_> {
             1.0
         };
         if (to - from).abs() <= self.tolerance * unit || halvings == 0 {
-            let how = match self.way(a, b, watch)? {
+            let how = match self.way(a, b, monitor)? {
                 (Way::Smooth, true) => How::Smooth,
                 (Way::Lost, _) => How::Unfollowed,
                 _ => How::Snap,
@@ -94,7 +94,7 @@ impl Bisection<'_> {
             found.push(bracket(a, b, how));
             return Ok(());
         }
-        let Some((state, _)) = self.go(a, b, 0.5, watch)? else {
+        let Some((state, _)) = self.go(a, b, 0.5, monitor)? else {
             found.push(bracket(a, b, How::Unfollowed));
             return Ok(());
         };
@@ -104,8 +104,8 @@ impl Bisection<'_> {
             load: state.load,
             u: state.u,
         };
-        self.narrow(a, &middle, halvings - 1, found, watch)?;
-        self.narrow(&middle, b, halvings - 1, found, watch)
+        self.narrow(a, &middle, halvings - 1, found, monitor)?;
+        self.narrow(&middle, b, halvings - 1, found, monitor)
     }
 
     /// How the path from one state leads to the load of another, and whether to that state.
@@ -113,9 +113,9 @@ impl Bisection<'_> {
         &self,
         a: &Point,
         b: &Point,
-        watch: &mut dyn Watch,
+        monitor: &mut dyn Monitor,
     ) -> Result<(Way, bool), StabilityError> {
-        let Some((end, method)) = self.go(a, b, 1.0, watch)? else {
+        let Some((end, method)) = self.go(a, b, 1.0, monitor)? else {
             return Ok((Way::Lost, false));
         };
         let apart = end.u.iter().zip(&b.u).map(|(x, y)| (x - y).abs());
@@ -132,7 +132,7 @@ impl Bisection<'_> {
         a: &Point,
         b: &Point,
         t: f64,
-        watch: &mut dyn Watch,
+        monitor: &mut dyn Monitor,
     ) -> Result<Option<(State<Load>, Method)>, StabilityError> {
         let begun = Path::begin(
             self.problem,
@@ -143,8 +143,8 @@ impl Bisection<'_> {
         let Ok(mut path) = begun else {
             return Ok(None);
         };
-        path.set_out(b.load.clone());
-        let step = match path.advance(t, watch) {
+        path.begin_segment(b.load.clone());
+        let step = match path.advance(t, monitor) {
             Ok(step) => step,
             Err(error) if error.stopped() => return Err(StabilityError::Stopped),
             Err(_) => return Ok(None),

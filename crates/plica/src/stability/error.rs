@@ -69,15 +69,15 @@ pub enum StabilityError {
     },
     /// A saved state is no equilibrium of the case.
     #[error(
-        "{} is not in equilibrium in this case (residual {imbalance:.1e} of the forces in play). \
-         If the run was made with solver.pseudo_time.settle = false, run it again without",
+        "{} is not in equilibrium in this case (residual {relative_residual:.1e} of the forces in play). \
+         If the run was made with solver.pseudo_time.equilibrate = false, run it again without",
         path.display()
     )]
     OutOfEquilibrium {
         /// Its file.
         path: PathBuf,
         /// Its residual over the forces in play; infinite if an element is inverted.
-        imbalance: f64,
+        relative_residual: f64,
     },
     /// A lowest eigenvalue was not found.
     #[error("{}: {source}", path.display())]

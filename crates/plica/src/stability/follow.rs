@@ -5,9 +5,10 @@ use super::{
     Change, Harmonics, How, Mode, Observer, Quantity, Stability, StabilityError, Station, Tested,
 };
 use crate::assembly::SplineTube;
+use crate::equilibrium::TubeProblem;
 use crate::matrix::NoEigenpairs;
-use crate::solve::{Method, Path, Scheme, Settings, Watch};
-use crate::study::{Plan, RunDirectory, SavedState, TubeProblem};
+use crate::solve::{Method, Monitor, Path, Scheme, Settings};
+use crate::study::{Plan, RunDirectory, SavedState};
 use std::path;
 
 /// Circumferential displacement, in D, from which a tube counts as twisted.
@@ -109,14 +110,14 @@ impl Follower<'_> {
             return Err(StabilityError::Twisted { row: state.row });
         }
         let (load, u) = (state.load.clone(), state.u.clone());
-        let imbalance = match Path::begin(self.problem, load, u, self.settings.clone()) {
+        let relative_residual = match Path::begin(self.problem, load, u, self.settings.clone()) {
             Ok(path) if path.state().in_equilibrium() || state.row == 0 => return Ok(state),
-            Ok(path) => path.state().imbalance,
+            Ok(path) => path.state().relative_residual,
             Err(_) => f64::INFINITY,
         };
         Err(StabilityError::OutOfEquilibrium {
             path: file.to_owned(),
-            imbalance,
+            relative_residual,
         })
     }
 
@@ -292,9 +293,9 @@ struct Relay<'a> {
     fraction: f64,
 }
 
-impl Watch for Relay<'_> {
-    fn solved(&mut self, method: Method, imbalance: f64) -> bool {
-        let what = format!("{}: {method}, residual {imbalance:.1e}", self.what);
+impl Monitor for Relay<'_> {
+    fn solved(&mut self, method: Method, relative_residual: f64) -> bool {
+        let what = format!("{}: {method}, residual {relative_residual:.1e}", self.what);
         self.observer.working(&what, self.fraction);
         !self.observer.stop()
     }

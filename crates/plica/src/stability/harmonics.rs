@@ -19,7 +19,7 @@ pub struct Harmonics<'a> {
 struct Harmonic {
     mass: BlockBanded,
     /// Held by the ends, or pinned against a rigid motion.
-    given: Vec<bool>,
+    prescribed: Vec<bool>,
 }
 
 /// Residual, over the mean size of the tangent, up to which a rigid motion meets no force.
@@ -42,7 +42,7 @@ impl<'a> Harmonics<'a> {
         let highest = highest.min((tube.sector.around - 1) / 2);
         let harmonic = |n| Harmonic {
             mass: harmonic_mass(tube, n),
-            given: tube.given_in_harmonic(n),
+            prescribed: tube.prescribed_in_harmonic(n),
         };
         Self {
             tube,
@@ -92,7 +92,7 @@ impl<'a> Harmonics<'a> {
         u: &[f64],
         count: usize,
     ) -> Result<Vec<Eigenpair>, NoEigenpairs> {
-        let Harmonic { mass, given } = &self.harmonics[n];
+        let Harmonic { mass, prescribed } = &self.harmonics[n];
         let block = self.block(n, load, u);
         let motions = self.tube.rigid_motions_in_harmonic(u, n);
         let held = self.tube.held_in_harmonics();
@@ -102,7 +102,7 @@ impl<'a> Harmonics<'a> {
         {
             lowest_eigenpairs_beside(&block, mass, &held, count, &motions)
         } else {
-            lowest_eigenpairs(&block, mass, given, count)
+            lowest_eigenpairs(&block, mass, prescribed, count)
         }
     }
 
@@ -129,7 +129,7 @@ fn is_neutral(block: &BlockBanded, held: &[bool], motion: &[f64]) -> bool {
 impl Harmonic {
     /// Negative eigenvalues of its block of the tangent.
     fn negative(&self, mut block: BlockBanded) -> usize {
-        block.constrain(&self.given);
+        block.constrain(&self.prescribed);
         block.factor().map_or(1, |factor| factor.negative_pivots())
     }
 }

@@ -2,9 +2,10 @@
 
 use super::{Eigenvalue, Observer, Shown, Spectra, Spectrum, StabilityError};
 use crate::assembly::SplineTube;
+use crate::equilibrium::TubeProblem;
 use crate::rings::Transform;
 use crate::solve::{Equilibrium, Lowest, Search};
-use crate::study::{Array, Plan, RunDirectory, SavedState, TubeProblem};
+use crate::study::{Array, Plan, RunDirectory, SavedState};
 use std::path::{Path, PathBuf};
 
 /// Residual relative to the forces in play up to which a state is an equilibrium.
@@ -124,13 +125,14 @@ fn read(plan: &Plan, problem: &TubeProblem, file: &Path) -> Result<SavedState, S
     let state = SavedState::read(file).map_err(trouble)?;
     state.belongs_to(plan).map_err(trouble)?;
     let forces = problem.forces(&state.load, &state.u);
-    let imbalance = forces.map_or(f64::INFINITY, |f| f.imbalance(problem.given()));
-    if imbalance <= EQUILIBRIUM || (state.row == 0 && imbalance.is_finite()) {
+    let relative_residual =
+        forces.map_or(f64::INFINITY, |f| f.relative_residual(problem.prescribed()));
+    if relative_residual <= EQUILIBRIUM || (state.row == 0 && relative_residual.is_finite()) {
         return Ok(state);
     }
     Err(StabilityError::OutOfEquilibrium {
         path: file.to_owned(),
-        imbalance,
+        relative_residual,
     })
 }
 
@@ -168,7 +170,7 @@ fn described(
         .enumerate()
     {
         let mut measured = vec![0.0; x.len()];
-        problem.drag(1.0, &x, &mut measured);
+        problem.damping(1.0, &x, &mut measured);
         let products = transform.products(&x, &measured);
         let whole: f64 = products.iter().sum();
         let mut shares = vec![0.0; sector.around / 2 + 1];

@@ -118,11 +118,11 @@ mod tests {
     #[test]
     fn harmonic_zero_is_the_drag_matrix() {
         let tube = tube(1);
-        let (mass, drag) = (harmonic_mass(&tube, 0), tube.drag());
+        let (mass, damping) = (harmonic_mass(&tube, 0), tube.damping());
         for i in 0..mass.unknowns() {
             for j in 0..=i {
                 assert!(
-                    (mass.entry(i, j) - drag.entry(i, j)).abs() < 1e-15,
+                    (mass.entry(i, j) - damping.entry(i, j)).abs() < 1e-15,
                     "{i}, {j}"
                 );
             }
@@ -135,7 +135,7 @@ mod tests {
         let x: Vec<f64> = (0..one.unknowns())
             .map(|i| (i as f64 * 0.7).sin())
             .collect();
-        let drag = whole.drag();
+        let damping = whole.damping();
         for n in 1..=4 {
             let mut y = vec![0.0; whole.unknowns()];
             for (i, x) in x.iter().enumerate() {
@@ -150,7 +150,7 @@ mod tests {
                 m.multiply_add(1.0, x, &mut product);
                 product.iter().zip(x).map(|(a, b)| a * b).sum::<f64>()
             };
-            let (weight, expected) = (form(&harmonic_mass(&one, n), &x), form(&drag, &y));
+            let (weight, expected) = (form(&harmonic_mass(&one, n), &x), form(&damping, &y));
             assert!(
                 (5.0 * weight / expected - 1.0).abs() < 1e-13,
                 "{n}: {weight}, {expected}"

@@ -4,7 +4,7 @@
 //! fast pseudo-time moved. It carries the digest of the history up to its row, so that it goes on with no other.
 
 use super::{Array, Plan, Row, SavedState, SavedStateError};
-use crate::solve::{Behind, Memory};
+use crate::solve::{ContinuationState, PreviousPoint};
 use crate::tube::Load;
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub struct Checkpoint {
     /// The stage that the path is in, from 0; none before the first.
     pub stage: Option<usize>,
     /// What the path keeps.
-    pub memory: Memory,
+    pub memory: ContinuationState,
     /// Digest of the rows of the history up to that of the state.
     pub history: [u8; 32],
 }
@@ -24,7 +24,7 @@ pub struct Checkpoint {
 /// Names of its arrays beside `u`.
 const PATH: &str = "path";
 const HISTORY: &str = "history";
-const BEHIND: &str = "behind";
+const PREVIOUS: &str = "previous";
 const TANGENT: &str = "behind_tangent";
 const VELOCITY: &str = "velocity";
 /// What stands for none among the numbers of the path.
@@ -48,9 +48,9 @@ impl Checkpoint {
             shape: vec![values.len()],
             values,
         };
-        let behind = memory.behind.as_ref().map_or(NONE, |behind| behind.t);
+        let previous = memory.previous.as_ref().map_or(NONE, |previous| previous.t);
         let stage = stage.map_or(NONE, |stage| stage as f64);
-        let path = vec![stage, memory.reached, memory.pace as f64, behind];
+        let path = vec![stage, memory.reached, memory.halving_level as f64, previous];
         let mut arrays = BTreeMap::from([
             (PATH.to_owned(), row(path)),
             (
@@ -58,8 +58,8 @@ impl Checkpoint {
                 row(history.iter().map(|byte| f64::from(*byte)).collect()),
             ),
         ]);
-        if let Some(Behind { u, tangent, .. }) = memory.behind {
-            arrays.insert(BEHIND.into(), like_u(u));
+        if let Some(PreviousPoint { u, tangent, .. }) = memory.previous {
+            arrays.insert(PREVIOUS.into(), like_u(u));
             arrays.insert(TANGENT.into(), like_u(tangent));
         }
         if memory.velocity.iter().any(|v| *v != 0.0) {
@@ -82,11 +82,11 @@ impl Checkpoint {
         };
         let missing = "is missing, so that this is no checkpoint";
         let path = take(PATH).ok_or_else(|| wrong(PATH, missing))?;
-        let [stage, reached, pace, behind]: [f64; 4] =
+        let [stage, reached, halving_level, previous]: [f64; 4] =
             (path.try_into()).map_err(|_| wrong(PATH, "does not have four numbers"))?;
         let whole = |x: f64, most: f64| x == x.trunc() && (NONE..=most).contains(&x);
-        let sound = whole(stage, 1e6) && whole(pace, 60.0) && pace >= 0.0;
-        if !sound || !(0.0..=1.0).contains(&reached) || (behind != NONE && behind >= reached) {
+        let sound = whole(stage, 1e6) && whole(halving_level, 60.0) && halving_level >= 0.0;
+        if !sound || !(0.0..=1.0).contains(&reached) || (previous != NONE && previous >= reached) {
             return Err(wrong(PATH, "makes no sense"));
         }
         let bytes = take(HISTORY).ok_or_else(|| wrong(HISTORY, missing))?;
@@ -106,20 +106,20 @@ impl Checkpoint {
             let values = take(name).ok_or_else(|| wrong(name, missing))?;
             long(name, values)
         };
-        let behind = match behind {
+        let previous = match previous {
             NONE => None,
-            t => Some(Behind {
+            t => Some(PreviousPoint {
                 t,
-                u: needed(BEHIND)?,
+                u: needed(PREVIOUS)?,
                 tangent: needed(TANGENT)?,
             }),
         };
         Ok(Self {
             stage: (stage >= 0.0).then_some(stage as usize),
-            memory: Memory {
+            memory: ContinuationState {
                 reached,
-                pace: pace as usize,
-                behind,
+                halving_level: halving_level as usize,
+                previous,
                 velocity,
             },
             history,
@@ -143,7 +143,7 @@ impl Checkpoint {
         if Digest::of(own).finish() != self.history {
             return Err("history.csv is not the one that it was written beside".into());
         }
-        let Some([from, to]) = self.leg(plan) else {
+        let Some([from, to]) = self.segment(plan) else {
             return Err("its stage is none of the case's".into());
         };
         if self.state.load != from.towards(&to, self.memory.reached) {
@@ -153,7 +153,7 @@ impl Checkpoint {
     }
 
     /// The loads between which it is on its way by a plan; none if the plan has no such stage.
-    pub fn leg(&self, plan: &Plan) -> Option<[Load; 2]> {
+    pub fn segment(&self, plan: &Plan) -> Option<[Load; 2]> {
         let first = match &plan.start {
             Some(start) => start.load.clone(),
             None => plan.tube.rest(),
@@ -203,20 +203,20 @@ mod tests {
     use crate::study::fixture::{plan, state};
     use crate::tube::Symmetry;
 
-    fn checkpoint(behind: bool) -> Checkpoint {
+    fn checkpoint(previous: bool) -> Checkpoint {
         let state = state(&plan(Symmetry::Axisymmetric), 3);
         let like_u = |x: f64| vec![x; state.u.len()];
         Checkpoint {
-            stage: behind.then_some(1),
-            memory: Memory {
-                reached: if behind { 0.4 } else { 0.0 },
-                pace: 2,
-                behind: behind.then(|| Behind {
+            stage: previous.then_some(1),
+            memory: ContinuationState {
+                reached: if previous { 0.4 } else { 0.0 },
+                halving_level: 2,
+                previous: previous.then(|| PreviousPoint {
                     t: 0.2,
                     u: like_u(0.5),
                     tangent: like_u(-1.5),
                 }),
-                velocity: like_u(if behind { 0.0 } else { 0.25 }),
+                velocity: like_u(if previous { 0.0 } else { 0.25 }),
             },
             history: std::array::from_fn(|i| 7 * i as u8),
             state,
@@ -225,8 +225,8 @@ mod tests {
 
     #[test]
     fn a_checkpoint_comes_back_from_its_file_to_the_bit() {
-        for behind in [true, false] {
-            let mine = checkpoint(behind);
+        for previous in [true, false] {
+            let mine = checkpoint(previous);
             let bytes = mine.clone().into_state().to_bytes().unwrap();
             let back = SavedState::from_bytes(&bytes).unwrap();
             assert_eq!(Checkpoint::from_state(back).unwrap(), mine);
@@ -250,7 +250,7 @@ mod tests {
         });
         broken(|state| state.arrays.get_mut(HISTORY).unwrap().values[5] = 256.0);
         broken(|state| {
-            state.arrays.get_mut(BEHIND).unwrap().values.pop();
+            state.arrays.get_mut(PREVIOUS).unwrap().values.pop();
         });
         broken(|state| {
             state.arrays.remove(TANGENT);

@@ -88,7 +88,7 @@ pub enum StudyError {
         "the case needs about {needed_gib:.1} GiB of memory and the machine has {available_gib:.1} \
          GiB free; use fewer control points or a symmetry that repeats more often"
     )]
-    Memory {
+    ContinuationState {
         /// Forecast, in GiB.
         needed_gib: f64,
         /// Free, in GiB.
@@ -99,6 +99,6 @@ pub enum StudyError {
 impl StudyError {
     /// Whether it is trouble with files rather than with the case.
     pub fn is_file_trouble(&self) -> bool {
-        !matches!(self, Self::Memory { .. } | Self::NoNumber { .. })
+        !matches!(self, Self::ContinuationState { .. } | Self::NoNumber { .. })
     }
 }

@@ -104,13 +104,13 @@ impl<'a> Findings<'a> {
             "last state",
             format!("{}, {} ({})", energy(last), place(last), last.shape),
         );
-        let departs = self.rows.iter().filter(|row| row.departure_harmonic > 0);
-        if let Some(row) = departs.max_by(|a, b| a.departure.total_cmp(&b.departure)) {
-            let far = match row.departure {
+        let departs = self.rows.iter().filter(|row| row.asymmetry_mode > 0);
+        if let Some(row) = departs.max_by(|a, b| a.asymmetry.total_cmp(&b.asymmetry)) {
+            let far = match row.asymmetry {
                 x if x < 1e-2 => format!("{x:.1e} {}", self.scale.length_name),
                 x => format!("{x:.3} {}", self.scale.length_name),
             };
-            let harmonic = named(&row.departure_harmonic.to_string());
+            let harmonic = named(&row.asymmetry_mode.to_string());
             let most = format!("by at most {far}, in {harmonic}, at {}", place(row));
             line("leaves axisymmetry", most);
         }
@@ -169,8 +169,8 @@ fn pressures(row: &Row) -> [(&'static str, Option<f64>); 4] {
     [
         ("inside", row.inner_pressure),
         ("outside", row.outer_pressure),
-        ("dead, inside", row.inner_dead_pressure),
-        ("dead, outside", row.outer_dead_pressure),
+        ("dead, inside", row.inner_dead_load),
+        ("dead, outside", row.outer_dead_load),
     ]
 }
 

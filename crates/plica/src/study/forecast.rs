@@ -1,8 +1,8 @@
 //! What a study will take, without running it.
 
-use super::harmonic_tangent::HarmonicTangent;
-use super::{Plan, StudyError, TubeProblem};
+use super::{Plan, StudyError};
 use crate::assembly::SplineTube;
+use crate::equilibrium::{HarmonicTangent, TubeProblem};
 use crate::solve::{Equilibrium, Scheme, Solver, Tangent};
 use crate::tube::{Imperfection, Integration, Mesh, Part};
 use std::time::Instant;
@@ -41,7 +41,7 @@ pub fn forecast(plan: &Plan) -> Forecast {
     let unknowns_solved = unknowns / mesh.around * rings;
     let solves = match &plan.solver.scheme {
         Scheme::Static => SOLVES_PER_STATE,
-        Scheme::PseudoTime(scheme) => 3.0 * (scheme.ramp as f64 + 0.2 * scheme.hold as f64),
+        Scheme::PseudoTime(scheme) => 3.0 * (scheme.ramp as f64 + 0.2 * scheme.max_steps as f64),
     };
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
     let seconds_estimate = states as f64 * solves * seconds_per_solve(plan, rings);
@@ -136,7 +136,7 @@ pub fn fits(plan: &Plan) -> Result<(), StudyError> {
     };
     if needed > available {
         let gib = |bytes: u64| bytes as f64 / (1_u64 << 30) as f64;
-        return Err(StudyError::Memory {
+        return Err(StudyError::ContinuationState {
             needed_gib: gib(needed),
             available_gib: gib(available),
         });

@@ -30,10 +30,10 @@ pub struct Row {
     pub outer_pressure: Option<f64>,
     /// Dead pressure on the inner wall, per area at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub inner_dead_pressure: Option<f64>,
+    pub inner_dead_load: Option<f64>,
     /// Dead pressure on the outer wall, per area at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub outer_dead_pressure: Option<f64>,
+    pub outer_dead_load: Option<f64>,
     /// Strain energy and the potential of the pressures, which is nothing at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub potential: Option<f64>,
@@ -44,7 +44,7 @@ pub struct Row {
     /// Residual without drag over the forces in play.
     pub residual: f64,
     /// Energy spent on drag on the way to this state.
-    pub drag_work: f64,
+    pub damping_work: f64,
     /// How the state was found: rest, newton, relaxation or pseudo-time.
     pub method: String,
     /// Whether the state is in equilibrium: yes, or no.
@@ -74,18 +74,18 @@ pub struct Row {
     /// V, U, square, invaginated, swollen or collapsed; straight where nothing is contracted.
     pub shape: String,
     /// How far the outer wall is from axisymmetric: amplitude of its largest wave around.
-    pub departure: f64,
+    pub asymmetry: f64,
     /// Circumferential harmonic of that wave; 0 if there is none.
-    pub departure_harmonic: usize,
+    pub asymmetry_mode: usize,
     /// Angle of a crest of that wave, where the wall at rest was, from −180/n to 180/n.
-    pub departure_angle_deg: f64,
+    pub asymmetry_angle_deg: f64,
     /// Smallest det Fe.
     pub min_det_fe: f64,
     /// Circumferential harmonics with negative eigenvalues of the tangent, as `harmonic:count`
     /// separated by spaces, or none. An axisymmetric state is looked at for harmonics 0 to
-    /// `output.harmonics` (only 0 if it twists). Any other only at the lowest eigenvalue of the
+    /// `output.stability_modes` (only 0 if it twists). Any other only at the lowest eigenvalue of the
     /// run's own tangent: `any:1` if it is negative, unknown if its sign does not show.
-    pub unstable_harmonics: String,
+    pub unstable_modes: String,
 }
 
 impl Row {
@@ -95,8 +95,8 @@ impl Row {
         for pressure in [
             &mut self.inner_pressure,
             &mut self.outer_pressure,
-            &mut self.inner_dead_pressure,
-            &mut self.outer_dead_pressure,
+            &mut self.inner_dead_load,
+            &mut self.outer_dead_load,
         ] {
             pressure.get_or_insert(0.0);
         }
@@ -106,7 +106,7 @@ impl Row {
 
     /// The harmonics it is unstable to, as the column names them: numbers, `any`, or `unknown`; none if it is stable.
     pub fn lost_harmonics(&self) -> impl Iterator<Item = &str> {
-        let all = self.unstable_harmonics.split(' ');
+        let all = self.unstable_modes.split(' ');
         let lost = all.filter(|harmonic| *harmonic != "none");
         lost.map(|harmonic| harmonic.split(':').next().unwrap_or(harmonic))
     }

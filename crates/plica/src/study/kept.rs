@@ -76,7 +76,7 @@ mod tests {
         };
         assert!(change(|_| {}).is_empty());
         assert!(change(|plan| plan.title = "another".into()).is_empty());
-        assert!(change(|plan| plan.solver.halvings = 2).is_empty());
+        assert!(change(|plan| plan.solver.max_step_halvings = 2).is_empty());
         assert!(change(|plan| plan.output.states_every = 7).is_empty());
         assert!(change(|plan| plan.stages[1].steps = 9).is_empty());
         assert!(change(|plan| plan.stages[2].load.ends[0].twist = 1.0).is_empty());

@@ -121,7 +121,7 @@ impl Manifest {
         self.states_out_of_equilibrium = rows.iter().filter(|r| r.equilibrium == "no").count();
         self.states_unstable = rows
             .iter()
-            .filter(|r| !["none", "unknown"].contains(&r.unstable_harmonics.as_str()))
+            .filter(|r| !["none", "unknown"].contains(&r.unstable_modes.as_str()))
             .count();
     }
 }

@@ -62,7 +62,7 @@ pub struct Output {
     /// Accepted states are saved in full likewise.
     pub states_every: usize,
     /// Circumferential harmonics that an axisymmetric state is tested for: 0 to this.
-    pub harmonics: usize,
+    pub stability_modes: usize,
     /// Points along the tube at which a wall is sampled for profiles and pictures.
     pub wall_points: usize,
 }
@@ -95,7 +95,7 @@ impl Default for Output {
             pictures: true,
             profiles_every: 1,
             states_every: 1,
-            harmonics: 4,
+            stability_modes: 4,
             wall_points: 601,
         }
     }

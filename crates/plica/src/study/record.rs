@@ -1,14 +1,13 @@
 //! Writes every accepted state down: its row, its walls, itself, and what it takes to go on from it.
 
 use super::checkpoint::Digest;
-use super::stability::unstable_harmonics;
 use super::units::Scale;
 use super::{
     Checkpoint, Layout, Observer, Plan, Row, RunDirectory, SavedState, Snapshot, StudyError,
-    TubeProblem,
 };
 use crate::assembly::SplineTube;
-use crate::measure::{Departure, Face, Measures, Meridians};
+use crate::equilibrium::{TubeProblem, unstable_modes};
+use crate::measure::{Asymmetry, Face, Measures, Meridians};
 use crate::solve::{Method, Path, Step};
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -50,9 +49,9 @@ impl<'a> Record<'a> {
         last: bool,
         observer: &mut dyn Observer,
     ) -> Result<(), StudyError> {
-        let harmonics = self.plan.output.harmonics;
+        let harmonics = self.plan.output.stability_modes;
         let mut goes_on = || !observer.stop();
-        let unstable_harmonics = unstable_harmonics(self.problem, path, harmonics, &mut goes_on);
+        let unstable_modes = unstable_modes(self.problem, path, harmonics, &mut goes_on);
         let (tube, state) = (&self.problem.tube, path.state());
         // The state was accepted, so its energy exists.
         let Ok(forces) = tube.forces(&state.load, &state.u) else {
@@ -76,13 +75,13 @@ impl<'a> Record<'a> {
             ileum_twist_deg: state.load.ends[1].twist.to_degrees(),
             inner_pressure: pressure(inner.follower),
             outer_pressure: pressure(outer.follower),
-            inner_dead_pressure: pressure(inner.dead),
-            outer_dead_pressure: pressure(outer.dead),
+            inner_dead_load: pressure(inner.dead),
+            outer_dead_load: pressure(outer.dead),
             potential: pressed.then_some(energy * self.above_rounding(forces.potential)),
             energy: energy * self.above_rounding(forces.energy),
             energy_ungrown_volume: energy * self.above_rounding(forces.energy_ungrown),
-            residual: state.imbalance,
-            drag_work: energy * tube.sector.repeats() * step.drag_work,
+            residual: state.relative_residual,
+            damping_work: energy * tube.sector.repeats() * step.damping_work,
             method: step.method.to_string(),
             equilibrium: if state.in_equilibrium() || step.method == Method::Rest {
                 "yes"
@@ -102,16 +101,16 @@ impl<'a> Record<'a> {
             gap: length * measures.gap,
             lumen: length * measures.lumen,
             shape: measures.shape.to_string(),
-            departure: length * measures.departure.amplitude,
-            departure_harmonic: measures.departure.harmonic,
-            departure_angle_deg: measures.departure.crest.to_degrees(),
+            asymmetry: length * measures.asymmetry.amplitude,
+            asymmetry_mode: measures.asymmetry.harmonic,
+            asymmetry_angle_deg: measures.asymmetry.crest.to_degrees(),
             min_det_fe: forces.smallest_jacobian,
-            unstable_harmonics,
+            unstable_modes,
         };
         self.directory.record(&row)?;
         let every = self.plan.output.profiles_every;
         if every > 0 && (last || row.step.is_multiple_of(every)) {
-            self.write_profile(row.step, path, measures.departure)?;
+            self.write_profile(row.step, path, measures.asymmetry)?;
         }
         let every = self.plan.output.states_every;
         if every > 0 && (last || row.step.is_multiple_of(every)) {
@@ -180,7 +179,7 @@ impl<'a> Record<'a> {
         self.directory.write_checkpoint(Checkpoint {
             state: self.saved(row, path),
             stage,
-            memory: path.memory(),
+            memory: path.continuation_state(),
             history: self.digest.finish(),
         })?;
         Ok(true)
@@ -205,12 +204,12 @@ impl<'a> Record<'a> {
         &self,
         step: usize,
         path: &Path<'_, TubeProblem>,
-        departure: Departure,
+        asymmetry: Asymmetry,
     ) -> Result<(), StudyError> {
         let (tube, state) = (&self.problem.tube, path.state());
         let z = tube.axial.spread(self.plan.output.wall_points);
         let meridians = Meridians::of(tube, &state.load, &state.u);
-        let both = departure.crest_and_trough();
+        let both = asymmetry.crest_and_trough();
         let angles = if tube.sector.rings == 1 {
             &both[..1]
         } else {

@@ -4,13 +4,11 @@ use super::manifest::Manifest;
 use super::record::Record;
 use super::summary::{Ending, Phase, Summary, whereabouts};
 use super::units::Scale;
-use super::{
-    Checkpoint, Layout, Observer, Plan, Row, RunDirectory, Start, StudyError, TubeProblem, fits,
-    prolong,
-};
+use super::{Checkpoint, Layout, Observer, Plan, Row, RunDirectory, Start, StudyError, fits};
 use crate::assembly::{Inverted, SplineTube};
+use crate::equilibrium::{TubeProblem, prolong};
 use crate::solve::{
-    Equilibrium, Failure, Found, Method, Path, PathError, Step, Watch, newton, relaxation,
+    Equilibrium, Failure, Method, Monitor, Path, PathError, Solution, Step, newton, relaxation,
 };
 use crate::tube::{Mesh, Symmetry, Tube};
 
@@ -139,13 +137,13 @@ fn take_up<'a>(
     problem: &'a TubeProblem,
     checkpoint: Checkpoint,
 ) -> Result<Path<'a, TubeProblem>, String> {
-    let leg = checkpoint
-        .leg(plan)
+    let segment = checkpoint
+        .segment(plan)
         .ok_or("its stage is none of the case's")?;
     let Checkpoint { state, memory, .. } = checkpoint;
-    Path::go_on(
+    Path::resume(
         problem,
-        leg,
+        segment,
         state.load,
         state.u,
         memory,
@@ -165,16 +163,16 @@ fn follow(
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
     let steps_before = |stage: usize| plan.stages[..stage].iter().map(|stage| stage.steps).sum();
     for (k, stage) in plan.stages.iter().enumerate().skip(within.unwrap_or(0)) {
-        let mut behind = 0;
+        let mut previous = 0;
         if within == Some(k) {
-            behind = steps_behind(stage.steps, path.reached());
+            previous = completed_steps(stage.steps, path.reached());
         } else {
-            path.set_out(stage.load.clone());
+            path.begin_segment(stage.load.clone());
         }
         let before: usize = steps_before(k);
-        for n in behind + 1..=stage.steps {
+        for n in previous + 1..=stage.steps {
             let done = before + n - 1;
-            let mut watch = Relay {
+            let mut monitor = Relay {
                 observer: &mut *observer,
                 what: format!("{}, step {n} of {}", stage.name, stage.steps),
                 fraction: done as f64 / states as f64,
@@ -182,7 +180,7 @@ fn follow(
                 inner_iterations: 0,
             };
             let from = path.reached();
-            match path.advance(n as f64 / stage.steps as f64, &mut watch) {
+            match path.advance(n as f64 / stage.steps as f64, &mut monitor) {
                 Ok(step) => {
                     record.accept(&stage.name, &mut path, &step, n == stage.steps, observer)?;
                     if !record.leave_checkpoint(Some(k), &path, observer)? {
@@ -224,9 +222,9 @@ fn follow(
 }
 
 /// How many of a stage's equal steps lie behind a place along it.
-fn steps_behind(steps: usize, reached: f64) -> usize {
-    let behind = |n: &usize| *n as f64 / steps as f64 <= reached;
-    (1..=steps).take_while(behind).count()
+fn completed_steps(steps: usize, reached: f64) -> usize {
+    let previous = |n: &usize| *n as f64 / steps as f64 <= reached;
+    (1..=steps).take_while(previous).count()
 }
 
 /// The path at its first state: at rest, or at the state that the plan starts from, on this mesh and
@@ -250,20 +248,20 @@ fn begin<'a>(
             method: Method::Rest,
             iterations: 1,
             inner_iterations: 0,
-            drag_work: 0.0,
+            damping_work: 0.0,
         };
         let mut path = match path(rest.clone(), problem.tube.start()) {
             Ok(path) => path,
             Err(broken) => {
-                let tried = vec![(Method::Rest, Failure::Broken(broken))];
+                let tried = vec![(Method::Rest, Failure::Evaluation(broken))];
                 return Ok(Err(lost(Phase::Rest, PathError { tried, step })));
             }
         };
         if !plan.tube.imperfections.is_empty() {
             // The state of an imperfect tube at rest is to be found, too.
-            let mut watch = Relay::new(observer, "rest");
-            path.set_out(rest);
-            match path.advance(1.0, &mut watch) {
+            let mut monitor = Relay::new(observer, "rest");
+            path.begin_segment(rest);
+            match path.advance(1.0, &mut monitor) {
                 Ok(found) => step = found,
                 Err(error) if error.stopped() => return Ok(Err(Ending::Stopped)),
                 Err(error) => return Ok(Err(lost(Phase::Rest, error))),
@@ -273,8 +271,8 @@ fn begin<'a>(
         record.leave_checkpoint(None, &path, observer)?;
         return Ok(Ok(path));
     };
-    let mut watch = Relay::new(observer, START);
-    let (u, step) = match settle(plan, problem, start, &mut watch) {
+    let mut monitor = Relay::new(observer, START);
+    let (u, step) = match settle(plan, problem, start, &mut monitor) {
         Ok(settled) => settled,
         Err(error) if error.stopped() => return Ok(Err(Ending::Stopped)),
         Err(error) => return Ok(Err(lost(Phase::Start, error))),
@@ -296,7 +294,7 @@ fn settle(
     plan: &Plan,
     problem: &TubeProblem,
     start: &Start,
-    watch: &mut Relay<'_>,
+    monitor: &mut Relay<'_>,
 ) -> Result<(Vec<f64>, Step), PathError<Inverted>> {
     let Layout { mesh, rings, .. } = &start.state.layout;
     let perfect = Tube {
@@ -305,24 +303,24 @@ fn settle(
     };
     let from = SplineTube::new(&perfect, mesh, *rings);
     let mut u = prolong(&from, &problem.tube, &start.state.u);
-    problem.impose(&start.load, &mut u);
+    problem.apply_prescribed(&start.load, &mut u);
     let (load, settings) = (&start.load, &plan.solver);
-    let step = |method, found: &Found, inner_iterations| Step {
+    let step = |method, found: &Solution, inner_iterations| Step {
         method,
         iterations: found.iterations,
         inner_iterations,
-        drag_work: found.drag_work,
+        damping_work: found.damping_work,
     };
-    let newton_failed = match newton(problem, load, u.clone(), settings, watch) {
+    let newton_failed = match newton(problem, load, u.clone(), settings, monitor) {
         Ok(found) => {
-            let step = step(Method::Newton, &found, watch.inner_iterations);
+            let step = step(Method::Newton, &found, monitor.inner_iterations);
             return Ok((found.u, step));
         }
         Err(failed) => failed,
     };
-    match relaxation(problem, load, u, settings, watch) {
+    match relaxation(problem, load, u, settings, monitor) {
         Ok(found) => {
-            let step = step(Method::Relaxation, &found, watch.inner_iterations);
+            let step = step(Method::Relaxation, &found, monitor.inner_iterations);
             Ok((found.u, step))
         }
         Err(failed) => Err(PathError {
@@ -333,8 +331,8 @@ fn settle(
             step: Step {
                 method: Method::Relaxation,
                 iterations: 0,
-                inner_iterations: watch.inner_iterations,
-                drag_work: 0.0,
+                inner_iterations: monitor.inner_iterations,
+                damping_work: 0.0,
             },
         }),
     }
@@ -372,17 +370,17 @@ impl<'a> Relay<'a> {
     }
 }
 
-impl Watch for Relay<'_> {
+impl Monitor for Relay<'_> {
     fn iterated(&mut self, inner_iterations: usize) {
         self.inner_iterations += inner_iterations;
     }
     fn iterating(&mut self) -> bool {
         !self.observer.stop()
     }
-    fn solved(&mut self, method: Method, imbalance: f64) -> bool {
+    fn solved(&mut self, method: Method, relative_residual: f64) -> bool {
         self.solves += 1;
         let what = format!(
-            "{}: {method}, solve {}, residual {imbalance:.1e}",
+            "{}: {method}, solve {}, residual {relative_residual:.1e}",
             self.what, self.solves
         );
         self.observer.working(&what, self.fraction);

@@ -113,7 +113,7 @@ pub(super) fn whereabouts(
     last: Option<(&Load, &[f64])>,
 ) -> Vec<Whereabouts> {
     let tried = error.tried.last().and_then(|(_, failure)| {
-        if let Failure::Broken(Inverted { place, .. }) = failure {
+        if let Failure::Evaluation(Inverted { place, .. }) = failure {
             return Some(Whereabouts::Inverted(*place));
         }
         let place = tube.place_of(failure.worst()?);
@@ -182,16 +182,16 @@ fn advice(phase: &Phase, error: &PathError<Inverted>) -> &'static str {
     }
     match error.tried.last().map(|(_, failure)| failure) {
         Some(Failure::StillMoving { .. }) => {
-            "Try more pseudo-time (solver.pseudo_time.hold), less drag, or more steps in this stage"
+            "Try more pseudo-time (solver.pseudo_time.max_steps), less damping, or more steps in this stage"
         }
         Some(Failure::Unsolved { .. }) => {
             "Try more steps in this stage, or fewer or more even elements (mesh.refine)"
         }
-        Some(Failure::Broken(_)) => {
-            "Try more steps in this stage, more solver.halvings, or a finer mesh there (mesh.refine)"
+        Some(Failure::Evaluation(_)) => {
+            "Try more steps in this stage, more solver.max_step_halvings, or a finer mesh there (mesh.refine)"
         }
         _ => {
-            "Try more steps in this stage, more solver.halvings or solver.relaxation_steps, or a finer mesh in the zone"
+            "Try more steps in this stage, more solver.max_step_halvings or solver.relaxation_steps, or a finer mesh in the zone"
         }
     }
 }

@@ -57,15 +57,15 @@ fn at(direction: usize, count: usize, fineness: Fineness) -> Job {
         .bare()
 }
 
-fn damped(drag: f64, settle: bool) -> Job {
+fn damped(damping: f64, settle: bool) -> Job {
     let how = if settle { "settled" } else { "as-it-is" };
     Job::of("paper-scheme")
-        .named(format!("paper-scheme-drag-{drag}-{how}"))
+        .named(format!("paper-scheme-damping-{damping}-{how}"))
         .on(COARSE)
         .with("stages[2].steps", 13)
         .with("stages[2].drive.longitudinal.length_ratio", 1.13)
-        .with("solver.pseudo_time.drag", format!("{drag:?}"))
-        .with("solver.pseudo_time.settle", settle)
+        .with("solver.pseudo_time.damping", format!("{damping:?}"))
+        .with("solver.pseudo_time.equilibrate", settle)
         .bare()
 }
 
@@ -83,8 +83,8 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
     for (direction, counts) in points(fineness).into_iter().enumerate() {
         jobs.extend(counts.iter().map(|&count| at(direction, count, fineness)));
     }
-    for &drag in drags(fineness) {
-        jobs.extend([true, false].map(|settle| damped(drag, settle)));
+    for &damping in drags(fineness) {
+        jobs.extend([true, false].map(|settle| damped(damping, settle)));
     }
     if fineness == Fineness::Full {
         jobs.extend(RINGS.map(oval));
@@ -213,22 +213,22 @@ fn meshes(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troubl
 }
 
 fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble> {
-    let get = |drag: f64, settle| runs.get(&damped(drag, settle).name);
+    let get = |damping: f64, settle| runs.get(&damped(damping, settle).name);
     let energy = |ran: &Ran| Ok::<f64, Trouble>(ran.last()?.energy);
     let reference = energy(get(100.0, true)?)?;
     let (mut settled, mut raw) = (0.0_f64, 0.0_f64);
     let mut rows = vec![];
-    for &drag in drags(fineness) {
+    for &damping in drags(fineness) {
         for settle in [true, false] {
-            let ran = get(drag, settle)?;
+            let ran = get(damping, settle)?;
             let last = ran.last()?;
             let off = (last.energy / reference - 1.0).abs();
             let worst = if settle { &mut settled } else { &mut raw };
             *worst = worst.max(off);
             rows.push(vec![
-                format!("{drag}"),
+                format!("{damping}"),
                 if settle {
-                    "settled without drag"
+                    "settled without damping"
                 } else {
                     "as the paper accepts it"
                 }
@@ -251,14 +251,14 @@ fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troub
         "A",
         "the result does not depend on the damping coefficient",
         format!(
-            "W(1.13) differs by {raw:.0e} at most as the paper accepts states (no control point moves 1e-5 D in a step); by {settled:.0e} if they are then settled without drag, as there is but one branch there"
+            "W(1.13) differs by {raw:.0e} at most as the paper accepts states (no control point moves 1e-5 D in a step); by {settled:.0e} if they are then settled without damping, as there is but one branch there"
         ),
         verdict,
     );
     page.text(format!(
-        "**Drag.** The paper's scheme on {} × {} × {} control points to Lmax/L = 1.13. The residual is that without drag, over the forces in play. \
-         A state counts as final once no control point moves 1e-5 D in a step, and the more drag there is the further from equilibrium that is; settled \
-         without drag, all that are on one branch are the same state. The paper takes 100.",
+        "**Drag.** The paper's scheme on {} × {} × {} control points to Lmax/L = 1.13. The residual is that without damping, over the forces in play. \
+         A state counts as final once no control point moves 1e-5 D in a step, and the more damping there is the further from equilibrium that is; settled \
+         without damping, all that are on one branch are the same state. The paper takes 100.",
         COARSE[0], COARSE[1], COARSE[2]
     ));
     page.table(

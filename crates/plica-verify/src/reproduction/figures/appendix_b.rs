@@ -31,28 +31,28 @@ struct Kind {
 /// What leads a tube sideways that would otherwise stay in balance there: along the short axis of its oval, as that is
 /// where it tilts to in the end. Led along the long one it tilts there first, and then turns, in a balance so nearly
 /// neutral that relaxation is lost on the way.
-const LED_ASIDE: &str = ", { of = \"ileum-end\", amplitude = 1e-4, shape = { wave = { harmonic = 1, phase_degrees = 90 } } }";
+const LED_ASIDE: &str = ", { of = \"ileum-end\", amplitude = 1e-4, shape = { wave = { mode = 1, phase_degrees = 90 } } }";
 
 const KINDS: [Kind; 4] = [
     Kind {
         name: "shifted",
         words: "the colon end shifted sideways",
         direction: "across",
-        shape: "{ wave = { harmonic = 1 } }",
+        shape: "{ wave = { mode = 1 } }",
         besides: "",
     },
     Kind {
         name: "tilted",
         words: "the colon end tilted",
         direction: "axial",
-        shape: "{ wave = { harmonic = 1 } }",
+        shape: "{ wave = { mode = 1 } }",
         besides: "",
     },
     Kind {
         name: "oval",
         words: "the colon end held on an oval (and the ileum end shifted by 1e-4 D)",
         direction: "across",
-        shape: "{ wave = { harmonic = 2 } }",
+        shape: "{ wave = { mode = 2 } }",
         besides: LED_ASIDE,
     },
     Kind {
@@ -124,8 +124,8 @@ struct Sides {
 
 impl Sides {
     fn of(ran: &Ran, row: &Row) -> Result<Self, Trouble> {
-        let crest = row.departure_angle_deg.to_radians();
-        let across = crest + std::f64::consts::PI / row.departure_harmonic.max(1) as f64;
+        let crest = row.asymmetry_angle_deg.to_radians();
+        let across = crest + std::f64::consts::PI / row.asymmetry_mode.max(1) as f64;
         let fold = |angle| Ok(ran.wall(row, Face::Outer, angle)?.overhang());
         let folds: Result<Vec<(f64, Side)>, Trouble> =
             [crest, across].map(fold).into_iter().collect();
@@ -197,10 +197,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
                 kind.words.into(),
                 format!("{amplitude}"),
                 end,
-                format!(
-                    "harmonic {}, {:.3} D",
-                    last.departure_harmonic, last.departure
-                ),
+                format!("harmonic {}, {:.3} D", last.asymmetry_mode, last.asymmetry),
                 energy(last),
                 format!("{:.0}", ran.seconds()),
             ]);
@@ -230,8 +227,8 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
                 "{}; W = {}, {:.3} D from axisymmetric (harmonic {})",
                 sides.told(),
                 energy(last),
-                last.departure,
-                last.departure_harmonic
+                last.asymmetry,
+                last.asymmetry_mode
             ),
             verdict(ran, last, &sides),
         );

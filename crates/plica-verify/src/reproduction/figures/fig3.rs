@@ -22,13 +22,13 @@ const OVAL: usize = 8;
 /// The oval dragged on: each step until nothing moves 1e-3 D in a step of pseudo-time, and not settled, since it does not
 /// come to rest before its lumen is closed.
 fn dragged_on() -> Job {
-    let job = Job::of("collapse").named("collapse-dragged-on").large();
+    let job = Job::of("collapse").named("collapse-damped-on").large();
     job.from("collapse", OVAL)
         .with("stages[1].steps", 12)
         .with("stages[1].drive.longitudinal.length_ratio", 1.2)
-        .with("solver.scheme", "\"dragged\"")
+        .with("solver.scheme", "\"damped\"")
         .with("solver.pseudo_time.tolerance", "1e-3")
-        .with("solver.pseudo_time.settle", false)
+        .with("solver.pseudo_time.equilibrate", false)
 }
 
 /// The axisymmetric tube on the mesh of the oval, to compare energies with.
@@ -79,11 +79,11 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
             "an oval at Lmax/L = {:.2}{}: harmonic {}, {:.3} D from round, the lumen {:.3} D wide at its narrowest, overhang {overhang:.3} D",
             b.length_ratio,
             fineness.choose(" (--full goes on to the paper's 1.2)", ""),
-            b.departure_harmonic,
-            b.departure,
+            b.asymmetry_mode,
+            b.asymmetry,
             b.lumen
         ),
-        b.departure > 0.05
+        b.asymmetry > 0.05
             // Less than half of what it is at rest.
             && b.lumen < collapse.plan.tube.inner_radius()
             && b.equilibrium == "yes"
@@ -201,8 +201,8 @@ fn collapse_at_the_papers_length(page: &mut Page, on: &Ran) -> Result<(), Troubl
     let closed = on.rows.iter().find(|row| row.has_closed());
     let off = on.rows.iter().map(|row| row.residual).fold(0.0, f64::max);
     let reached = format!(
-        "dragged on from 1.08, out of equilibrium by up to {off:.0e} of the forces in play, to {:.2}: {:.3} D from round, lumen {:.3} D",
-        last.length_ratio, last.departure, last.lumen
+        "damped on from 1.08, out of equilibrium by up to {off:.0e} of the forces in play, to {:.2}: {:.3} D from round, lumen {:.3} D",
+        last.length_ratio, last.asymmetry, last.lumen
     );
     let overhang = largest_overhang(on);
     let holds = on.verdict == "complete" && last.shape == "collapsed" && overhang < FOLD;
@@ -219,7 +219,7 @@ fn collapse_at_the_papers_length(page: &mut Page, on: &Ran) -> Result<(), Troubl
     page.judge("3B", "it has collapsed at Lmax/L = 1.2", found, verdict);
     page.text(
         "**3B at 1.2.** Past 1.08 the oval does not come to rest in the relaxation of the static scheme (200 solves), so it is followed with \
-         drag (backward Euler, ηD/(EΔτ) = 5), each state taken when nothing moves by 1e-3 D in a step of pseudo-time. The states are nearly, \
+         damping (backward Euler, ηD/(EΔτ) = 5), each state taken when nothing moves by 1e-3 D in a step of pseudo-time. The states are nearly, \
          and not quite, in equilibrium. The paper accepts its own by such a rule too, with 1e-5 D.",
     );
     Ok(())

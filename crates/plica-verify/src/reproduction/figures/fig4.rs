@@ -6,9 +6,9 @@ use super::super::pictures::{Outline, energies, outer, outlines};
 use super::super::runs::{Ran, Runs};
 use super::super::{Figure, Fineness, Trouble};
 use super::{COARSE, axisymmetric, first, is_folded, minimum, ratio, side, unstable};
-use plica_view::draw::{Curve, Rule, Stroke};
 use plica::measure::{Face, Flank, Rotation, Side, Wall};
 use plica::study::Row;
+use plica_view::draw::{Curve, Rule, Stroke};
 
 pub(super) const FIGURE: Figure = Figure {
     name: "fig4",
@@ -23,8 +23,8 @@ pub(super) const FIGURE: Figure = Figure {
 fn unsettled() -> Job {
     let job = Job::of("paper-scheme").named("paper-scheme-not-settled");
     job.on(COARSE)
-        .with("solver.pseudo_time.settle", false)
-        .with("solver.pseudo_time.hold", 20000)
+        .with("solver.pseudo_time.equilibrate", false)
+        .with("solver.pseudo_time.max_steps", 20000)
         .bare()
 }
 
@@ -308,14 +308,14 @@ fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
         "the paper's scheme (Newmark, ηD/(EΔτ) = 100) against Plica's",
         format!(
             "{} solves and {:.0} s against {} and {:.1} s ({ratio:.0} times less); the energies of seven states from 1.00 to 1.25 differ by {settled:.0e} at most once \
-             settled without drag, by {as_accepted:.0e} as the paper accepts them",
+             settled without damping, by {as_accepted:.0e} as the paper accepts them",
             papers.solves(), papers.seconds(), ours.solves(), ours.seconds()
         ),
         good,
     );
     page.text(
         "**The two schemes**, on one mesh. A state of the pseudo-time is accepted when no control point moves 1e-5 D in a step, and then settled \
-         without drag (`solver.pseudo_time.settle`), or not; the residual of the latter is that without drag, over the forces in play.",
+         without damping (`solver.pseudo_time.equilibrate`), or not; the residual of the latter is that without damping, over the forces in play.",
     );
     page.table(
         &[

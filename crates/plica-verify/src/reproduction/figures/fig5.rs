@@ -45,7 +45,7 @@ fn newmark(case: &'static str, fineness: Fineness) -> Job {
         .with("stages[1].steps", 1)
         .with("stages[2].steps", 8)
         .with("solver.scheme", "\"newmark\"")
-        .with("solver.pseudo_time.hold", 20000)
+        .with("solver.pseudo_time.max_steps", 20000)
         .bare()
 }
 
@@ -120,9 +120,9 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
 /// Which side is taken, over drags and ramps.
 fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble> {
     page.text(
-        "**Which side, and what decides it.** The static scheme knows no drag. With one, the whole ramp of Lmax/L from 1.0 to 1.25 \
+        "**Which side, and what decides it.** The static scheme knows no damping. With one, the whole ramp of Lmax/L from 1.0 to 1.25 \
          is done in so many pseudo-time steps of a backward Euler scheme, from the same contracted state, and then held. What counts is the \
-         product of drag and rate: where it is too large the wall cannot follow, and the relaxing zone buckles by itself. \
+         product of damping and rate: where it is too large the wall cannot follow, and the relaxing zone buckles by itself. \
          `reproduce` shows the static scheme in the figure.",
     );
     let without = [

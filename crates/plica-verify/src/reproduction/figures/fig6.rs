@@ -6,8 +6,8 @@ use super::super::pictures::{Outline, outer, outlines};
 use super::super::runs::Runs;
 use super::super::{Figure, Fineness, Trouble};
 use super::axisymmetric;
-use plica_view::draw::Stroke;
 use plica::measure::Wall;
+use plica_view::draw::Stroke;
 
 pub(super) const FIGURE: Figure = Figure {
     name: "fig6",

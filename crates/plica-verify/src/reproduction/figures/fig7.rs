@@ -48,7 +48,7 @@ fn newmark(case: &'static str, fineness: Fineness) -> Job {
     let job = from(case, "ileum-side-coarse").named(format!("{case}-newmark"));
     let job = job.on(fineness.choose(COARSER, COARSE)).bare();
     job.with("solver.scheme", "\"newmark\"")
-        .with("solver.pseudo_time.drag", "100.0")
+        .with("solver.pseudo_time.damping", "100.0")
 }
 
 fn jobs(fineness: Fineness) -> Vec<Job> {
@@ -95,9 +95,9 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
         "Tubes cut open, coloured by strain energy density: before the push, pushed at the colon end, pushed at the ileum end",
     );
     page.text(
-        "**Which side, and what decides it.** Without drag a push at one end is the same as a pull at the other but for a shift of the tube \
+        "**Which side, and what decides it.** Without damping a push at one end is the same as a pull at the other but for a shift of the tube \
          as a whole, so that both pushes must find the same side; the pushed end matters only to a tube that something holds in its place, and that \
-         is the drag. The figure's setting is backward Euler with ηD/(EΔτ) = 5 and a push of 0.001 D per pseudo-time step, settled without drag \
+         is the damping. The figure's setting is backward Euler with ηD/(EΔτ) = 5 and a push of 0.001 D per pseudo-time step, settled without damping \
          after every 0.01 D. Below, the whole push is one ramp.",
     );
     let still = |case| runs.get(&format!("{case}-static")).and_then(outcome);
@@ -109,7 +109,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
         outcome(ran)
     })?;
     page.text(format!(
-        "With drag the pushed side invaginates in {as_printed} of {all} settings; without it, pushed at the colon end the tube folds to the {}, pushed at the ileum end \
+        "With damping the pushed side invaginates in {as_printed} of {all} settings; without it, pushed at the colon end the tube folds to the {}, pushed at the ileum end \
          to the {}.",
         without[0], without[1]
     ));

@@ -22,8 +22,8 @@ pub struct Ramps {
 }
 
 /// The name of a case's run with a drag, in so many steps.
-fn name(case: &str, drag: f64, steps: usize) -> String {
-    format!("{case}-drag-{drag}-ramp-{steps}")
+fn name(case: &str, damping: f64, steps: usize) -> String {
+    format!("{case}-damping-{damping}-ramp-{steps}")
 }
 
 impl Ramps {
@@ -31,15 +31,15 @@ impl Ramps {
     pub fn jobs(&self, start: impl Fn(&'static str) -> Job) -> Vec<Job> {
         let mut jobs = vec![];
         for (_, case, _) in self.panels {
-            for &drag in self.drags {
+            for &damping in self.drags {
                 for &steps in self.steps {
-                    let job = start(case).named(name(case, drag, steps)).bare();
+                    let job = start(case).named(name(case, damping, steps)).bare();
                     jobs.push(
-                        job.with("solver.scheme", "\"dragged\"")
-                            .with("solver.pseudo_time.drag", format!("{drag:?}"))
+                        job.with("solver.scheme", "\"damped\"")
+                            .with("solver.pseudo_time.damping", format!("{damping:?}"))
                             .with("solver.pseudo_time.ramp", steps)
                             .with("solver.pseudo_time.tolerance", "1e-4")
-                            .with("solver.pseudo_time.hold", 20000),
+                            .with("solver.pseudo_time.max_steps", 20000),
                     );
                 }
             }
@@ -71,11 +71,11 @@ impl Ramps {
             }
         }
         let mut rows = vec![first];
-        for &drag in self.drags {
-            let mut row = vec![format!("{drag}")];
+        for &damping in self.drags {
+            let mut row = vec![format!("{damping}")];
             for panel in &self.panels {
                 for &steps in self.steps {
-                    row.push(outcome(panel, runs.get(&name(panel.1, drag, steps))?)?);
+                    row.push(outcome(panel, runs.get(&name(panel.1, damping, steps))?)?);
                 }
             }
             rows.push(row);

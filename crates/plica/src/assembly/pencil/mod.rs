@@ -109,7 +109,7 @@ impl PencilInput<'_> {
         let columns = columns.measured_from(stress_free.map(|at| {
             let through = (qz * self.layers.len() + t) * layer.radius.len() + qr;
             let at = &at[(through * self.rings.vectors() + v) * self.around.len() + qs];
-            at.departure(simd, inverse_along, inverse_around)
+            at.imperfection_map(simd, inverse_along, inverse_around)
         }));
         let mask = self.rings.mask[v].load(simd);
         let volume = mask.times(self.weight(qz) * layer.weight[qr] * point.volume(radius));

@@ -103,17 +103,17 @@ fn the_harmonic_solver_inverts_the_tangent_of_an_axisymmetric_tube() {
         let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
         let block = |n: usize| {
             let mut block = average.harmonic(n * repeats);
-            block.constrain(one.given());
+            block.constrain(one.prescribed());
             block.factor().unwrap()
         };
         let solver = HarmonicSolver::new(rings, (0..=rings / 2).map(block).collect());
         let x: Vec<f64> = direction(&tube)
             .iter()
-            .zip(tube.given())
-            .map(|(x, &given)| if given { 0.0 } else { *x })
+            .zip(tube.prescribed())
+            .map(|(x, &prescribed)| if prescribed { 0.0 } else { *x })
             .collect();
         let mut K = tube.tangent(&load, &u);
-        K.constrain(tube.given());
+        K.constrain(tube.prescribed());
         let solved = solver.solve(&multiplied(&K, &x));
         let scale = largest(&x);
         for (a, b) in solved.iter().zip(&x) {
@@ -207,11 +207,11 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
             "pressure, {rings}: {found} {exact}"
         );
 
-        let drag = tube.ring_drag();
+        let damping = tube.ring_damping();
         let mut metric = BlockBanded::zeros(coupled.blocks(), low.row(), 3);
-        low.add_drag(&tube, &drag, 2.0, &mut metric);
+        low.add_drag(&tube, &damping, 2.0, &mut metric);
         let mut product = vec![0.0; v.len()];
-        drag.multiply_add(2.0, &v, &mut product);
+        damping.multiply_add(2.0, &v, &mut product);
         let (exact, found) = (dot(&v, &product), dot(&x, &multiplied(&metric, &x)));
         assert!(
             (found / exact - 1.0).abs() < 1e-12,
@@ -224,10 +224,10 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
 fn the_drag_of_rings_is_the_drag_matrix() {
     for (degree, elements, rings) in SECTORS {
         let TubeAndLoad { tube, .. } = tube_and_load(degree, elements, rings);
-        let (drag, v) = (tube.ring_drag(), direction(&tube));
-        let assembled = multiplied(&tube.drag(), &v);
+        let (damping, v) = (tube.ring_damping(), direction(&tube));
+        let assembled = multiplied(&tube.damping(), &v);
         let mut product = vec![0.0; v.len()];
-        drag.multiply_add(1.0, &v, &mut product);
+        damping.multiply_add(1.0, &v, &mut product);
         let scale = largest(&assembled);
         for (a, b) in product.iter().zip(&assembled) {
             assert!(
@@ -239,7 +239,7 @@ fn the_drag_of_rings_is_the_drag_matrix() {
         let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
         let block = |n: usize| {
             let mut block = BlockBanded::zeros(one.axial.functions(), one.row_size(), degree);
-            drag.add_harmonic(1.0, n * (elements[2] / rings), &mut block);
+            damping.add_harmonic(1.0, n * (elements[2] / rings), &mut block);
             block.factor().unwrap()
         };
         let solver = HarmonicSolver::new(rings, (0..=rings / 2).map(block).collect());

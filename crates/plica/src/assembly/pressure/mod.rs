@@ -70,7 +70,7 @@ type Along<'a> = (&'a Slab, usize);
 impl SplineTube {
     /// Adds what pressures do to the energy and the residual of a state.
     pub(in crate::assembly) fn add_pressure(&self, load: &Load, u: &[f64], forces: &mut Forces) {
-        let mut squares = forces.in_play * forces.in_play;
+        let mut squares = forces.residual_scale * forces.residual_scale;
         for wall in self.pressed_walls(load) {
             let parts = self.sum_over(&wall, [u], |[moved], point| {
                 let rest = wall.at_rest(point);
@@ -94,7 +94,7 @@ impl SplineTube {
                 squares += part.squares;
             }
             self.add_parts(&wall, &parts, 1.0, &mut forces.residual);
-            forces.in_play = squares.sqrt();
+            forces.residual_scale = squares.sqrt();
         }
     }
 

@@ -26,7 +26,7 @@ fn alone(tube: &SplineTube, load: &Load, u: &[f64]) -> Forces {
         energy_ungrown: 0.0,
         potential: 0.0,
         residual: vec![0.0; u.len()],
-        in_play: 0.0,
+        residual_scale: 0.0,
         smallest_jacobian: 1.0,
     };
     tube.add_pressure(load, u, &mut forces);
@@ -294,7 +294,7 @@ fn forces_of_pressures_do_not_depend_on_the_number_of_threads() {
     let (one, three) = (with(1), with(3));
     assert_eq!(one.residual, three.residual);
     assert_eq!(
-        (one.potential, one.in_play),
-        (three.potential, three.in_play)
+        (one.potential, one.residual_scale),
+        (three.potential, three.residual_scale)
     );
 }

@@ -51,7 +51,7 @@ fn harmonic_1_of_an_end_shifts_the_drawn_face_sideways() {
     let wave = Wave::new(1, phase, Axial::Uniform);
     let tube = imperfect([Support::Fixed; 2], COLON, 0.03, wave);
     let mut u = vec![0.0; tube.unknowns()];
-    tube.impose(&tube.tube.rest(), &mut u);
+    tube.apply_prescribed(&tube.tube.rest(), &mut u);
     for i in 0..50 {
         let angle = 0.13 * f64::from(i);
         let moved = displacement(&tube, &u, 0.0, 0.45, angle);
@@ -69,7 +69,7 @@ fn harmonic_1_of_an_end_along_the_axis_tilts_the_drawn_face() {
     let of = Part::End(End::Ileum, Push::Axial);
     let tube = imperfect([Support::Fixed, Support::Sliding], of, 0.03, wave);
     let mut u = vec![0.0; tube.unknowns()];
-    tube.impose(&tube.tube.rest(), &mut u);
+    tube.apply_prescribed(&tube.tube.rest(), &mut u);
     for i in 0..50 {
         let (angle, radius) = (0.13 * f64::from(i), 0.35 + 0.003 * f64::from(i));
         let at = tube.sample(
@@ -94,7 +94,7 @@ fn harmonic_2_of_an_end_is_oval_as_high_as_asked_and_keeps_lengths() {
     let wave = Wave::new(2, 0.0, Axial::Uniform);
     let tube = imperfect([Support::Fixed; 2], COLON, 0.01, wave);
     let mut u = vec![0.0; tube.unknowns()];
-    tube.impose(&tube.tube.rest(), &mut u);
+    tube.apply_prescribed(&tube.tube.rest(), &mut u);
     let turned = |angle: f64| {
         let [_, x, y] = displacement(&tube, &u, 0.0, 0.45, angle);
         let (sin, cos) = angle.sin_cos();
@@ -125,7 +125,7 @@ fn an_imperfect_end_is_turned_with_its_shift() {
         twist: 0.5,
     };
     let mut u = vec![0.0; tube.unknowns()];
-    tube.impose(&load, &mut u);
+    tube.apply_prescribed(&load, &mut u);
     for i in 0..20 {
         let angle = 0.3 * f64::from(i);
         let point = Point {
@@ -185,7 +185,7 @@ fn a_start_is_smooth_and_holds_the_ends() {
     let tube = imperfect([Support::Fixed; 2], COLON, 0.01, wave);
     let u = tube.start();
     let mut imposed = u.clone();
-    tube.impose(&tube.tube.rest(), &mut imposed);
+    tube.apply_prescribed(&tube.tube.rest(), &mut imposed);
     assert_eq!(u, imposed);
     assert!(tube.forces(&tube.tube.rest(), &u).is_ok());
 }
@@ -202,7 +202,7 @@ fn fields_at_points_add_up_to_the_energy_of_an_imperfect_muscle() {
         let mut load = tube_and_load(3, [9, 2, 12], 1).load;
         load.ends = tube.tube.rest().ends;
         let mut u = tube.start();
-        tube.impose(&load, &mut u);
+        tube.apply_prescribed(&load, &mut u);
         let rule = gauss_legendre(4);
         let spans = |basis: &Basis| -> Vec<(f64, f64)> {
             let spans = (0..basis.elements()).map(|e| basis.element(e));

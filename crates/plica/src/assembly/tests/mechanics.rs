@@ -47,7 +47,7 @@ fn a_tube_at_rest_has_its_radii_its_volume_and_no_residual() {
     // e_z · C e_z integrates one.
     let shift = unknowns(&spline, |_, _, _| [1.0, 0.0, 0.0]);
     let mut weighed = vec![0.0; shift.len()];
-    spline.drag().multiply_add(1.0, &shift, &mut weighed);
+    spline.damping().multiply_add(1.0, &shift, &mut weighed);
     let volume = dot(&shift, &weighed) * spline.sector.repeats();
     let exact = PI * (0.25 - 0.44 * 0.44) * 3.0;
     // The projected circle is right on average: its area is off by the square of its error.

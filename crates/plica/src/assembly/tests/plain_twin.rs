@@ -29,10 +29,11 @@ fn the_kernel_has_the_energy_and_the_residual_of_its_plain_twin() {
             PlainTube::new(&tube, &load).forces(&u),
         );
         let name = format!("degree {degree}, {elements:?}");
-        let numbers = [fast.energy, fast.energy_ungrown, fast.in_play];
-        for (a, b) in numbers
-            .into_iter()
-            .zip([plain.energy, plain.energy_ungrown, plain.in_play])
+        let numbers = [fast.energy, fast.energy_ungrown, fast.residual_scale];
+        for (a, b) in
+            numbers
+                .into_iter()
+                .zip([plain.energy, plain.energy_ungrown, plain.residual_scale])
         {
             assert!((a / b - 1.0).abs() < 1e-12, "{name}: {a} is not {b}");
         }
@@ -59,7 +60,7 @@ fn the_kernel_has_the_tangent_of_its_plain_twin() {
 fn the_kernel_has_the_drag_of_its_plain_twin() {
     for (degree, elements) in MESHES {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, elements[2]);
-        let (fast, plain) = (tube.drag(), PlainTube::new(&tube, &load).drag());
+        let (fast, plain) = (tube.damping(), PlainTube::new(&tube, &load).damping());
         let n = tube.unknowns();
         let entries = (0..n * n).map(|e| fast.entry(e / n, e % n));
         assert_close(&format!("degree {degree}, {elements:?}"), entries, &plain);

@@ -34,7 +34,9 @@ fn results_do_not_depend_on_the_number_of_threads() {
                 .map(|e| tangent.entry(e / n, e % n).to_bits())
                 .collect();
             bits.extend(forces.residual.iter().map(|r| r.to_bits()));
-            bits.extend([forces.energy, forces.energy_ungrown, forces.in_play].map(f64::to_bits));
+            bits.extend(
+                [forces.energy, forces.energy_ungrown, forces.residual_scale].map(f64::to_bits),
+            );
             bits
         })
     };

@@ -171,7 +171,7 @@ fn an_imperfect_tube_at_rest_is_free_of_stress() {
         // Its ends are held as they are, and there the search for it begins.
         assert!(largest(&moved(&tube.start(), u, -1.0)) < 1e-16);
         let mut held = u.to_vec();
-        tube.impose(&rest, &mut held);
+        tube.apply_prescribed(&rest, &mut held);
         assert!(largest(&moved(&held, u, -1.0)) < 1e-16);
     }
 }
@@ -214,7 +214,7 @@ fn a_round_imperfection_is_the_same_for_every_sector() {
         let f = many.forces(&load, &replicated(&u, rings)).unwrap();
         assert!((f.energy / forces.energy - 1.0).abs() < 1e-13);
         let off = moved(&f.residual, &replicated(&forces.residual, rings), -1.0);
-        assert!(largest(&off) < 1e-13 * forces.in_play);
+        assert!(largest(&off) < 1e-13 * forces.residual_scale);
         let again = many.of_one_ring().forces(&load, &u).unwrap();
         assert!((again.energy / forces.energy - 1.0).abs() < 1e-15);
         // Harmonic by harmonic: by slabs, by the average of pencils, and of the whole tube. Without

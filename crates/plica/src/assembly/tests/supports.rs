@@ -19,7 +19,7 @@ fn anchors_are_as_many_as_rigid_motions_are_left() {
         ([Free, Sliding], 1, 3),
         ([Free, Free], 2, 6),
     ] {
-        for (rings, anchors) in [(1, one_ring), (3, one_ring), (6, whole)] {
+        for (rings, rigid_body_constraints) in [(1, one_ring), (3, one_ring), (6, whole)] {
             let TubeAndLoad { tube, .. } = tube_and_load(2, [4, 1, 6], rings);
             let tube = Tube { ends, ..tube.tube };
             let mesh = Mesh {
@@ -31,12 +31,16 @@ fn anchors_are_as_many_as_rigid_motions_are_left() {
                 volumetric: Default::default(),
             };
             let spline = SplineTube::new(&tube, &mesh, rings);
-            assert_eq!(spline.anchors(), anchors, "{ends:?}, {rings} rings");
+            assert_eq!(
+                spline.rigid_body_constraints(),
+                rigid_body_constraints,
+                "{ends:?}, {rings} rings"
+            );
 
             // With them the tube at rest is held: its stiffness has no eigenvalue near zero.
             let zero = vec![0.0; spline.unknowns()];
             let mut K = spline.tangent(&tube.rest(), &zero);
-            K.constrain(spline.given());
+            K.constrain(spline.prescribed());
             let n = spline.unknowns();
             let mut held = faer::Mat::zeros(n, n);
             for j in 0..n {
@@ -73,7 +77,7 @@ fn ends_move_and_twist_as_the_load_says() {
             },
         ];
         let mut u = vec![0.0; tube.unknowns()];
-        tube.impose(&load, &mut u);
+        tube.apply_prescribed(&load, &mut u);
         for angle in [0.0, 0.3, 2.0] {
             for radius in [0.35, 0.42, 0.5] {
                 for (z, motion) in [(0.0, load.ends[0]), (1.5, load.ends[1])] {

@@ -14,7 +14,7 @@ fn larger_sectors_agree_with_a_sector_of_one_ring() {
         let one = tube_and_load(degree, [9, 2, 6], 1);
         let (load, u) = (&one.load, wavy(&one.tube)); // with twist
         let forces = one.tube.forces(load, &u).unwrap();
-        let (tangent, drag) = (one.tube.tangent(load, &u), one.tube.drag());
+        let (tangent, damping) = (one.tube.tangent(load, &u), one.tube.damping());
         for rings in [2, 3, 6] {
             let name = format!("degree {degree}, {rings} rings");
             let TubeAndLoad { tube, .. } = tube_and_load(degree, [9, 2, 6], rings);
@@ -23,14 +23,14 @@ fn larger_sectors_agree_with_a_sector_of_one_ring() {
             assert!((f.energy / forces.energy - 1.0).abs() < 1e-13, "{name}");
             let off = moved(&f.residual, &replicated(&forces.residual, rings), -1.0);
             assert!(
-                largest(&off) < 1e-13 * largest(&forces.residual).max(forces.in_play),
+                largest(&off) < 1e-13 * largest(&forces.residual).max(forces.residual_scale),
                 "{name}"
             );
 
             let n = one.tube.unknowns();
             let entries = (0..n * n).map(|e| tangent.entry(e / n, e % n).abs());
             let size = entries.fold(0.0, f64::max);
-            let (many_tangent, many_drag) = (tube.tangent(load, &many), tube.drag());
+            let (many_tangent, many_drag) = (tube.tangent(load, &many), tube.damping());
             for (i, j) in (0..n * n).map(|e| (e / n, e % n)) {
                 for ring in 0..rings {
                     let row = i * rings + ring;
@@ -38,7 +38,7 @@ fn larger_sectors_agree_with_a_sector_of_one_ring() {
                     let k: f64 = columns.clone().map(|c| many_tangent.entry(row, c)).sum();
                     assert!((k - tangent.entry(i, j)).abs() < 1e-12 * size, "{name}");
                     let c: f64 = columns.map(|c| many_drag.entry(row, c)).sum();
-                    assert!((c - drag.entry(i, j)).abs() < 1e-15, "{name}");
+                    assert!((c - damping.entry(i, j)).abs() < 1e-15, "{name}");
                 }
             }
         }
@@ -108,14 +108,14 @@ fn harmonic_blocks_are_those_of_the_whole_tube() {
             0 => one.tangent(&load, &u),
             _ => one.harmonic_tangent(&load, &u, n),
         };
-        block.constrain(&one.given_in_harmonic(n));
+        block.constrain(&one.prescribed_in_harmonic(n));
         block.factor().unwrap().negative_pivots()
     };
     let counts: Vec<usize> = (0..=around / 2).map(negative).collect();
     assert!(counts[1..around / 2].iter().any(|&n| n > 0), "{counts:?}");
     // Every harmonic but the first and the last comes as a cosine and as a sine.
     let expected = 2 * counts.iter().sum::<usize>() - counts[0] - counts[around / 2];
-    K.constrain(whole.given());
+    K.constrain(whole.prescribed());
     let found = K.factor().unwrap().negative_pivots();
     assert_eq!(found, expected, "{counts:?}");
 }

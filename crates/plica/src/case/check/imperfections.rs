@@ -184,7 +184,7 @@ fn wave(
 ) -> Shape {
     let of_key = format!("{path}.of");
     let path = format!("{path}.shape.wave");
-    check_harmonic(&format!("{path}.harmonic"), wave.harmonic, run, problems);
+    check_harmonic(&format!("{path}.mode"), wave.mode, run, problems);
     let key = format!("{path}.axial");
     if matches!(of, Part::End(..)) && wave.axial.is_some() && problems.is_as_written(&of_key) {
         nothing_along(&key, problems);
@@ -199,7 +199,7 @@ fn wave(
         }
     };
     let phase = wave.phase_degrees.to_radians();
-    Shape::Wave(Wave::new(wave.harmonic, phase, axial))
+    Shape::Wave(Wave::new(wave.mode, phase, axial))
 }
 
 /// A random shape, in harmonics that the run has.
@@ -213,13 +213,13 @@ fn random(
     let of_key = format!("{path}.of");
     let path = format!("{path}.shape.random");
     let (mesh, symmetry) = run;
-    let key = format!("{path}.harmonics");
+    let key = format!("{path}.modes");
     let told_apart = match symmetry {
         Symmetry::Axisymmetric => 0,
         Symmetry::Fold(_) | Symmetry::None => mesh.around / 4,
     };
     let usual = spec::Random::usual_count();
-    let harmonics = random.harmonics.unwrap_or(usual.min(told_apart));
+    let harmonics = random.modes.unwrap_or(usual.min(told_apart));
     check_highest(&key, harmonics, run, problems);
     let end = matches!(of, Part::End(..));
     if end && random.half_waves.is_some() && problems.is_as_written(&of_key) {

@@ -57,7 +57,7 @@ pub(super) fn plan(spec: &Spec, name: &str, open: &Open<'_>, problems: &mut Prob
             pictures: spec.output.pictures,
             profiles_every: spec.output.profiles_every,
             states_every: spec.output.states_every,
-            harmonics: spec.output.harmonics,
+            stability_modes: spec.output.stability_modes,
             wall_points: spec.output.wall_points,
         },
         units,

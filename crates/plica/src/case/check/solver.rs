@@ -16,15 +16,15 @@ pub(super) fn settings(solver: &spec::Solver, problems: &mut Problems) -> Settin
             Scheme::Static
         }
         spec::Scheme::Newmark => pseudo_time(solver, Integrator::Newmark, 100.0),
-        spec::Scheme::Dragged => pseudo_time(solver, Integrator::BackwardEuler, 5.0),
+        spec::Scheme::BackwardEuler => pseudo_time(solver, Integrator::BackwardEuler, 5.0),
     };
     Settings {
         scheme,
         tolerance: solver.tolerance,
         newton_iterations: solver.newton_iterations,
         relaxation_steps: solver.relaxation_steps,
-        relaxation_drag: solver.relaxation_drag,
-        halvings: solver.halvings,
+        relaxation_damping: solver.relaxation_damping,
+        max_step_halvings: solver.max_step_halvings,
     }
 }
 
@@ -32,10 +32,10 @@ fn pseudo_time(solver: &spec::Solver, integrator: Integrator, usual_drag: f64) -
     let written = solver.pseudo_time.clone().unwrap_or_default();
     Scheme::PseudoTime(PseudoTime {
         integrator,
-        drag: written.drag.unwrap_or(usual_drag),
+        damping: written.damping.unwrap_or(usual_drag),
         ramp: written.ramp,
         tolerance: written.tolerance,
-        hold: written.hold,
-        settle: written.settle,
+        max_steps: written.max_steps,
+        equilibrate: written.equilibrate,
     })
 }

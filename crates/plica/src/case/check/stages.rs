@@ -149,7 +149,7 @@ impl Driven {
             Self::Muscle(_, Direction::Circular) => &["diameter_ratio"],
             Self::Muscle(_, Direction::Longitudinal) => &["length_ratio"],
             Self::End(_) => &["displacement", "twist_degrees"],
-            Self::Wall(_) => &["pressure", "dead_pressure"],
+            Self::Wall(_) => &["pressure", "dead_load"],
         }
     }
 
@@ -205,7 +205,7 @@ fn apply(
         ("displacement", drive.displacement),
         ("twist_degrees", drive.twist_degrees),
         ("pressure", drive.pressure),
-        ("dead_pressure", drive.dead_pressure),
+        ("dead_load", drive.dead_load),
     ];
     if written.iter().all(|(_, value)| value.is_none()) && problems.none_about(&[path]) {
         let cure = format!("give {}", targets.join(" or "));
@@ -270,7 +270,7 @@ pub(super) fn check_closed(key: &str, tube: &Tube, problems: &mut Problems) {
         let rule = format!(
             "the work of a true pressure depends on what closes an end that moves, and the {name} end is free"
         );
-        let cure = "hold it, with \"sliding\" or \"fixed\" in [ends], or give dead_pressure";
+        let cure = "hold it, with \"sliding\" or \"fixed\" in [ends], or give dead_load";
         problems.value(key, rule, Some(cure.into()));
     }
 }
@@ -291,7 +291,7 @@ pub(super) fn check_planes(tube: &Tube, stages: &[Stage], problems: &mut Problem
         if slides && waves.iter().any(|wave| wave.harmonic > 0) {
             let rule =
                 "an end that slides out of its plane does not close a tube under true pressure";
-            let cure = "fix the end, or give dead_pressure in the stages";
+            let cure = "fix the end, or give dead_load in the stages";
             problems.key(
                 &format!("imperfections[{}]", i + 1),
                 rule,

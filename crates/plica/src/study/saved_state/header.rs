@@ -59,7 +59,7 @@ struct EndHeader {
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 struct PressureHeader {
     pressure: f64,
-    dead_pressure: f64,
+    dead_load: f64,
 }
 
 impl PressureHeader {
@@ -107,7 +107,7 @@ impl SavedState {
         };
         let wall = |pressure: Pressure| PressureHeader {
             pressure: pressure.follower,
-            dead_pressure: pressure.dead,
+            dead_load: pressure.dead,
         };
         let Layout {
             length,
@@ -163,7 +163,7 @@ impl SavedState {
         };
         let wall = |wall: PressureHeader| Pressure {
             follower: wall.pressure,
-            dead: wall.dead_pressure,
+            dead: wall.dead_load,
         };
         let refinement = |r: &RefineHeader| Refinement {
             from: r.from,

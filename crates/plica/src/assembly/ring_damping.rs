@@ -9,7 +9,7 @@ use rayon::prelude::*;
 /// C = A ⊗ W ⊗ Q with A along the tube, W through the wall, and Q around, which is the same at
 /// every ring.
 #[derive(Clone, Debug)]
-pub struct RingDrag {
+pub struct RingDamping {
     rings: usize,
     angle: f64,
     along: Band,
@@ -58,7 +58,7 @@ impl Band {
     }
 }
 
-impl RingDrag {
+impl RingDamping {
     /// Of a tube of `rows` × `points` control points on a sector.
     pub fn new(
         slabs: &[Slab],

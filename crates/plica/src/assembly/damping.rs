@@ -6,7 +6,7 @@ use crate::matrix::BlockBanded;
 use crate::rings::Sector;
 
 /// The drag matrix of a tube of `rows` × `points` control points on a sector.
-pub fn drag(
+pub fn damping(
     slabs: &[Slab],
     layers: &[Layer],
     around: &[Around],

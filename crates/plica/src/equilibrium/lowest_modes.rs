@@ -7,7 +7,7 @@ use crate::tube::Load;
 
 impl TubeProblem {
     /// The lowest eigenpairs of K x = ν C x on the free unknowns, with the tangent K of a state that
-    /// is not inverted and the mass C of unit density ([`crate::assembly::RingDrag`]), ν in E/D². As
+    /// is not inverted and the mass C of unit density ([`crate::assembly::RingDamping`]), ν in E/D². As
     /// many as `block` are searched for together: more than are wanted, since a search is as slow as
     /// the next eigenvalue is near, and on a tube that is nearly round eigenvalues come in pairs.
     /// Where it starts is noise of a fixed seed, made smooth, so that no symmetry hides a mode.

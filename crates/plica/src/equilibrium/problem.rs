@@ -4,7 +4,7 @@ use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
 use crate::assembly::{Inverted, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::solve::{
-    Balance, Direct, Equilibrium, NegativeCurvature, Solved, Solver, Tangent, Watch,
+    Direct, Equilibrium, Monitor, NegativeCurvature, ResidualEvaluation, Solved, Solver, Tangent,
 };
 use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
@@ -16,7 +16,7 @@ pub struct TubeProblem {
     /// The tube.
     pub tube: Arc<SplineTube>,
     rings: Rings,
-    given: Arc<[bool]>,
+    prescribed: Arc<[bool]>,
     /// Reference volume of the sector.
     volume: f64,
     /// Forces in play that a tube at rest is credited with, so that what rounding leaves of it
@@ -57,11 +57,11 @@ impl TubeProblem {
         let tube = Arc::new(tube);
         Self {
             rings: if tube.sector.rings == 1 {
-                Rings::One(Arc::new(tube.drag()))
+                Rings::One(Arc::new(tube.damping()))
             } else {
                 Rings::Many(Arc::new(HarmonicTube::new(tube.clone())))
             },
-            given: tube.given().into(),
+            prescribed: tube.prescribed().into(),
             volume: PI * (outer * outer - inner * inner) * tube.tube.length / tube.sector.repeats(),
             at_rest,
             tube,
@@ -71,47 +71,51 @@ impl TubeProblem {
 
 impl Equilibrium for TubeProblem {
     type Load = Load;
-    type Broken = Inverted;
+    type EvaluationError = Inverted;
     type Tangent = TubeTangent;
 
-    fn given(&self) -> &[bool] {
-        &self.given
+    fn prescribed(&self) -> &[bool] {
+        &self.prescribed
     }
-    fn impose(&self, load: &Load, u: &mut [f64]) {
-        self.tube.impose(load, u);
+    fn apply_prescribed(&self, load: &Load, u: &mut [f64]) {
+        self.tube.apply_prescribed(load, u);
     }
     fn between(&self, from: &Load, to: &Load, t: f64) -> Load {
         from.towards(to, t)
     }
-    fn forces(&self, load: &Load, u: &[f64]) -> Result<Balance, Inverted> {
+    fn forces(&self, load: &Load, u: &[f64]) -> Result<ResidualEvaluation, Inverted> {
         let mut forces = self.tube.forces(load, u)?;
         self.tube.take_out_pins(&mut forces.residual);
         // The solver sees one sector: its energy is that whose derivative the residual is.
         let [strain, energy] =
             [forces.energy, forces.potential].map(|x| x / self.tube.sector.repeats());
-        Ok(Balance {
+        Ok(ResidualEvaluation {
             energy,
             residual: forces.residual,
-            in_play: forces.in_play.max(self.at_rest),
+            residual_scale: forces.residual_scale.max(self.at_rest),
             // Every point adds an energy density of rounding size.
             rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * strain.abs().max(energy.abs()),
         })
     }
     fn tangent(&self, load: &Load, u: &[f64]) -> TubeTangent {
         match &self.rings {
-            Rings::One(drag) => {
+            Rings::One(damping) => {
                 let stiffness = self.tube.tangent(load, u);
-                TubeTangent::Direct(Direct::new(stiffness, drag.clone(), self.given.clone()))
+                TubeTangent::Direct(Direct::new(
+                    stiffness,
+                    damping.clone(),
+                    self.prescribed.clone(),
+                ))
             }
             Rings::Many(tube) => TubeTangent::Harmonic(tube.tangent(load, u)),
         }
     }
-    fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+    fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         match &self.rings {
-            Rings::One(drag) => drag.multiply_add(factor, v, y),
+            Rings::One(damping) => damping.multiply_add(factor, v, y),
             Rings::Many(tube) => {
                 let mut force = vec![0.0; v.len()];
-                tube.drag(factor, v, &mut force);
+                tube.damping(factor, v, &mut force);
                 self.tube.take_out_pins(&mut force);
                 y.iter_mut().zip(&force).for_each(|(y, f)| *y += f);
             }
@@ -149,21 +153,21 @@ impl Solver for TubeSolver {
             Self::Harmonic(system) => system.negative_pivots(),
         }
     }
-    fn leads_away(&self) -> bool {
+    fn is_unstable(&self) -> bool {
         match self {
-            Self::Direct(factor) => factor.leads_away(),
-            Self::Harmonic(system) => system.leads_away(),
+            Self::Direct(factor) => factor.is_unstable(),
+            Self::Harmonic(system) => system.is_unstable(),
         }
     }
     fn solve(
         &self,
         b: &mut [f64],
         accuracy: f64,
-        watch: &mut dyn Watch,
+        monitor: &mut dyn Monitor,
     ) -> Result<Solved, NegativeCurvature> {
         match self {
-            Self::Direct(factor) => Solver::solve(factor, b, accuracy, watch),
-            Self::Harmonic(system) => system.solve(b, accuracy, watch),
+            Self::Direct(factor) => Solver::solve(factor, b, accuracy, monitor),
+            Self::Harmonic(system) => system.solve(b, accuracy, monitor),
         }
     }
 }

@@ -32,7 +32,7 @@ const ITERATIONS: usize = 80;
 ///
 /// `goes_on` is asked in every iteration of such a search; a sign that did not show until it said no
 /// is `unknown`.
-pub fn unstable_harmonics(
+pub fn unstable_modes(
     problem: &TubeProblem,
     path: &mut Path<'_, TubeProblem>,
     harmonics: usize,
@@ -88,7 +88,7 @@ pub fn unstable_harmonics(
             0 => ring.tangent(load, &of_ring),
             n => ring.harmonic_tangent(load, &of_ring, n),
         };
-        tangent.constrain(&ring.given_in_harmonic(n));
+        tangent.constrain(&ring.prescribed_in_harmonic(n));
         // A singular block is at the edge of stability; it counts as lost.
         tangent
             .factor()
@@ -206,7 +206,7 @@ mod tests {
                 let mut load = tube.tube.rest();
                 load.pressures[1].follower = pressure;
                 let mut tangent = tube.tangent(&load, &oval);
-                tangent.constrain(tube.given());
+                tangent.constrain(tube.prescribed());
                 let negative = tangent.factor().unwrap().negative_pivots();
                 let mut path = Path::begin(&problem, load, oval, Default::default()).unwrap();
                 let Some(TubeSolver::Harmonic(system)) = path.solver() else {
@@ -215,7 +215,7 @@ mod tests {
                 let average = system.average_is_indefinite();
                 assert!(!average || negative > 0);
                 assert_eq!(path.state().negative_pivots, usize::from(average));
-                let told = unstable_harmonics(&problem, &mut path, 4, &mut || true);
+                let told = unstable_modes(&problem, &mut path, 4, &mut || true);
                 println!("{rings} {pressure}: {negative} negative, {average}, {told}");
                 assert_eq!(told, if negative > 0 { "any:1" } else { "none" });
                 seen[usize::from(negative > 0) + usize::from(average)] += 1;

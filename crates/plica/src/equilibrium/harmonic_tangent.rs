@@ -1,11 +1,11 @@
 //! The tangent of a tube of many rings: conjugate gradients around the harmonic solver.
 
 use super::spare::Spare;
-use crate::assembly::{Linearised, LowHarmonics, RingDrag, SplineTube};
+use crate::assembly::{Linearised, LowHarmonics, RingDamping, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::rings::{Coupling, HarmonicSolver, Transform};
 use crate::solve::{
-    NegativeCurvature, Operator, Solved, Solver, Tangent, Watch, conjugate_gradients,
+    Monitor, NegativeCurvature, Operator, Solved, Solver, Tangent, conjugate_gradients,
 };
 use crate::tube::Load;
 use rayon::prelude::*;
@@ -32,7 +32,7 @@ const ITERATIONS: usize = 400;
 #[derive(Debug)]
 pub struct HarmonicTube {
     tube: Arc<SplineTube>,
-    drag: RingDrag,
+    damping: RingDamping,
     /// Low harmonics, as many as a state needs, once one does.
     low: [OnceLock<Arc<LowHarmonics>>; 2],
     /// Memory of tangents, of blocks of harmonics, and of matrices of low harmonics.
@@ -99,7 +99,7 @@ impl HarmonicTube {
     /// Of a tube.
     pub fn new(tube: Arc<SplineTube>) -> Self {
         Self {
-            drag: tube.ring_drag(),
+            damping: tube.ring_damping(),
             tube,
             low: Default::default(),
             linearised: Spare::default(),
@@ -109,8 +109,8 @@ impl HarmonicTube {
     }
 
     /// y += factor · C v.
-    pub fn drag(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        self.drag.multiply_add(factor, v, y);
+    pub fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        self.damping.multiply_add(factor, v, y);
     }
 
     /// The tangent stiffness at a state.
@@ -218,9 +218,9 @@ impl HarmonicTangent {
         let mut preconditioner = HarmonicSolver::new(rings, factors);
         if let (Some(low), Some(mut matrix)) = (self.state.low.as_deref(), coupled) {
             if alpha != 0.0 {
-                low.add_drag(&tube.tube, &tube.drag, alpha, &mut matrix);
+                low.add_drag(&tube.tube, &tube.damping, alpha, &mut matrix);
             }
-            matrix.constrain(&low.given(&tube.tube));
+            matrix.constrain(&low.prescribed(&tube.tube));
             let mut coupled = matrix.factor()?;
             coupled.make_positive();
             preconditioner = preconditioner.coupled(Coupling {
@@ -255,12 +255,12 @@ impl Linear {
     /// K_n + α C_n of the average, of harmonic n of the sector.
     fn block(&self, n: usize, alpha: f64) -> Result<Block, Singular> {
         let (tube, waves) = (&self.tube.tube, n * self.waves());
-        let given = tube.given_in_harmonic(waves);
+        let prescribed = tube.prescribed_in_harmonic(waves);
         let factored = |alpha: f64| {
             let mut block = self.tube.block();
             self.at.average.harmonic_into(waves, &mut block);
             if alpha != 0.0 {
-                self.tube.drag.add_harmonic(alpha, waves, &mut block);
+                self.tube.damping.add_harmonic(alpha, waves, &mut block);
             }
             let averaged = self
                 .low
@@ -268,7 +268,7 @@ impl Linear {
                 .filter(|low| n <= low.highest)
                 .map(|low| self.averaged(low, n, &block))
                 .transpose()?;
-            block.constrain(&given);
+            block.constrain(&prescribed);
             Ok((block.factor()?, averaged))
         };
         let pivots = |factored: &Result<(Factor, _), Singular>| {
@@ -321,14 +321,14 @@ impl Linear {
             |row, column| (place(row), place(column)),
             &mut matrix,
         );
-        matrix.constrain(&low.given_in_harmonic(&self.tube.tube, n));
+        matrix.constrain(&low.prescribed_in_harmonic(&self.tube.tube, n));
         matrix.factor()
     }
 }
 
 impl Operator for HarmonicSystem {
-    fn given(&self) -> &[bool] {
-        self.state.tube.tube.given()
+    fn prescribed(&self) -> &[bool] {
+        self.state.tube.tube.prescribed()
     }
     fn take_out_pins(&self, v: &mut [f64]) {
         self.state.tube.tube.take_out_pins(v);
@@ -338,7 +338,7 @@ impl Operator for HarmonicSystem {
         out.fill(0.0);
         tube.tube.product(at, 1.0, v, out);
         if self.alpha != 0.0 {
-            tube.drag(self.alpha, v, out);
+            tube.damping(self.alpha, v, out);
         }
     }
     fn precondition(&self, r: &[f64], out: &mut [f64]) {
@@ -349,7 +349,7 @@ impl Operator for HarmonicSystem {
     }
     fn metric(&self, v: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.state.tube.drag(1.0, v, out);
+        self.state.tube.damping(1.0, v, out);
     }
 }
 
@@ -377,7 +377,7 @@ impl Solver for HarmonicSystem {
     }
 
     /// A state that is the same at every ring stays so, whatever other harmonics it has lost.
-    fn leads_away(&self) -> bool {
+    fn is_unstable(&self) -> bool {
         match self.negative_in_harmonics() {
             Some(harmonics) => harmonics[0] > 0,
             None => self.average_is_indefinite(),
@@ -388,9 +388,9 @@ impl Solver for HarmonicSystem {
         &self,
         b: &mut [f64],
         accuracy: f64,
-        watch: &mut dyn Watch,
+        monitor: &mut dyn Monitor,
     ) -> Result<Solved, NegativeCurvature> {
-        conjugate_gradients(self, b, accuracy, ITERATIONS, watch)
+        conjugate_gradients(self, b, accuracy, ITERATIONS, monitor)
     }
 }
 

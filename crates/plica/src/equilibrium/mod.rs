@@ -1,0 +1,13 @@
+//! The tube as a solver problem: its tangent, its linear solver, its stability, and its transfer to another mesh.
+
+mod harmonic_tangent;
+mod lowest_modes;
+mod problem;
+mod prolong;
+mod spare;
+mod stability;
+
+pub use harmonic_tangent::HarmonicTangent;
+pub use problem::TubeProblem;
+pub use prolong::prolong;
+pub use stability::unstable_modes;
