@@ -33,7 +33,7 @@ pub use kept::kept;
 pub use layout::Layout;
 pub use mode::NamedMode;
 pub use observer::Observer;
-pub use plan::{Output, Plan, Stage, Start, Units};
+pub use plan::{LengthUnit, Output, Plan, Stage, Start, StressUnit, Units};
 pub use run::{folded, resume, run};
 pub use saved_state::{Array, SavedState, SavedStateError};
 pub use summary::{Ending, Phase, Snapshot, Summary, Whereabouts};

@@ -3,6 +3,7 @@
 use super::{NamedMode, SavedState};
 use crate::solve::Settings;
 use crate::tube::{Load, Mesh, Pressure, Symmetry, Tube};
+use std::fmt;
 
 /// A whole study, checked and dimensionless.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,17 +68,85 @@ pub struct Output {
     pub wall_points: usize,
 }
 
-/// Real units, of one tube.
+/// The units of a case, and the diameter and the modulus of its tube in them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Units {
-    /// Unit of length, as written: m, cm, mm or um.
-    pub length: String,
-    /// Unit of stress, as written: Pa, kPa or MPa.
-    pub stress: String,
+    /// Unit of length.
+    pub length: LengthUnit,
+    /// Unit of stress.
+    pub stress: StressUnit,
     /// The outer diameter in the unit of length.
     pub diameter: f64,
     /// Young's modulus in the unit of stress.
     pub youngs_modulus: f64,
+}
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// m
+    Metre,
+    /// cm
+    Centimetre,
+    /// mm
+    Millimetre,
+    /// µm, written `um`
+    Micrometre,
+}
+
+/// A unit of stress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StressUnit {
+    /// Pa
+    Pascal,
+    /// kPa
+    Kilopascal,
+    /// MPa
+    Megapascal,
+}
+
+impl LengthUnit {
+    /// The power of ten of a metre.
+    pub(super) fn power(self) -> i32 {
+        match self {
+            Self::Metre => 0,
+            Self::Centimetre => -2,
+            Self::Millimetre => -3,
+            Self::Micrometre => -6,
+        }
+    }
+}
+
+impl StressUnit {
+    /// The power of ten of a pascal.
+    pub(super) fn power(self) -> i32 {
+        match self {
+            Self::Pascal => 0,
+            Self::Kilopascal => 3,
+            Self::Megapascal => 6,
+        }
+    }
+}
+
+impl fmt::Display for LengthUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Metre => "m",
+            Self::Centimetre => "cm",
+            Self::Millimetre => "mm",
+            Self::Micrometre => "um",
+        })
+    }
+}
+
+impl fmt::Display for StressUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Pascal => "Pa",
+            Self::Kilopascal => "kPa",
+            Self::Megapascal => "MPa",
+        })
+    }
 }
 
 impl Plan {

@@ -280,7 +280,7 @@ impl fmt::Display for Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::Units;
+    use crate::study::{LengthUnit, StressUnit, Units};
 
     #[test]
     fn places_are_told_in_the_units_of_the_case() {
@@ -290,8 +290,8 @@ mod tests {
             depth: 0.25,
         };
         let units = Units {
-            length: "mm".into(),
-            stress: "kPa".into(),
+            length: LengthUnit::Millimetre,
+            stress: StressUnit::Kilopascal,
             diameter: 25.0,
             youngs_modulus: 40.0,
         };

@@ -32,19 +32,8 @@ impl Scale {
                 stress_name: "E".into(),
             };
         };
-        // Powers of ten of a metre and a pascal; their product is one of a joule.
-        let length_power = match units.length.as_str() {
-            "um" => -6,
-            "mm" => -3,
-            "cm" => -2,
-            _ => 0,
-        };
-        let stress_power = match units.stress.as_str() {
-            "kPa" => 3,
-            "MPa" => 6,
-            _ => 0,
-        };
-        let power = stress_power + 3 * length_power;
+        // The power of ten of a joule: pascals times cubic metres.
+        let power = units.stress.power() + 3 * units.length.power();
         let (named, energy_name) = match power {
             -18..=-13 => (-15, "fJ"),
             -12..=-10 => (-12, "pJ"),
@@ -57,9 +46,9 @@ impl Scale {
             length: units.diameter,
             energy: units.youngs_modulus * units.diameter.powi(3) * 10_f64.powi(power - named),
             stress: units.youngs_modulus,
-            length_name: units.length.clone(),
+            length_name: units.length.to_string(),
             energy_name: energy_name.into(),
-            stress_name: units.stress.clone(),
+            stress_name: units.stress.to_string(),
         }
     }
 }
@@ -67,12 +56,13 @@ impl Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::{LengthUnit, StressUnit};
 
     #[test]
     fn kilopascals_and_millimetres_are_microjoules() {
         let units = Units {
-            length: "mm".into(),
-            stress: "kPa".into(),
+            length: LengthUnit::Millimetre,
+            stress: StressUnit::Kilopascal,
             diameter: 25.0,
             youngs_modulus: 20.0,
         };
@@ -81,8 +71,8 @@ mod tests {
         assert!((scale.energy - 0.3125e6).abs() < 1e-6);
         assert_eq!(scale.energy_name, "uJ");
         let metres = Units {
-            length: "cm".into(),
-            stress: "Pa".into(),
+            length: LengthUnit::Centimetre,
+            stress: StressUnit::Pascal,
             ..units
         };
         // 20 Pa · (0.25 m)³ = 0.3125 J

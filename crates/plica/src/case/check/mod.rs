@@ -15,14 +15,23 @@ mod tube;
 use super::Open;
 use super::problem::Problems;
 use super::spec::{self, Spec};
-use crate::study::{Output, Plan, Units};
+use crate::study::{LengthUnit, Output, Plan, StressUnit, Units};
 
 /// The plan that a case means. It is worth something only if no problems were found.
 pub(super) fn plan(spec: &Spec, name: &str, open: &Open<'_>, problems: &mut Problems) -> Plan {
     let spec::Material::NeoHookean(law) = &spec.material;
     let units = spec.units.as_ref().map(|units| Units {
-        length: units.length.clone(),
-        stress: units.stress.clone(),
+        length: match units.length.as_str() {
+            "um" => LengthUnit::Micrometre,
+            "mm" => LengthUnit::Millimetre,
+            "cm" => LengthUnit::Centimetre,
+            _ => LengthUnit::Metre,
+        },
+        stress: match units.stress.as_str() {
+            "kPa" => StressUnit::Kilopascal,
+            "MPa" => StressUnit::Megapascal,
+            _ => StressUnit::Pascal,
+        },
         diameter: spec.tube.diameter,
         youngs_modulus: law.youngs_modulus,
     });
