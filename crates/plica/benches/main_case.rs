@@ -25,7 +25,7 @@ fn problem(plan: &Plan) -> TubeProblem {
 }
 
 /// The contracted tube, Dmin/D = 0.25.
-fn contracted<'a>(plan: &Plan, problem: &'a TubeProblem) -> Path<'a, TubeProblem> {
+fn contracted<'a>(plan: &Plan, problem: &'a TubeProblem) -> Path<&'a TubeProblem> {
     let rest = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(problem, plan.tube.rest(), rest, plan.solver.clone())
         .expect("a tube at rest is not inverted");
@@ -33,7 +33,7 @@ fn contracted<'a>(plan: &Plan, problem: &'a TubeProblem) -> Path<'a, TubeProblem
     path
 }
 
-fn lead(path: &mut Path<'_, TubeProblem>, plan: &Plan, stage: usize) {
+fn lead(path: &mut Path<&TubeProblem>, plan: &Plan, stage: usize) {
     let stage = &plan.stages[stage];
     path.begin_segment(stage.load.clone());
     for n in 1..=stage.steps {

@@ -2,10 +2,11 @@
 //! eigenvalue of any other state is negative.
 
 use super::lowest_modes::Noise;
-use super::problem::TubeSolver;
+use super::problem::{TubeSolver, TubeTangent};
 use super::{TubeProblem, harmonic_tangent::HarmonicSystem};
 use crate::assembly::SplineTube;
-use crate::solve::{Operator, Path, Search, lowest};
+use crate::solve::{Equilibrium, Operator, Path, Search, lowest};
+use crate::tube::Load;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -34,7 +35,7 @@ const ITERATIONS: usize = 80;
 /// is `unknown`.
 pub fn unstable_modes(
     problem: &TubeProblem,
-    path: &mut Path<'_, TubeProblem>,
+    path: &mut Path<impl Equilibrium<Load = Load, Tangent = TubeTangent>>,
     harmonics: usize,
     goes_on: &mut dyn FnMut() -> bool,
 ) -> String {

@@ -17,8 +17,8 @@ const PREDICTION: f64 = 1e-4;
 
 /// A way through states, leg by leg; a leg is a straight way through loads, t from 0 to 1. It owns
 /// the last accepted state.
-pub struct Path<'a, P: Equilibrium> {
-    problem: &'a P,
+pub struct Path<P: Equilibrium> {
+    problem: P,
     settings: Settings,
     state: State<P::Load>,
     /// Solves with the tangent stiffness of the state, unless that is singular. It may be as large as
@@ -107,17 +107,17 @@ impl<B: std::error::Error> std::fmt::Display for PathError<B> {
 
 impl<B: std::error::Error> std::error::Error for PathError<B> {}
 
-impl<'a, P: Equilibrium> Path<'a, P> {
+impl<P: Equilibrium> Path<P> {
     /// Begins at a state that is already in equilibrium under `load`.
     pub fn begin(
-        problem: &'a P,
+        problem: P,
         load: P::Load,
         u: Vec<f64>,
         settings: Settings,
     ) -> Result<Self, P::EvaluationError> {
         let forces = problem.forces(&load, &u)?;
         let velocity = vec![0.0; u.len()];
-        let (state, solver) = accepted(problem, load.clone(), u, &forces);
+        let (state, solver) = accepted(&problem, load.clone(), u, &forces);
         let (from, to) = (load.clone(), load);
         Ok(Self {
             problem,
@@ -136,7 +136,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
 
     /// Goes on from an accepted state of a leg between two loads.
     pub fn resume(
-        problem: &'a P,
+        problem: P,
         [from, to]: [P::Load; 2],
         load: P::Load,
         u: Vec<f64>,
@@ -296,7 +296,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         let load = self.load_at(t);
         let start = self.predict(t, &load, tangent.as_deref());
         self.solver = None;
-        let found = newton(self.problem, &load, start, &self.settings, monitor)
+        let found = newton(&self.problem, &load, start, &self.settings, monitor)
             .inspect_err(|failed| step.iterations += spent(failed))?;
         let previous = tangent.map(|tangent| PreviousPoint {
             t: self.t,
@@ -325,7 +325,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
             start = self.predict(t, &load, tangent.as_deref());
         }
         self.solver = None;
-        let found = relaxation(self.problem, &load, start, &self.settings, monitor)
+        let found = relaxation(&self.problem, &load, start, &self.settings, monitor)
             .inspect_err(|failed| step.iterations += spent(failed))?;
         self.accept(t, load, found, step);
         self.previous = None;
@@ -340,7 +340,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     fn accept(&mut self, t: f64, load: P::Load, found: Solution, step: &mut Step) {
         step.iterations += found.iterations + 1;
         step.damping_work += found.damping_work;
-        (self.state, self.solver) = accepted(self.problem, load, found.u, &found.forces);
+        (self.state, self.solver) = accepted(&self.problem, load, found.u, &found.forces);
         (self.tangent, self.t) = (None, t);
     }
 
@@ -365,7 +365,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         };
         let mut velocity = self.velocity.clone();
         let damped = pseudo_time(
-            self.problem,
+            &self.problem,
             [&self.state.load, &load],
             self.state.u.clone(),
             &mut velocity,
@@ -378,7 +378,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
         step.damping_work += damped.damping_work;
         let found = if scheme.equilibrate {
             velocity.fill(0.0);
-            relaxation(self.problem, &load, damped.u, settings, monitor)
+            relaxation(&self.problem, &load, damped.u, settings, monitor)
                 .map_err(|failed| fail(Method::Relaxation, failed, step))?
         } else {
             Solution {
@@ -405,7 +405,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     /// K du/dt = −∂R/∂t, the supports moving as they do.
     fn solve_for_tangent(&mut self, monitor: &mut dyn Monitor) -> Option<Vec<f64>> {
         self.solver()?;
-        let (problem, prescribed, u) = (self.problem, self.problem.prescribed(), &self.state.u);
+        let (problem, prescribed, u) = (&self.problem, self.problem.prescribed(), &self.state.u);
         // Central difference in t; the residual is smooth in the load.
         let at = |t: f64| {
             let load = self.load_at(t);
@@ -453,7 +453,7 @@ impl<'a, P: Equilibrium> Path<'a, P> {
     /// Where the path leads: along its tangent, or along the cubic through the state before and
     /// this one with the tangents of both, whichever comes closer to equilibrium.
     fn predict(&self, t: f64, load: &P::Load, tangent: Option<&[f64]>) -> Vec<f64> {
-        let (problem, u, ahead) = (self.problem, &self.state.u, t - self.t);
+        let (problem, u, ahead) = (&self.problem, &self.state.u, t - self.t);
         let Some(tangent) = tangent else {
             let mut u = u.clone();
             problem.apply_prescribed(load, &mut u);

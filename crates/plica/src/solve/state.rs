@@ -34,6 +34,36 @@ pub trait Equilibrium {
     fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]);
 }
 
+/// A reference to a problem is a problem.
+impl<P: Equilibrium> Equilibrium for &P {
+    type Load = P::Load;
+    type EvaluationError = P::EvaluationError;
+    type Tangent = P::Tangent;
+
+    fn prescribed(&self) -> &[bool] {
+        (**self).prescribed()
+    }
+    fn apply_prescribed(&self, load: &Self::Load, u: &mut [f64]) {
+        (**self).apply_prescribed(load, u);
+    }
+    fn between(&self, from: &Self::Load, to: &Self::Load, t: f64) -> Self::Load {
+        (**self).between(from, to, t)
+    }
+    fn forces(
+        &self,
+        load: &Self::Load,
+        u: &[f64],
+    ) -> Result<ResidualEvaluation, Self::EvaluationError> {
+        (**self).forces(load, u)
+    }
+    fn tangent(&self, load: &Self::Load, u: &[f64]) -> Self::Tangent {
+        (**self).tangent(load, u)
+    }
+    fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        (**self).damping(factor, v, y);
+    }
+}
+
 /// Energy and residual at a state.
 #[derive(Clone, Debug)]
 pub struct ResidualEvaluation {

@@ -124,7 +124,7 @@ fn stiffening_spring() -> Toy<1> {
     }
 }
 
-fn begin_segment<P>(problem: &P, from: f64, u: impl Into<Vec<f64>>, to: f64) -> Path<'_, P>
+fn begin_segment<P>(problem: &P, from: f64, u: impl Into<Vec<f64>>, to: f64) -> Path<&P>
 where
     P: Equilibrium<Load = f64, EvaluationError = PastTheWall>,
 {

@@ -44,7 +44,7 @@ impl<'a> Record<'a> {
     pub fn accept(
         &mut self,
         stage: &str,
-        path: &mut Path<'_, TubeProblem>,
+        path: &mut Path<&TubeProblem>,
         step: &Step,
         last: bool,
         observer: &mut dyn Observer,
@@ -170,7 +170,7 @@ impl<'a> Record<'a> {
     pub fn leave_checkpoint(
         &self,
         stage: Option<usize>,
-        path: &Path<'_, TubeProblem>,
+        path: &Path<&TubeProblem>,
         observer: &mut dyn Observer,
     ) -> Result<bool, StudyError> {
         let Some(row) = self.rows.last().filter(|_| !observer.stop()) else {
@@ -185,7 +185,7 @@ impl<'a> Record<'a> {
         Ok(true)
     }
 
-    fn saved(&self, row: &Row, path: &Path<'_, TubeProblem>) -> SavedState {
+    fn saved(&self, row: &Row, path: &Path<&TubeProblem>) -> SavedState {
         let muscles = self.plan.tube.muscles.iter();
         SavedState {
             stage: row.stage.clone(),
@@ -203,7 +203,7 @@ impl<'a> Record<'a> {
     fn write_profile(
         &self,
         step: usize,
-        path: &Path<'_, TubeProblem>,
+        path: &Path<&TubeProblem>,
         asymmetry: Asymmetry,
     ) -> Result<(), StudyError> {
         let (tube, state) = (&self.problem.tube, path.state());

@@ -136,7 +136,7 @@ fn take_up<'a>(
     plan: &Plan,
     problem: &'a TubeProblem,
     checkpoint: Checkpoint,
-) -> Result<Path<'a, TubeProblem>, String> {
+) -> Result<Path<&'a TubeProblem>, String> {
     let segment = checkpoint
         .segment(plan)
         .ok_or("its stage is none of the case's")?;
@@ -155,7 +155,7 @@ fn take_up<'a>(
 /// Stage after stage, step after step; the path may be on its way through one already.
 fn follow(
     plan: &Plan,
-    mut path: Path<'_, TubeProblem>,
+    mut path: Path<&TubeProblem>,
     within: Option<usize>,
     record: &mut Record<'_>,
     observer: &mut dyn Observer,
@@ -234,7 +234,7 @@ fn begin<'a>(
     problem: &'a TubeProblem,
     record: &mut Record<'_>,
     observer: &mut dyn Observer,
-) -> Result<Result<Path<'a, TubeProblem>, Ending>, StudyError> {
+) -> Result<Result<Path<&'a TubeProblem>, Ending>, StudyError> {
     let path = |load, u| Path::begin(problem, load, u, plan.solver.clone());
     let lost = |phase, error| Ending::Lost {
         phase,
