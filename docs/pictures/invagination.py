@@ -1,6 +1,6 @@
-"""The README's picture, from the tube.png of a run: python invagination.py tube.png invagination.png
+"""Make the README's picture from the tube.png of a run: python invagination.py tube.png invagination.png
 
-Puts the four panels two by two, without the quiet third of the tube at the ileum end.
+Arranges the four panels two by two, without the third of the tube at the ileum end.
 """
 
 import sys
@@ -10,8 +10,8 @@ from PIL import Image
 page = Image.open(sys.argv[1]).convert("RGB")
 width, height = page.size
 
-# A panel begins where ink follows a dozen white rows; before the first comes the title, after the
-# last the colour bar.
+# A panel begins where ink follows twelve white rows. The title precedes the first panel, the colour bar
+# follows the last.
 rows = page.convert("L").load()
 inked = [any(rows[x, y] < 200 for x in range(width)) for y in range(height)]
 begins = [y for y in range(12, height) if inked[y] and not any(inked[y - 12 : y])]
