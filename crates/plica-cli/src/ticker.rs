@@ -3,6 +3,9 @@
 use crate::console;
 use crate::interrupt::Interrupt;
 use indicatif::{ProgressBar, ProgressStyle};
+use plica::monitor::Monitor;
+use std::cell::Cell;
+use std::fmt::Display;
 use std::time::{Duration, Instant};
 
 /// Ticks of a full bar.
@@ -14,7 +17,7 @@ const QUIET: Duration = Duration::from_secs(30);
 pub struct Ticker {
     bar: Option<ProgressBar>,
     interrupt: Interrupt,
-    stopping: bool,
+    stopping: Cell<bool>,
     last_sign: Instant,
 }
 
@@ -24,7 +27,7 @@ impl Ticker {
         Self {
             bar: console::is_watched().then(bar),
             interrupt,
-            stopping: false,
+            stopping: Cell::new(false),
             last_sign: Instant::now(),
         }
     }
@@ -38,10 +41,7 @@ impl Ticker {
 
     /// A line that stays.
     pub fn line(&mut self, line: &str) {
-        match &self.bar {
-            Some(bar) => bar.println(line),
-            None => console::tell(line),
-        }
+        self.print(line);
         self.last_sign = Instant::now();
     }
 
@@ -60,12 +60,32 @@ impl Ticker {
     }
 
     /// Whether someone asked to stop.
-    pub fn stop(&mut self) -> bool {
-        if self.interrupt.asked() && !self.stopping {
-            self.stopping = true;
-            self.line("stopping; once more ends it at once");
+    pub fn stop(&self) -> bool {
+        if self.interrupt.asked() && !self.stopping.replace(true) {
+            self.print("stopping; once more ends it at once");
         }
-        self.stopping
+        self.stopping.get()
+    }
+
+    fn print(&self, line: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(line),
+            None => console::tell(line),
+        }
+    }
+}
+
+impl Monitor for Ticker {
+    fn working(&mut self, activity: &dyn Display, fraction: f64) {
+        self.working(&activity.to_string(), fraction);
+    }
+
+    fn notice(&mut self, message: &str) {
+        self.line(message);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.stop()
     }
 }
 
