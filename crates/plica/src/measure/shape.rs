@@ -5,7 +5,8 @@ use crate::tube::Tube;
 use std::fmt;
 
 /// Side towards which a tube invaginates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// Towards z = 0.
     Colon,
@@ -20,13 +21,16 @@ pub enum Side {
 /// Okino et al. (2025), Fig. 4, name the first shapes without a measure; the thresholds are Plica's.
 /// V, U, square and invaginated describe a tube narrowed by its circular muscles. A tube without such a
 /// contraction that leaves its cylinder is swollen, with a single outward bulge, or else collapsed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Shape {
     /// The outer face stays within 2 % of D of the cylinder, or the circular muscles widen it.
     Straight,
     /// Narrowed, with a flatness below 0.5, that of a raised cosine.
+    #[serde(rename = "V")]
     V,
     /// Narrowed, with a flatness of 0.5 or more.
+    #[serde(rename = "U")]
     U,
     /// Narrowed, with a wall angle of 78° or more.
     Square,
@@ -71,10 +75,11 @@ impl Shape {
             Self::U
         }
     }
+}
 
-    /// Returns the name used in files and messages.
-    pub fn as_str(self) -> &'static str {
-        match self {
+impl fmt::Display for Shape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
             Self::Straight => "straight",
             Self::V => "V",
             Self::U => "U",
@@ -82,30 +87,17 @@ impl Shape {
             Self::Invaginated => "invaginated",
             Self::Swollen => "swollen",
             Self::Collapsed => "collapsed",
-        }
-    }
-}
-
-impl Side {
-    /// Returns the name used in files and messages.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Colon => "colon",
-            Self::Ileum => "ileum",
-            Self::None => "none",
-        }
-    }
-}
-
-impl fmt::Display for Shape {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())
+        })
     }
 }
 
 impl fmt::Display for Side {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())
+        f.write_str(match self {
+            Self::Colon => "colon",
+            Self::Ileum => "ileum",
+            Self::None => "none",
+        })
     }
 }
 
