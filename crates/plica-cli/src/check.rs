@@ -8,20 +8,21 @@ use plica::spline::Circle;
 use plica::study::{Plan, fits, forecast};
 use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube};
 
-/// Says that a case is sound, and what it takes.
+/// Checks a case and prints its size and estimated cost.
 pub fn check(arguments: &CaseArguments) -> Result<(), Failure> {
     let (_, plan) = case_file::open(arguments)?;
-    let mut page = format!("{} is sound: {}\n\n", arguments.file.display(), plan.title);
+    let mut text = format!("{} is valid: {}\n\n", arguments.file.display(), plan.title);
     for (name, value) in rows(&plan) {
-        page += &format!("  {name:<10} {value}\n");
+        text += &format!("  {name:<10} {value}\n");
     }
     for warning in case_file::advice(&plan) {
-        page += &format!("\nwarning: {warning}");
+        text += &format!("\nwarning: {warning}");
     }
-    console::say(&(page.trim_end().to_owned() + "\n"))?;
+    console::say(&(text.trim_end().to_owned() + "\n"))?;
     fits(&plan).map_err(Failure::Study)
 }
 
+/// Returns the names and values of the printed table.
 fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
     let (tube, mesh) = (&plan.tube, &plan.mesh);
     let forecast = forecast(plan);
@@ -69,7 +70,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
                 mesh.degree,
                 match mesh.volumetric {
                     Integration::Full => "",
-                    Integration::Reduced => ", volume at reduced points",
+                    Integration::Reduced => ", reduced volumetric integration",
                 }
             ),
         ),
@@ -83,7 +84,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         (
             "unknowns",
             format!(
-                "{} of the whole tube, {} to solve for",
+                "{} in the whole tube, {} solved for",
                 grouped(forecast.unknowns),
                 grouped(forecast.unknowns_solved)
             ),
@@ -91,7 +92,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         (
             "circle",
             format!(
-                "drawn to {:.1e} of its radius",
+                "relative error of the radius {:.1e}",
                 Circle::new(mesh.degree, mesh.around).error
             ),
         ),
@@ -106,7 +107,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         (
             "time",
             format!(
-                "about {}, {} where the tube snaps, and pictures",
+                "about {}, {} where the tube snaps through, plus pictures",
                 duration(forecast.seconds_estimate),
                 match (
                     plan.mesh.rings(plan.symmetry),
@@ -138,12 +139,12 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// What is imperfect, how much and in what shape.
+/// Describes an imperfection: part, shape and amplitude.
 fn imperfection(tube: &Tube, imperfection: &Imperfection) -> String {
     let shape = match &imperfection.shape {
-        Shape::Wave(wave) => format!("harmonic {}", wave.harmonic),
+        Shape::Wave(wave) => format!("circumferential mode {}", wave.harmonic),
         Shape::Random(random) => format!("random, seed {}", random.seed()),
-        Shape::Mode(mode) => format!("a mode of harmonic {}", mode.harmonic),
+        Shape::Mode(mode) => format!("buckling mode, circumferential mode {}", mode.harmonic),
     };
     let unit = match imperfection.of {
         Part::Muscle(_) => "",
@@ -153,7 +154,7 @@ fn imperfection(tube: &Tube, imperfection: &Imperfection) -> String {
     format!("{part} ({shape}, {amplitude:.1e}{unit})")
 }
 
-/// What is imperfect.
+/// Returns the name of an imperfect part.
 fn part(tube: &Tube, of: Part) -> String {
     match of {
         Part::End(End::Colon, _) => "colon end".into(),
@@ -163,7 +164,7 @@ fn part(tube: &Tube, of: Part) -> String {
     }
 }
 
-/// 439200 as 439,200.
+/// Formats 439200 as 439,200.
 fn grouped(n: usize) -> String {
     let digits = n.to_string();
     let mut text = String::new();
@@ -176,6 +177,7 @@ fn grouped(n: usize) -> String {
     text
 }
 
+/// Formats a number of bytes.
 fn memory(bytes: f64) -> String {
     match bytes {
         b if b < 1e9 => format!("{:.0} MB", (b / 1e6).ceil()),
@@ -183,6 +185,7 @@ fn memory(bytes: f64) -> String {
     }
 }
 
+/// Formats a time in seconds.
 fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 90.0 => format!("{:.0} s", s.ceil()),

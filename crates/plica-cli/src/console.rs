@@ -1,9 +1,9 @@
-//! Printing that does not mind when nobody listens.
+//! Output that tolerates closed pipes.
 
 use crate::failure::Failure;
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 
-/// Prints a result. A closed pipe (`plica new - | head -1`) is not an error.
+/// Prints a result to standard output. A closed pipe (`plica new - | head -1`) is not an error.
 pub fn say(text: &str) -> Result<(), Failure> {
     let mut out = stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -14,18 +14,18 @@ pub fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints a line about what is going on.
+/// Prints a line of progress or an error to standard error.
 pub fn tell(line: &str) {
-    // There is nowhere left to complain to.
+    // Nothing can be done where standard error is closed.
     let _ = writeln!(stderr().lock(), "{line}");
 }
 
-/// Whether someone looks at standard error on a terminal that can redraw a line.
+/// Returns whether standard error is a terminal that can redraw a line.
 pub fn is_watched() -> bool {
     stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
-/// Whether messages may be coloured (see no-color.org).
+/// Returns whether messages may be coloured (see no-color.org).
 pub fn is_coloured() -> bool {
     is_watched() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }

@@ -12,13 +12,13 @@ use plica_view::vtk::collection;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Writes states of a run as files of VTK.
+/// Exports states of a run to VTK files.
 pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let run = Finished::open(&arguments.run)?;
     run.has(&arguments.state)?;
     threads::limit(arguments.threads)?;
     let last = run.last()?;
-    let chosen = |state: usize| match (arguments.all, arguments.state.as_slice()) {
+    let selected = |state: usize| match (arguments.all, arguments.state.as_slice()) {
         (true, _) => true,
         (_, []) => state == last,
         (_, states) => states.contains(&state),
@@ -28,7 +28,7 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         .keys()
         .map(|&state| (What::Walls, state))
         .collect();
-    for state in run.saved.keys().copied().filter(|&state| chosen(state)) {
+    for state in run.saved.keys().copied().filter(|&state| selected(state)) {
         files.push((What::Volume, state));
         if arguments.linear {
             files.push((What::Linear, state));
@@ -47,24 +47,24 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         run: &run,
         written: BTreeMap::new(),
     };
-    let mut bad = vec![];
+    let mut failures = vec![];
     for (done, &(what, state)) in files.iter().enumerate() {
         if ticker.stop() {
             break;
         }
         let name = format!("state {state}, {}", what.name());
         ticker.working(&name, done as f64 / files.len() as f64);
-        // One bad file is no reason to keep back the others.
+        // An unreadable state does not prevent the export of the others.
         if let Err(failure) = work.write(what, state) {
-            bad.push(failure);
+            failures.push(failure);
         }
     }
-    let film = match arguments.hdf && !ticker.stop() {
-        true => film(&run, &work.exporter, &mut ticker),
+    let series = match arguments.hdf && !ticker.stop() {
+        true => write_series(&run, &work.exporter, &mut ticker),
         false => Ok(None),
     };
-    let film = film.unwrap_or_else(|failure| {
-        bad.push(failure);
+    let series = series.unwrap_or_else(|failure| {
+        failures.push(failure);
         None
     });
     let stopped = ticker.stop();
@@ -81,8 +81,8 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
             arguments.run.join(collection_of(*what)).display()
         );
     }
-    if let Some((states, bytes)) = film {
-        let path = arguments.run.join(FILM);
+    if let Some((states, bytes)) = series {
+        let path = arguments.run.join(SERIES);
         let size = bytes as f64 * 1e-6;
         text += &format!(
             "{states} states in one file: {size:.1} MB; open {}\n",
@@ -90,28 +90,30 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         );
     }
     console::say(&text)?;
-    let others = bad.len().saturating_sub(1);
-    if let Some(first) = bad.into_iter().next() {
+    let others = failures.len().saturating_sub(1);
+    if let Some(first) = failures.into_iter().next() {
         if others > 0 {
             console::tell(&format!(
-                "{others} more file(s) could not be written; the first of them:"
+                "{others} more file(s) could not be written; the first error:"
             ));
         }
         return Err(first);
     }
     if stopped {
         return Err(Failure::Interrupted(
-            "interrupted; what is written is whole, and the collections name it".into(),
+            "interrupted; the files written so far are complete and listed in the collections"
+                .into(),
         ));
     }
     Ok(())
 }
 
-/// The walls of all states in one file.
-const FILM: &str = "vtk/walls.vtkhdf";
+/// File with the walls of all states.
+const SERIES: &str = "vtk/walls.vtkhdf";
 
-/// Writes the walls of all states as one file; its states and bytes, or none if there is no state or it was not to go on.
-fn film(
+/// Writes the walls of all states to one file. Returns the numbers of states and bytes, or `None` if it was interrupted or no
+/// state can be read.
+fn write_series(
     run: &Finished,
     exporter: &Exporter,
     ticker: &mut Ticker,
@@ -124,7 +126,7 @@ fn film(
         }
         let part = done as f64 / run.saved.len() as f64;
         ticker.working(&format!("state {state}, in one file"), part);
-        // A bad one is told of by its own file.
+        // The export of its own file reports an unreadable state.
         if let Ok((state, row)) = run.state(state) {
             exporter.film(&mut movie, &state, &row);
             states += 1;
@@ -133,21 +135,24 @@ fn film(
     if states == 0 {
         return Ok(None);
     }
-    let trouble = |what: String| Failure::Files(format!("{FILM}: {what}"));
-    let bytes = movie.bytes().map_err(trouble)?;
-    run.directory.write(FILM, &bytes).map_err(Failure::Study)?;
+    let failure = |what: String| Failure::Files(format!("{SERIES}: {what}"));
+    let bytes = movie.bytes().map_err(failure)?;
+    run.directory
+        .write(SERIES, &bytes)
+        .map_err(Failure::Study)?;
     Ok(Some((states, bytes.len())))
 }
 
-/// What it takes to write a file, and what is written.
+/// An export in progress.
 struct Work<'a> {
     exporter: Exporter,
     run: &'a Finished,
-    /// Files and bytes of each kind.
+    /// Numbers of files and bytes of each kind.
     written: BTreeMap<What, (usize, usize)>,
 }
 
 impl Work<'_> {
+    /// Writes one file.
     fn write(&mut self, what: What, number: usize) -> Result<(), Failure> {
         let (state, row) = self.run.state(number)?;
         let bytes = self.exporter.bytes(what, &state, &row);
@@ -160,17 +165,17 @@ impl Work<'_> {
     }
 }
 
-/// The folder of the files of a kind, in that of the run.
+/// Returns the directory of the files of a kind, relative to the run.
 fn folder(what: What) -> String {
     format!("vtk/{}", what.name())
 }
 
-/// The collection of the files of a kind.
+/// Returns the collection of the files of a kind, relative to the run.
 fn collection_of(what: What) -> String {
     format!("vtk/{}.pvd", what.name())
 }
 
-/// Names all files of a kind that are there.
+/// Writes the collection of all existing files of a kind.
 fn collect(directory: &RunDirectory, what: What) -> Result<(), Failure> {
     let files = directory
         .numbered(&folder(what), what.ending())

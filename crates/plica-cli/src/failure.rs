@@ -1,4 +1,4 @@
-//! How the program ends when it does not end well.
+//! Errors of the program and their exit codes.
 
 use crate::console;
 use plica::case::CaseError;
@@ -6,39 +6,39 @@ use plica::study::StudyError;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Why a command could not do what it was asked to.
+/// Reason why a command failed.
 #[derive(Debug)]
 pub enum Failure {
-    /// The run ended before its last stage did; it has said why.
+    /// The work is incomplete or a check failed; the reason has been printed.
     Unfinished,
-    /// The case has problems.
+    /// The case is invalid.
     Case {
-        /// The file as it was named.
+        /// Path as given by the user.
         path: PathBuf,
         /// Its content.
         text: String,
-        /// What is wrong with it.
+        /// Its problems.
         error: CaseError,
     },
-    /// Something was asked for that cannot be.
+    /// Invalid arguments.
     Usage(String),
     /// Files could not be read or written.
     Files(String),
-    /// Something that must not happen did.
+    /// Internal error.
     Fault(String),
-    /// The library could not go on.
+    /// Error of a study.
     Study(StudyError),
-    /// Someone pressed Ctrl-C; what is left of the work.
+    /// Interrupted by the user; says what has been written.
     Interrupted(String),
 }
 
 impl Failure {
-    /// Says what happened, and gives the exit code.
+    /// Prints the error and returns the exit code.
     pub fn report(&self) -> ExitCode {
         let code = match self {
             Self::Unfinished => 1,
             Self::Case { path, text, error } => {
-                console::tell(&crate::message::render(path, text, error));
+                console::tell(&crate::diagnostics::render(path, text, error));
                 2
             }
             Self::Usage(what) => {

@@ -1,18 +1,16 @@
-//! The program `plica`: reads its arguments, calls the library, prints. Only this crate prints or
-//! exits.
+//! The program `plica`: parses arguments, calls the libraries and prints. Only this crate prints or exits.
 
 mod args;
 mod case_file;
 mod check;
 mod console;
+mod diagnostics;
 mod export;
 mod failure;
-mod film;
 mod finished;
 mod interrupt;
-mod message;
 mod new;
-mod pages;
+mod page_directory;
 mod plot;
 mod progress;
 mod render;
@@ -23,6 +21,7 @@ mod stability;
 mod threads;
 mod ticker;
 mod verify;
+mod video;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -32,7 +31,7 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(answer) => {
-            // Help and version come this way too. Nobody listening is no error.
+            // Includes help and version. A closed pipe is not an error.
             let _ = answer.print();
             return ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(2));
         }

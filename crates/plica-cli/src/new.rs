@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Writes the starter case, never over a file that is there.
+/// Writes the example case; never overwrites a file.
 pub fn new(path: &Path) -> Result<(), Failure> {
     if path == Path::new("-") {
         return console::say(STARTER);
@@ -19,10 +19,10 @@ pub fn new(path: &Path) -> Result<(), Failure> {
     let written = File::create_new(path).and_then(|mut file| file.write_all(STARTER.as_bytes()));
     match written {
         Ok(()) => console::say(&format!(
-            "wrote {name}; look at it, then: plica run {name}\n"
+            "written to {name}; edit it, then run: plica run {name}\n"
         )),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Files(format!(
-            "{name} is there already; choose another name"
+            "{name} already exists; choose another name"
         ))),
         Err(error) => Err(Failure::Files(format!("{name}: {error}"))),
     }

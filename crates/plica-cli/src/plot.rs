@@ -3,24 +3,24 @@
 use crate::args::PlotArguments;
 use crate::failure::Failure;
 use crate::finished::{Finished, endings};
-use crate::render::trouble;
+use crate::render::failure;
 use plica::study::Scale;
 use plica_view::draw::Chart;
 use plica_view::report::{self, Column, Shown};
 
-/// What is plotted of states themselves.
+/// Name of the plot of wall profiles.
 const WALLS: &str = "walls";
 
-/// The most states whose walls have colours of their own.
+/// Largest number of states with distinct colours.
 const MOST: usize = 6;
 
-/// Plots numbers or walls of a run.
+/// Plots columns of the history, or wall profiles, of a run.
 pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
     let ending = match &arguments.out {
         None => None,
         Some(_) if arguments.what.len() > 1 => {
             return Err(Failure::Usage(
-                "--out names one file, and several plots are asked for; plot one at a time, or leave --out away".into(),
+                "--out names one file for several plots; plot one at a time, or omit --out".into(),
             ));
         }
         Some(path) => {
@@ -33,12 +33,12 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
     let columns = arguments.what.iter().any(|what| what != WALLS);
     if arguments.along.is_some() && !columns {
         return Err(Failure::Usage(
-            "--along goes with columns, and not with walls".into(),
+            "--along applies to columns, not to walls".into(),
         ));
     }
     if !arguments.state.is_empty() && !walls {
         return Err(Failure::Usage(
-            "--state goes with walls, and not with columns".into(),
+            "--state applies to walls, not to columns".into(),
         ));
     }
     let run = Finished::open(&arguments.run)?;
@@ -48,7 +48,7 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
         .collect();
     for (name, chart) in charts? {
         if ending.as_deref() != Some("png") {
-            let svg = chart.svg().map_err(trouble)?;
+            let svg = chart.svg().map_err(failure)?;
             run.leave(
                 arguments.out.as_deref(),
                 &format!("{name}.svg"),
@@ -56,14 +56,14 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
             )?;
         }
         if ending.as_deref() != Some("svg") {
-            let png = chart.png(usize::from(arguments.width)).map_err(trouble)?;
+            let png = chart.png(usize::from(arguments.width)).map_err(failure)?;
             run.leave(arguments.out.as_deref(), &format!("{name}.png"), &png)?;
         }
     }
     Ok(())
 }
 
-/// A plot, and what its file is called.
+/// Returns the name and the chart of a plot.
 fn chart(
     run: &Finished,
     arguments: &PlotArguments,
@@ -72,7 +72,7 @@ fn chart(
     if what == WALLS {
         if arguments.state.len() > MOST {
             return Err(Failure::Usage(format!(
-                "walls of {} states in one plot are too many to tell apart; {MOST} at most",
+                "--state: {} states in one plot are too many to distinguish; {MOST} at most",
                 arguments.state.len()
             )));
         }
@@ -90,11 +90,11 @@ fn chart(
     let chart = chart.ok_or_else(|| {
         let columns = Column::of(&run.rows, &Scale::of(run.plan.units.as_ref()));
         let names: Vec<String> = columns.into_iter().map(|column| column.name).collect();
-        let asked = along
+        let unknown = along
             .filter(|along| names.iter().any(|n| n == what) && !names.iter().any(|n| n == along));
         Failure::Usage(format!(
-            "{}: not a column that can be plotted of this run; these are: {WALLS}, {}",
-            asked.unwrap_or(what),
+            "{}: not a column of this run that can be plotted; choose one of {WALLS}, {}",
+            unknown.unwrap_or(what),
             names.join(", ")
         ))
     })?;

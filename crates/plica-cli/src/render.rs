@@ -2,16 +2,16 @@
 
 use crate::args::{AnimateArguments, LookArguments, RenderArguments};
 use crate::failure::Failure;
-use crate::film;
 use crate::finished::{Finished, endings};
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
+use crate::video;
 use crate::{console, threads};
 use plica_view::draw::{DrawError, REST};
 use plica_view::report::{self, Appearance, Field, Shown};
 use std::sync::Mutex;
 
-/// Directions of the viewer that have a name: (up, towards the viewer, along the tube).
+/// Named directions towards the viewer: (up, near, along the tube).
 pub const VIEWS: [(&str, [f64; 3]); 5] = [
     ("oblique", [0.42, 1.0, -0.35]),
     ("front", [0.0, 1.0, 0.0]),
@@ -20,7 +20,7 @@ pub const VIEWS: [(&str, [f64; 3]); 5] = [
     ("ileum", [0.3, 0.5, 1.0]),
 ];
 
-/// The most states in one picture: more are too small to see.
+/// Largest number of states in one picture.
 const MOST: usize = 12;
 
 /// Draws states of a run.
@@ -32,7 +32,7 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     }
     if arguments.state.len() > MOST {
         return Err(Failure::Usage(format!(
-            "{} states in one picture are too many to see; {MOST} at most",
+            "--state: {} states in one picture are too many; {MOST} at most",
             arguments.state.len()
         )));
     }
@@ -43,13 +43,13 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     };
     let look = appearance(&arguments.look);
     let states: Result<Vec<Shown>, Failure> = numbers.iter().map(|&n| run.state(n)).collect();
-    let png = report::render(&run.plan, &states?, &look).map_err(trouble)?;
+    let png = report::render(&run.plan, &states?, &look).map_err(failure)?;
     let names: Vec<String> = numbers.iter().map(|n| format!("{n:04}")).collect();
-    let usual = format!("{}-state-{}.png", look.field.name(), names.join("-"));
-    run.leave(arguments.look.out.as_deref(), &usual, &png)
+    let name = format!("{}-state-{}.png", look.field.name(), names.join("-"));
+    run.leave(arguments.look.out.as_deref(), &name, &png)
 }
 
-/// Draws the whole path of a run as a picture that moves.
+/// Draws all saved states of a run as an animation.
 pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
     let run = Finished::open(&arguments.run)?;
     run.last()?;
@@ -58,52 +58,50 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.look.out {
         endings(path, &["apng", "png", "mp4"])?;
     }
-    let film = arguments
-        .look
-        .out
-        .as_deref()
-        .filter(|path| film::is_one(path));
-    if let Some(path) = film {
-        film::possible(path)?;
+    let video = arguments.look.out.as_deref();
+    let video = video.filter(|path| video::is_video(path));
+    if let Some(path) = video {
+        video::require_ffmpeg(path)?;
     }
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     let numbers: Vec<usize> = run.saved.keys().copied().collect();
-    // A bad one is no reason to keep back the others.
+    // An unreadable state does not prevent the animation of the others.
     let mut states: Vec<Shown> = vec![];
     for &number in &numbers {
         match run.try_state(number) {
             Ok(shown) => states.push(shown),
-            Err(why) => console::tell(&format!("warning: left out: {why}")),
+            Err(why) => console::tell(&format!("warning: state skipped: {why}")),
         }
     }
     let ticker = Mutex::new(Ticker::new(interrupt));
-    let told = |done: usize| {
+    let monitor = |done: usize| {
         let mut ticker = ticker.lock().unwrap_or_else(|e| e.into_inner());
         ticker.working("drawing", done as f64 / states.len() as f64);
         !ticker.stop()
     };
     let seconds = 1.0 / arguments.fps;
-    let drawn = report::animate(&run.plan, &states, &run.rows, &look, seconds, &told);
+    let drawn = report::animate(&run.plan, &states, &run.rows, &look, seconds, &monitor);
     ticker
         .into_inner()
         .unwrap_or_else(|e| e.into_inner())
         .finish();
-    match drawn.map_err(trouble)? {
+    match drawn.map_err(failure)? {
         Some(bytes) => {
-            let bytes = match film {
-                Some(path) => film::of(&bytes, path, seconds * (REST - 1.0))?,
+            let bytes = match video {
+                Some(path) => video::convert(&bytes, path, seconds * (REST - 1.0))?,
                 None => bytes,
             };
-            let usual = format!("{}-path.apng", look.field.name());
-            run.leave(arguments.look.out.as_deref(), &usual, &bytes)
+            let name = format!("{}-path.apng", look.field.name());
+            run.leave(arguments.look.out.as_deref(), &name, &bytes)
         }
         None => Err(Failure::Interrupted(
-            "interrupted; nothing is written".into(),
+            "interrupted; nothing was written".into(),
         )),
     }
 }
 
+/// Returns the appearance that the arguments describe.
 fn appearance(arguments: &LookArguments) -> Appearance {
     let field = Field::ALL
         .into_iter()
@@ -118,13 +116,13 @@ fn appearance(arguments: &LookArguments) -> Appearance {
     }
 }
 
-/// Why a picture could not be drawn: by what was asked for, or by a fault of the program.
-pub fn trouble(error: DrawError) -> Failure {
+/// Converts an error of drawing: a request that cannot be met, or an internal error.
+pub fn failure(error: DrawError) -> Failure {
     match error {
         DrawError::Backend(_) | DrawError::Grid { .. } => Failure::Fault(error.to_string()),
-        DrawError::Size { .. } => Failure::Usage(format!(
-            "{error}; ask for fewer states, or a smaller --width"
-        )),
+        DrawError::Size { .. } => {
+            Failure::Usage(format!("{error}; choose fewer states or a smaller --width"))
+        }
         _ => Failure::Usage(error.to_string()),
     }
 }

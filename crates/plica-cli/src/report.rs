@@ -8,7 +8,7 @@ use plica::study::SavedState;
 use plica_view::page::{PageError, Run, drawn, page};
 use std::path::{Path, PathBuf};
 
-/// Writes runs as a page.
+/// Writes the HTML report of one run or a comparison of several.
 pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     threads::limit(arguments.threads)?;
     if let Some(path) = &arguments.out {
@@ -18,22 +18,22 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
         let same = |other: &PathBuf| path.canonicalize().ok() == other.canonicalize().ok();
         if path.exists() && arguments.runs[..i].iter().any(same) {
             return Err(Failure::Usage(format!(
-                "{}: named twice; compare it with another run",
+                "{}: given twice; name different runs",
                 path.display()
             )));
         }
     }
-    let open = |path: &PathBuf| Told::open(path, arguments.runs.len());
-    let runs: Result<Vec<Told>, Failure> = arguments.runs.iter().map(open).collect();
+    let open = |path: &PathBuf| ReportedRun::open(path, arguments.runs.len());
+    let runs: Result<Vec<ReportedRun>, Failure> = arguments.runs.iter().map(open).collect();
     let runs = runs?;
     let names = names(&arguments.runs);
-    let told: Vec<Run<'_>> = runs.iter().zip(names).map(Told::under).collect();
-    let html = page(&told).map_err(|error| match error {
+    let pages: Vec<Run<'_>> = runs.iter().zip(names).map(ReportedRun::named).collect();
+    let html = page(&pages).map_err(|error| match error {
         PageError::Units(_) => Failure::Usage(error.to_string()),
         PageError::Template(_) => Failure::Fault(error.to_string()),
     })?;
     let path = match (&arguments.out, runs.as_slice()) {
-        (None, [Told { run, .. }]) => {
+        (None, [ReportedRun { run, .. }]) => {
             let name = "report.html";
             run.directory
                 .write(name, html.as_bytes())
@@ -48,22 +48,22 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
         }
     };
     console::say(&format!(
-        "written to {} ({:.1} MB): open it in a browser\n",
+        "written to {} ({:.1} MB); open it in a browser\n",
         path.display(),
         html.len() as f64 * 1e-6
     ))
 }
 
-/// A run, and what of it could be read.
-struct Told {
+/// A run and its readable states.
+struct ReportedRun {
     run: Finished,
     states: Vec<SavedState>,
     left_out: usize,
     unread: Vec<String>,
 }
 
-impl Told {
-    /// Opens one of so many. A state that cannot be read is no reason to keep back the others.
+impl ReportedRun {
+    /// Opens one of `runs` runs. An unreadable state is reported and skipped.
     fn open(path: &Path, runs: usize) -> Result<Self, Failure> {
         let run = Finished::open(path)?;
         let saved: Vec<usize> = run.saved.keys().copied().collect();
@@ -87,22 +87,22 @@ impl Told {
         })
     }
 
-    /// As the page knows it, under a name.
-    fn under((told, name): (&Self, String)) -> Run<'_> {
+    /// Returns the run as the page takes it.
+    fn named((reported, name): (&Self, String)) -> Run<'_> {
         Run {
             name,
-            plan: &told.run.plan,
-            rows: &told.run.rows,
-            states: &told.states,
-            saved: told.run.saved.len(),
-            left_out: told.left_out,
-            unread: &told.unread,
-            directory: &told.run.directory,
+            plan: &reported.run.plan,
+            rows: &reported.run.rows,
+            states: &reported.states,
+            saved: reported.run.saved.len(),
+            left_out: reported.left_out,
+            unread: &reported.unread,
+            directory: &reported.run.directory,
         }
     }
 }
 
-/// What runs are called: by their folders, or by the whole way there where those are alike.
+/// Returns the names of runs: their directories, or their paths where two directories have the same name.
 fn names(paths: &[PathBuf]) -> Vec<String> {
     let folder = |path: &PathBuf| {
         let whole = path.canonicalize().unwrap_or_else(|_| path.clone());
@@ -110,8 +110,8 @@ fn names(paths: &[PathBuf]) -> Vec<String> {
         Path::new(name).display().to_string()
     };
     let short: Vec<String> = paths.iter().map(folder).collect();
-    let alike = (1..short.len()).any(|i| short[..i].contains(&short[i]));
-    if alike {
+    let repeated = (1..short.len()).any(|i| short[..i].contains(&short[i]));
+    if repeated {
         paths
             .iter()
             .map(|path| path.display().to_string())

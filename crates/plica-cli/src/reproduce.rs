@@ -3,18 +3,18 @@
 use crate::args::ReproduceArguments;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
-use crate::pages::First;
+use crate::page_directory::FirstPage;
 use crate::ticker::Ticker;
-use crate::{console, pages, threads};
+use crate::{console, page_directory, threads};
 use plica_verify::reproduction::{
-    FIGURES, Figure, Fineness, Observer, Ran, SUMMARY, TITLE, Trouble, reproduce as tell,
+    FIGURES, Figure, Fineness, Observer, Ran, SUMMARY, TITLE, Trouble, reproduce as run_figures,
 };
 use std::path::PathBuf;
 
-/// The folder of the runs, in that of the pages.
+/// Directory of the runs, in that of the pages.
 const RUNS: &str = "runs";
 
-/// Runs what figures are told from, prints what became of the paper's statements, and writes the pages.
+/// Runs the computations behind figures, prints the comparison with the paper and writes the pages.
 pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
     let fineness = if arguments.full {
         Fineness::Full
@@ -26,7 +26,7 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
         let figure = Figure::meant(name).ok_or_else(|| {
             let names: Vec<&str> = FIGURES.iter().map(|figure| figure.name).collect();
             Failure::Usage(format!(
-                "{name:?}: there is no such figure; these are: {}",
+                "{name:?}: no such figure; choose one of {}",
                 names.join(", ")
             ))
         })?;
@@ -39,51 +39,51 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
         return console::say(&list(&wanted, fineness));
     }
     threads::limit(arguments.threads)?;
-    let usual = fineness.choose("runs/reproduction", "runs/reproduction-full");
+    let default = fineness.choose("runs/reproduction", "runs/reproduction-full");
     let out = arguments
         .out
         .clone()
-        .unwrap_or_else(|| PathBuf::from(usual));
-    let first = First {
+        .unwrap_or_else(|| PathBuf::from(default));
+    let first = FirstPage {
         name: SUMMARY,
         title: TITLE,
         manner: fineness.sentence(),
         command: "plica reproduce",
     };
-    pages::prepare(&out, &first)?;
+    page_directory::prepare(&out, &first)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
-    let mut watcher = Watcher(Ticker::new(interrupt));
+    let mut monitor = Monitor(Ticker::new(interrupt));
     console::tell(&format!("writing to {}", out.display()));
-    let told = tell(&wanted, fineness, &out.join(RUNS), &mut watcher);
-    watcher.0.finish();
-    let told = told.map_err(|trouble| match trouble {
+    let found = run_figures(&wanted, fineness, &out.join(RUNS), &mut monitor);
+    monitor.0.finish();
+    let found = found.map_err(|trouble| match trouble {
         Trouble::Stopped => Failure::Interrupted(
-            "interrupted; the same command goes on after the runs that are done".into(),
+            "interrupted; the same command resumes after the completed runs".into(),
         ),
         trouble => Failure::Files(trouble.to_string()),
     })?;
-    // First of all, whatever becomes of the files.
-    console::say(&told.text())?;
-    let files = told.files();
+    // Print first: writing the files may fail.
+    console::say(&found.text())?;
+    let files = found.files();
     for (name, bytes) in &files {
-        pages::write(&out, name, bytes)?;
+        page_directory::write(&out, name, bytes)?;
     }
     let pictures = files.iter().filter(|(name, _)| name.ends_with(".png"));
     console::say(&format!(
         "written to {}: {SUMMARY}, pages of figures ({}), pictures ({}), {RUNS}/\n",
         out.display(),
-        told.pages.len(),
+        found.pages.len(),
         pictures.count()
     ))?;
-    if told.failed() > 0 {
+    if found.failed() > 0 {
         Err(Failure::Unfinished)
     } else {
         Ok(())
     }
 }
 
-/// The figures and the runs that they are told from.
+/// Lists figures and the runs they need.
 fn list(figures: &[&Figure], fineness: Fineness) -> String {
     let mut text = String::new();
     for figure in figures {
@@ -104,10 +104,10 @@ fn list(figures: &[&Figure], fineness: Fineness) -> String {
     text
 }
 
-/// A line per run.
-struct Watcher(Ticker);
+/// Prints a line per run.
+struct Monitor(Ticker);
 
-impl Observer for Watcher {
+impl Observer for Monitor {
     fn ran(&mut self, ran: &Ran, done: usize, of: usize) {
         let lost = if ran.verdict == "complete" {
             ""

@@ -13,12 +13,12 @@ use plica::tube::{Load, Tube};
 use plica_view::draw::DrawError;
 use plica_view::report::{mode_pictures, stability_pictures};
 
-/// How close critical values are bracketed, unless told otherwise.
+/// Default width of the brackets of critical values.
 const TOLERANCE: f64 = 1e-4;
-/// Lowest modes of a state, unless told otherwise.
+/// Default number of lowest modes of a state.
 const MODES: u8 = 3;
 
-/// Tests a run's states, and writes what it finds beside them.
+/// Tests the stability of a run's states and writes the results to its directory.
 pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     let mut directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
     directory.own().map_err(Failure::Study)?;
@@ -29,7 +29,7 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
         };
         return Err(Failure::Usage(none.to_string()));
     }
-    // Before anything computes, which checking a case may do already.
+    // Must precede reading the case, which may compute in parallel.
     threads::limit(arguments.threads)?;
     let plan = case_file::of_run(&directory)?;
     fits(&plan).map_err(Failure::Study)?;
@@ -41,28 +41,26 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
         arguments.run.display()
     ));
     if directory.verdict() == "running" {
-        console::tell(
-            "warning: the run has not ended, or was killed; its states so far are tested",
-        );
+        console::tell("warning: the run is unfinished; its states so far are tested");
     }
-    let mut monitor = Watcher {
+    let mut monitor = Monitor {
         ticker: Ticker::new(interrupt),
-        begun: false,
-        pressed: plan.is_pressed(),
+        has_heading: false,
+        has_pressure: plan.is_pressed(),
     };
     if plan.mesh.rings(plan.symmetry) == 1 {
-        by_harmonics(arguments, &plan, &directory, &mut monitor)
+        axisymmetric(arguments, &plan, &directory, &mut monitor)
     } else {
-        by_modes(arguments, &plan, &directory, &mut monitor)
+        three_dimensional(arguments, &plan, &directory, &mut monitor)
     }
 }
 
-/// A run of one ring, harmonic by harmonic.
-fn by_harmonics(
+/// Tests the states of an axisymmetric run against circumferential modes.
+fn axisymmetric(
     arguments: &StabilityArguments,
     plan: &Plan,
     directory: &RunDirectory,
-    monitor: &mut Watcher,
+    monitor: &mut Monitor,
 ) -> Result<(), Failure> {
     if arguments.modes.is_some() || !arguments.state.is_empty() {
         return Err(Failure::Usage(StabilityError::OneRing.to_string()));
@@ -87,17 +85,16 @@ fn by_harmonics(
     )
 }
 
-/// A run of many rings: the lowest modes of its states.
-fn by_modes(
+/// Computes the lowest modes of the states of a three-dimensional run.
+fn three_dimensional(
     arguments: &StabilityArguments,
     plan: &Plan,
     directory: &RunDirectory,
-    monitor: &mut Watcher,
+    monitor: &mut Monitor,
 ) -> Result<(), Failure> {
     if arguments.harmonics.is_some() || arguments.tolerance.is_some() {
         return Err(Failure::Usage(
-            "the run is not axisymmetric: --harmonics and --tolerance do not apply to it; \
-             --modes and --state do"
+            "--harmonics and --tolerance apply to axisymmetric runs only; use --modes and --state"
                 .into(),
         ));
     }
@@ -118,12 +115,13 @@ fn by_modes(
     finish(arguments, directory, table, names, pictures)?;
     if found.stopped {
         return Err(Failure::Interrupted(
-            "interrupted; the states before were written".into(),
+            "interrupted; completed states were written".into(),
         ));
     }
     Ok(())
 }
 
+/// Converts an error of the stability test.
 fn failure(error: StabilityError) -> Failure {
     match error {
         StabilityError::Stopped => Failure::Interrupted("interrupted; nothing was written".into()),
@@ -132,7 +130,7 @@ fn failure(error: StabilityError) -> Failure {
     }
 }
 
-/// Pictures, the table, and where everything is.
+/// Writes the pictures and prints the table and the names of the files.
 fn finish(
     arguments: &StabilityArguments,
     directory: &RunDirectory,
@@ -160,27 +158,31 @@ fn finish(
     console::say(&(table + &written))
 }
 
-/// A line per saved state.
-struct Watcher {
+/// Prints a line per saved state.
+struct Monitor {
     ticker: Ticker,
-    begun: bool,
-    pressed: bool,
+    has_heading: bool,
+    has_pressure: bool,
 }
 
-impl Watcher {
-    /// The heading of what a state is under.
+impl Monitor {
+    /// Returns the heading of the load columns.
     fn heading(&self) -> String {
-        let pressure = if self.pressed { "    pressure/E" } else { "" };
+        let pressure = if self.has_pressure {
+            "    pressure/E"
+        } else {
+            ""
+        };
         format!("{:>5}  {:>7} {:>7}{pressure}", "state", "Lmax/L", "Dmin/D")
     }
 
-    /// What a state is under; the first of its pressures, if there is any.
-    fn under(&self, row: usize, tube: &Tube, load: &Load) -> String {
+    /// Returns the load columns of a state, with its first non-zero pressure.
+    fn load_columns(&self, row: usize, tube: &Tube, load: &Load) -> String {
         let (length, diameter) = (tube.length_ratio(load), tube.diameter_ratio(load));
         let [inner, outer] = load.pressures;
         let pressures = [outer.follower, inner.follower, outer.dead, inner.dead];
         let pressure = pressures.into_iter().find(|p| *p != 0.0).unwrap_or(0.0);
-        let pressure = match self.pressed {
+        let pressure = match self.has_pressure {
             true => format!(" {pressure:>13.4e}"),
             false => String::new(),
         };
@@ -188,10 +190,10 @@ impl Watcher {
     }
 }
 
-impl Observer for Watcher {
+impl Observer for Monitor {
     fn tested(&mut self, tube: &Tube, station: &Station) {
-        if !self.begun {
-            self.begun = true;
+        if !self.has_heading {
+            self.has_heading = true;
             let harmonics =
                 (0..station.tested.len()).map(|n| format!("{:>11}", format!("n = {n}")));
             self.ticker.line(&format!(
@@ -206,15 +208,15 @@ impl Observer for Watcher {
             .map(|tested| format!("{:>11.3e}", tested.lowest));
         self.ticker.line(&format!(
             "{}  {:>24}{}",
-            self.under(station.row.unwrap_or_default(), tube, &station.load),
+            self.load_columns(station.row.unwrap_or_default(), tube, &station.load),
             "",
             lowest.collect::<String>()
         ));
     }
 
     fn found(&mut self, tube: &Tube, spectrum: &Spectrum) {
-        if !self.begun {
-            self.begun = true;
+        if !self.has_heading {
+            self.has_heading = true;
             self.ticker.line(&format!(
                 "{}  {:>10}  lowest eigenvalues, E/D²",
                 self.heading(),
@@ -225,7 +227,7 @@ impl Observer for Watcher {
         let lowest = lowest.map(|eigenvalue| format!("{:>11.3e}", eigenvalue.value));
         self.ticker.line(&format!(
             "{}  {:>10}{}",
-            self.under(spectrum.row, tube, &spectrum.load),
+            self.load_columns(spectrum.row, tube, &spectrum.load),
             spectrum.iterations,
             lowest.collect::<String>()
         ));

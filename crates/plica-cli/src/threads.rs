@@ -1,20 +1,22 @@
-//! How many threads compute.
+//! Size of the thread pool.
 
+use crate::args::Threads;
 use crate::console;
 use crate::failure::Failure;
 
-/// Limits the threads to a number, if one is given; more than the machine has would only stand in each other's way.
-pub fn limit(threads: Option<u16>) -> Result<(), Failure> {
-    let Some(asked) = threads.map(usize::from) else {
+/// Limits the thread pool to the given number of threads, at most as many as the machine has.
+pub fn limit(threads: Threads) -> Result<(), Failure> {
+    let Some(requested) = threads.number.map(usize::from) else {
         return Ok(());
     };
-    let there = std::thread::available_parallelism().map_or(asked, usize::from);
-    if asked > there {
+    let available = std::thread::available_parallelism().map_or(requested, usize::from);
+    if requested > available {
         console::tell(&format!(
-            "warning: {asked} threads are asked for, and this machine has {there}; {there} are used"
+            "warning: --threads {requested}: this machine has {available}; {available} are used"
         ));
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(asked.min(there));
-    pool.build_global()
-        .map_err(|error| Failure::Fault(format!("no threads: {error}")))
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(requested.min(available))
+        .build_global()
+        .map_err(|error| Failure::Fault(format!("cannot start threads: {error}")))
 }

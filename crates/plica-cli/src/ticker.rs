@@ -1,91 +1,71 @@
-//! Signs of life: lines, a bar under them on a terminal, and an ear for Ctrl-C.
+//! Progress on standard error: lines, a progress bar below them on a terminal, and a check for Ctrl-C.
 
 use crate::console;
 use crate::interrupt::Interrupt;
 use indicatif::{ProgressBar, ProgressStyle};
-use plica::monitor::Monitor;
-use std::cell::Cell;
-use std::fmt::Display;
 use std::time::{Duration, Instant};
 
 /// Ticks of a full bar.
 const FULL: u64 = 1000;
-/// Without a bar, a sign of life is given this often.
+/// Longest time without output where there is no bar.
 const QUIET: Duration = Duration::from_secs(30);
 
-/// Shows what goes on, and hears when someone asks to stop.
+/// Shows progress and checks for interruption.
 pub struct Ticker {
     bar: Option<ProgressBar>,
     interrupt: Interrupt,
-    stopping: Cell<bool>,
-    last_sign: Instant,
+    stopping: bool,
+    last_output: Instant,
 }
 
 impl Ticker {
-    /// At the beginning.
+    /// Starts the progress bar, if standard error is a terminal.
     pub fn new(interrupt: Interrupt) -> Self {
         Self {
             bar: console::is_watched().then(bar),
             interrupt,
-            stopping: Cell::new(false),
-            last_sign: Instant::now(),
+            stopping: false,
+            last_output: Instant::now(),
         }
     }
 
-    /// In the end: the bar goes, the lines stay.
+    /// Removes the bar; the lines stay.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }
 
-    /// A line that stays.
+    /// Prints a line above the bar.
     pub fn line(&mut self, line: &str) {
-        self.print(line);
-        self.last_sign = Instant::now();
+        match &self.bar {
+            Some(bar) => bar.println(line),
+            None => console::tell(line),
+        }
+        self.last_output = Instant::now();
     }
 
-    /// What takes time, and how far it all is (0 to 1).
+    /// Shows the current task and the completed fraction (0 to 1) of the whole work.
     pub fn working(&mut self, what: &str, fraction: f64) {
         match &self.bar {
             Some(bar) => {
                 bar.set_position((fraction.clamp(0.0, 1.0) * FULL as f64) as u64);
                 bar.set_message(what.to_owned());
             }
-            None if self.last_sign.elapsed() > QUIET => {
+            None if self.last_output.elapsed() > QUIET => {
                 self.line(&format!("{:>4.0} %  {what}", 100.0 * fraction));
             }
             None => {}
         }
     }
 
-    /// Whether someone asked to stop.
-    pub fn stop(&self) -> bool {
-        if self.interrupt.asked() && !self.stopping.replace(true) {
-            self.print("stopping; once more ends it at once");
+    /// Returns whether the user has asked to stop.
+    pub fn stop(&mut self) -> bool {
+        if self.interrupt.asked() && !self.stopping {
+            self.stopping = true;
+            self.line("stopping; press Ctrl-C again to stop at once");
         }
-        self.stopping.get()
-    }
-
-    fn print(&self, line: &str) {
-        match &self.bar {
-            Some(bar) => bar.println(line),
-            None => console::tell(line),
-        }
-    }
-}
-
-impl Monitor for Ticker {
-    fn working(&mut self, activity: &dyn Display, fraction: f64) {
-        self.working(&activity.to_string(), fraction);
-    }
-
-    fn notice(&mut self, message: &str) {
-        self.line(message);
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.stop()
+        self.stopping
     }
 }
 

@@ -3,68 +3,73 @@
 use crate::args::VerifyArguments;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
-use crate::pages::First;
+use crate::page_directory::FirstPage;
 use crate::ticker::Ticker;
-use crate::{console, pages, threads};
-use plica_verify::verification::{CHECKS, Check, TITLE, VerificationError, verify as run_checks};
+use crate::{console, page_directory, threads};
+use plica_verify::verification::{
+    CHECKS, Check, Observer, Row, TITLE, Trouble, verify as run_checks,
+};
 use std::fs;
 
-/// The page with the table.
+/// Page with the table.
 const PAGE: &str = "verification.md";
 
-/// Holds the checks, prints the table and writes it with its pictures.
+/// Runs the checks, prints the table and writes it with its pictures.
 pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     if arguments.list {
         return console::say(&list());
     }
-    // Nothing is a part of everything.
-    let is = |check: &Check, name: &String| !name.is_empty() && check.name.contains(name.as_str());
+    // An empty name would match every check.
+    let matches =
+        |check: &Check, name: &String| !name.is_empty() && check.name.contains(name.as_str());
     let only = &arguments.only;
-    let wanted = |check: &Check| only.is_empty() || only.iter().any(|name| is(check, name));
+    let wanted = |check: &Check| only.is_empty() || only.iter().any(|name| matches(check, name));
     let full = arguments.full;
     if let Some(name) = only.iter().find(|name| {
-        let mut held = CHECKS.iter().filter(|check| full || !check.slow);
-        !held.any(|check| is(check, name))
+        let mut available = CHECKS.iter().filter(|check| full || !check.slow);
+        !available.any(|check| matches(check, name))
     }) {
-        let slow = CHECKS.iter().any(|check| is(check, name));
-        let cure = if slow {
-            "it is a slow one: add --full"
+        let slow = CHECKS.iter().any(|check| matches(check, name));
+        let help = if slow {
+            "it is slow: add --full"
         } else {
-            "plica verify --list names them"
+            "see plica verify --list"
         };
         return Err(Failure::Usage(format!(
-            "--only {name:?}: no check has this name; {cure}"
+            "--only {name:?}: no such check; {help}"
         )));
     }
     threads::limit(arguments.threads)?;
-    let first = First {
+    let first = FirstPage {
         name: PAGE,
         title: TITLE,
         manner: "",
         command: "plica verify",
     };
-    pages::prepare(&arguments.out, &first)?;
-    let file_trouble = |error| Failure::Files(format!("{}: {error}", arguments.out.display()));
+    page_directory::prepare(&arguments.out, &first)?;
+    let file_error = |error| Failure::Files(format!("{}: {error}", arguments.out.display()));
     let page = arguments.out.join(PAGE);
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
-    let mut ticker = Ticker::new(interrupt);
-    let held = run_checks(full, &wanted, &mut ticker);
-    ticker.finish();
-    let held = held.map_err(|error| match error {
-        VerificationError::Cancelled => {
-            Failure::Interrupted("interrupted; nothing was written".into())
-        }
-        error => Failure::Files(error.to_string()),
+    let mut monitor = Monitor {
+        ticker: Ticker::new(interrupt),
+        done: 0,
+        of: 1,
+    };
+    let found = run_checks(full, &wanted, &mut monitor);
+    monitor.ticker.finish();
+    let found = found.map_err(|trouble| match trouble {
+        Trouble::Stopped => Failure::Interrupted("interrupted; nothing was written".into()),
+        trouble => Failure::Files(trouble.to_string()),
     })?;
-    // First of all, whatever becomes of the files.
-    console::say(&held.text())?;
+    // Print first: writing the files may fail.
+    console::say(&found.text())?;
     let mut names = vec![PAGE.to_owned()];
-    fs::write(&page, held.page()).map_err(file_trouble)?;
-    match held.pictures() {
+    fs::write(&page, found.page()).map_err(file_error)?;
+    match found.pictures() {
         Ok(pictures) => {
             for (name, png) in pictures {
-                fs::write(arguments.out.join(&name), png).map_err(file_trouble)?;
+                fs::write(arguments.out.join(&name), png).map_err(file_error)?;
                 names.push(name);
             }
         }
@@ -72,18 +77,54 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     }
     let out = arguments.out.display();
     console::say(&format!("written to {out}: {}\n", names.join(", ")))?;
-    if held.failed() > 0 {
+    if found.failed() > 0 {
         Err(Failure::Unfinished)
     } else {
         Ok(())
     }
 }
 
-/// The checks and what they are about.
+/// Lists the checks and their subjects.
 fn list() -> String {
     let line = |check: &Check| {
         let slow = if check.slow { " (--full)" } else { "" };
-        format!("{:<22}{}{slow}\n", check.name, check.description)
+        format!("{:<22}{}{slow}\n", check.name, check.about)
     };
     CHECKS.iter().map(line).collect()
+}
+
+/// Prints a line per check and per failed row.
+struct Monitor {
+    ticker: Ticker,
+    done: usize,
+    of: usize,
+}
+
+impl Observer for Monitor {
+    fn begins(&mut self, about: &str, done: usize, of: usize) {
+        (self.done, self.of) = (done, of);
+        self.ticker
+            .line(&format!("{:>3} of {of}  {about}", done + 1));
+    }
+
+    fn found(&mut self, row: &Row) {
+        let fraction = self.done as f64 / self.of as f64;
+        self.ticker.working(&row.case, fraction);
+        if !row.passes() {
+            let Row {
+                case,
+                quantity,
+                computed,
+                reference,
+                ..
+            } = row;
+            self.ticker.line(&format!(
+                "            FAILED: {case}, {quantity}: {computed:.6e}, not {reference:.6e}"
+            ));
+        }
+    }
+
+    fn stop(&mut self) -> bool {
+        self.ticker.stop()
+    }
 }

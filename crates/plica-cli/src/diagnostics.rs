@@ -1,4 +1,4 @@
-//! Problems of a case, shown in its text.
+//! Problems of a case, shown in its source text.
 
 use crate::console;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
@@ -6,10 +6,10 @@ use plica::case::{CaseError, Problem};
 use std::ops::Range;
 use std::path::Path;
 
-/// So many problems are shown.
+/// Largest number of problems shown.
 const MOST: usize = 200;
 
-/// All problems of a case, and their number.
+/// Formats the problems of a case and their number.
 pub fn render(path: &Path, text: &str, error: &CaseError) -> String {
     let renderer = match console::is_coloured() {
         true => Renderer::styled(),
@@ -19,19 +19,19 @@ pub fn render(path: &Path, text: &str, error: &CaseError) -> String {
     let starts: Vec<usize> = text.match_indices('\n').map(|(at, _)| at + 1).collect();
     let mut lines: Vec<String> = Vec::new();
     for problem in error.problems.iter().take(MOST) {
-        // A problem of the whole file is shown at its end.
+        // A problem without a place is shown at the end of the file.
         let span = problem.span.clone().unwrap_or(text.len()..text.len());
-        // Of a long text the lines that matter, with their number.
+        // Show only the lines of the problem, with their numbers.
         let before = starts.partition_point(|start| *start <= span.start);
         let from = before.checked_sub(1).map_or(0, |line| starts[line]);
         let after = starts.partition_point(|start| *start < span.end);
         let to = starts.get(after).copied().unwrap_or(text.len());
-        let shown = Shown {
+        let excerpt = Excerpt {
             text: &text[from..to],
             line: before + 1,
             span: span.start - from..span.end - from,
         };
-        lines.push(show(&renderer, &path, shown, problem));
+        lines.push(render_problem(&renderer, &path, excerpt, problem));
         lines.push(String::new());
     }
     let count = match error.problems.len() {
@@ -43,22 +43,27 @@ pub fn render(path: &Path, text: &str, error: &CaseError) -> String {
     lines.join("\n")
 }
 
-/// A piece of a text: its lines, the number of the first, and the bytes of it that matter.
-struct Shown<'a> {
+/// Lines of a text, the number of the first, and the bytes to mark in them.
+struct Excerpt<'a> {
     text: &'a str,
     line: usize,
     span: Range<usize>,
 }
 
-fn show(renderer: &Renderer, path: &str, shown: Shown<'_>, problem: &Problem) -> String {
+fn render_problem(
+    renderer: &Renderer,
+    path: &str,
+    excerpt: Excerpt<'_>,
+    problem: &Problem,
+) -> String {
     let title = match problem.key.as_str() {
         "" => problem.rule.clone(),
         key => format!("{key}: {}", problem.rule),
     };
-    let snippet = Snippet::source(shown.text)
-        .line_start(shown.line)
+    let snippet = Snippet::source(excerpt.text)
+        .line_start(excerpt.line)
         .path(path)
-        .annotation(AnnotationKind::Primary.span(shown.span));
+        .annotation(AnnotationKind::Primary.span(excerpt.span));
     let mut group = Level::ERROR.primary_title(title).element(snippet);
     if let Some(cure) = &problem.cure {
         group = group.element(Level::HELP.message(cure.as_str()));

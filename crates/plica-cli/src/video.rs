@@ -1,19 +1,19 @@
-//! Animated pictures as films, by ffmpeg where it is at hand.
+//! Conversion of animations to videos by ffmpeg.
 
 use crate::failure::Failure;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The program that makes films.
+/// The external program.
 const FFMPEG: &str = "ffmpeg";
 
-/// Whether a file is to be a film, by its ending.
-pub fn is_one(path: &Path) -> bool {
+/// Returns whether a path names a video.
+pub fn is_video(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "mp4")
 }
 
-/// Refuses a film where none can be made.
-pub fn possible(path: &Path) -> Result<(), Failure> {
+/// Returns an error if ffmpeg is not available.
+pub fn require_ffmpeg(path: &Path) -> Result<(), Failure> {
     let quiet = Command::new(FFMPEG)
         .arg("-version")
         .stdout(Stdio::null())
@@ -22,37 +22,37 @@ pub fn possible(path: &Path) -> Result<(), Failure> {
     match quiet {
         Ok(status) if status.success() => Ok(()),
         _ => Err(Failure::Usage(format!(
-            "--out {}: a film takes {FFMPEG}, which cannot be started here; install it, or let the file end in .apng",
+            "--out {}: a video requires {FFMPEG}, which cannot be started; install it, or choose a file that ends in .apng",
             path.display()
         ))),
     }
 }
 
-/// An animated PNG as the bytes of a film, whose last picture stays for so many seconds more; by way of two files beside the one that it is to be, as neither format can be read
-/// or written without going back.
-pub fn of(apng: &[u8], path: &Path, rest: f64) -> Result<Vec<u8>, Failure> {
-    let aside = [
+/// Converts an animated PNG to a video whose last picture stays for `pause` more seconds. ffmpeg needs seekable files: two
+/// temporary files are written beside `path`.
+pub fn convert(apng: &[u8], path: &Path, pause: f64) -> Result<Vec<u8>, Failure> {
+    let temporary = [
         path.with_extension("part.apng"),
         path.with_extension("part.mp4"),
     ];
-    let film = made(apng, &aside, rest)
+    let video = run_ffmpeg(apng, &temporary, pause)
         .map_err(|what| Failure::Files(format!("{}: {what}", path.display())));
-    for file in &aside {
-        // What was not made need not be removed.
+    for file in &temporary {
+        // It may not exist.
         let _ = std::fs::remove_file(file);
     }
-    film
+    video
 }
 
-fn made(apng: &[u8], [from, to]: &[PathBuf; 2], rest: f64) -> Result<Vec<u8>, String> {
+fn run_ffmpeg(apng: &[u8], [from, to]: &[PathBuf; 2], pause: f64) -> Result<Vec<u8>, String> {
     std::fs::write(from, apng).map_err(|error| error.to_string())?;
     let output = Command::new(FFMPEG)
         .args(["-loglevel", "error", "-y", "-i"])
         .arg(from)
-        // Every player knows H.264 in this form, which takes even sides.
+        // All players support H.264 with this pixel format, which requires an even width and height.
         .arg("-vf")
         .arg(format!(
-            "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white,tpad=stop_mode=clone:stop_duration={rest:.3}"
+            "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white,tpad=stop_mode=clone:stop_duration={pause:.3}"
         ))
         .args(["-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p"])
         .arg(to)
