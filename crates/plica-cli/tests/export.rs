@@ -1,11 +1,10 @@
-//! `plica export` as its user meets it. What VTK itself reads of its files, `scripts/check-vtk` tells.
+//! `plica export`. `scripts/check-vtk` reads the files with VTK.
 
-mod common;
-
-use common::{plica, scratch, short_run, text};
+use crate::common::{damage, fail, scratch, short_run, succeed};
 use std::fs;
 use std::path::Path;
 
+/// Returns the sorted names of the files in a directory.
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names: Vec<String> = entries
@@ -16,71 +15,62 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn walls_of_every_state_and_volumes_of_those_asked_for() {
+fn export_writes_all_walls_and_the_requested_volumes() {
     let directory = scratch("export");
     let run = short_run(&directory);
-    let said = plica(&directory, &["export", "run", "--state", "1", "--linear"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
-    assert!(text(&said.stdout).contains("walls: 4 files"));
+    let stdout = succeed(&directory, &["export", "run", "--state", "1", "--linear"]);
+    assert!(stdout.contains("walls: 4 files"));
     let vtk = run.join("vtk");
     assert_eq!(names(&vtk.join("walls")).len(), 4);
     assert_eq!(names(&vtk.join("volume")), ["state-0001.vtu"]);
     assert_eq!(names(&vtk.join("linear")), ["state-0001.vtu"]);
     let volume = fs::read(vtk.join("volume/state-0001.vtu")).unwrap();
     let head = String::from_utf8_lossy(&volume[..4000]);
-    // 9 elements of 4³ nodes, 8 around, 1 through the wall: shared.
+    // 9 × 8 × 1 elements of 4³ nodes, of which neighbours share a face.
     let points = format!("NumberOfPoints=\"{}\"", (9 * 3 + 1) * 8 * 3 * 4);
     assert!(head.contains(&points), "{head}");
     assert!(head.contains("Name=\"cauchy_stress\""), "{head}");
-    // Without being asked the last state; what was written before stays in the collection.
-    let said = plica(&directory, &["export", "run"]);
-    assert!(said.status.success());
+    // The default is the last state; the collection keeps files written before.
+    succeed(&directory, &["export", "run"]);
     let collection = fs::read_to_string(vtk.join("volume.pvd")).unwrap();
     assert_eq!(collection.matches("<DataSet").count(), 2, "{collection}");
     assert!(collection.contains("file=\"volume/state-0003.vtu\""));
-    // A run that is replaced takes its files along.
-    let said = plica(
+    // Overwriting a run removes its exported files.
+    succeed(
         &directory,
         &["run", "case.toml", "--out", "run", "--overwrite"],
     );
-    assert!(said.status.success());
     assert!(names(&vtk.join("walls")).is_empty() && !vtk.join("volume.pvd").exists());
 }
 
 #[test]
-fn what_is_not_there_is_refused() {
+fn export_refuses_missing_and_damaged_states() {
     let directory = scratch("export-refused");
     let run = short_run(&directory);
-    let refused = |arguments: &[&str], code: i32, what: &str| {
-        let said = plica(&directory, arguments);
-        assert_eq!(said.status.code(), Some(code), "{arguments:?}");
-        assert!(text(&said.stderr).contains(what), "{}", text(&said.stderr));
+    let refuses = |arguments: &[&str], code: i32, what: &str| {
+        let stderr = fail(&directory, arguments, code);
+        assert!(stderr.contains(what), "{stderr}");
         assert!(!run.join("vtk").exists());
     };
-    refused(
+    refuses(
         &["export", "run", "--state", "9"],
         2,
         "these are: 0, 1, 2, 3",
     );
-    refused(
+    refuses(
         &["export", "run", "--state", "1", "--all"],
         2,
         "cannot be used with",
     );
-    refused(&["export", "nowhere"], 3, "nowhere");
-    refused(&["export", "."], 3, "");
+    refuses(&["export", "nowhere"], 3, "nowhere");
+    refuses(&["export", "."], 3, "");
     let state = run.join("states/state-0003.safetensors");
-    let mut bytes = fs::read(&state).unwrap();
-    let last = bytes.len() - 1;
-    bytes[last] ^= 1;
-    fs::write(&state, bytes).unwrap();
-    let said = plica(&directory, &["export", "run"]);
-    assert_eq!(said.status.code(), Some(3));
-    assert!(text(&said.stderr).contains("damaged"));
+    damage(&state);
+    let stderr = fail(&directory, &["export", "run"], 3);
+    assert!(stderr.contains("damaged"));
     for file in names(&run.join("states")) {
         fs::remove_file(run.join("states").join(file)).unwrap();
     }
-    let said = plica(&directory, &["export", "run"]);
-    assert_eq!(said.status.code(), Some(2));
-    assert!(text(&said.stderr).contains("has saved no states"));
+    let stderr = fail(&directory, &["export", "run"], 2);
+    assert!(stderr.contains("has saved no states"));
 }

@@ -1,14 +1,10 @@
-//! A run that is killed before each of its operations on files in turn, or in the middle of writing, or finds a full disk from
-//! there on; taken up again, it leaves what a run leaves that was let alone.
+//! Faults injected at each operation on files: the process is killed before it or in the middle of a write, or the disk is full
+//! from there on. The resumed run must have the same files as an uninterrupted run.
 //!
-//! Kills at random (`resume.rs`) hardly ever fall between two operations that follow each other; these always do. The system's
-//! functions are replaced from outside (`faults/faults.c`), so that it is the program itself that is tried.
+//! Random kills (`resume.rs`) rarely hit the short time between two successive operations. A preloaded library
+//! (`faults/faults.c`) replaces the functions of the system, so that the unmodified program is tested.
 
-#![cfg(target_os = "linux")]
-
-mod common;
-
-use common::{assert_same_after, left, plica, scratch, text};
+use crate::common::{PLICA, assert_contents, contents, plica, scratch, succeed, text};
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
@@ -29,25 +25,26 @@ steps = 2
 drive.circular.diameter_ratio = 0.9
 "#;
 const MORE: &str = "[[stages]]\nname = \"press\"\nsteps = 2\ndrive.outer-wall.pressure = 1e-4\n";
-const PLAIN: &str = "[output]\nstates_every = 2\npictures = false\n";
+const WITHOUT_PICTURES: &str = "[output]\nstates_every = 2\npictures = false\n";
 
-/// What can become of an operation, and whether the process is gone then.
+/// Kinds of faults, and whether the process dies of them.
 const FAULTS: [(&str, bool); 3] = [("kill", true), ("torn", true), ("full", false)];
 
-/// The replaced functions of the system, as a library.
+/// Compiles the library with the replaced functions.
 fn library(directory: &Path) -> PathBuf {
     let library = directory.join("faults.so");
     let built = Command::new("cc")
         .args(["-shared", "-fPIC", "-O1", "-o"])
         .arg(&library)
-        .arg(common::tests().join("faults/faults.c"))
+        .arg(crate::common::tests().join("faults/faults.c"))
         .arg("-ldl")
         .output()
-        .expect("cc, by which Rust links");
+        .expect("the C compiler that Rust links with");
     assert!(built.status.success(), "{}", text(&built.stderr));
     library
 }
 
+/// Copies a directory.
 fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
     for entry in fs::read_dir(from).unwrap().flatten() {
@@ -60,70 +57,65 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// What is done to a directory `cut` in the midst of which something happens.
-struct Act<'a> {
-    /// Of the scratch directory.
+/// A command on the directory `cut` that a fault interrupts.
+struct Scenario<'a> {
+    /// Name of the scratch directory.
     name: &'a str,
-    /// A run that is there before, if there is one: how its case ends.
+    /// End of the case of an earlier run in the directory, if there is one.
     before: Option<&'a str>,
-    /// How the case ends that is run.
+    /// End of the case.
     case: &'a str,
-    /// What is done.
-    act: &'a [&'a str],
-    /// What mends it: the first of these that does.
-    mend: &'a [&'a [&'a str]],
+    /// Arguments of the command.
+    command: &'a [&'a str],
+    /// Commands to repair the directory; the first that succeeds must complete the run.
+    repair: &'a [&'a [&'a str]],
 }
 
-impl Act<'_> {
-    /// Every so-manieth operation, from the first.
+impl Scenario<'_> {
+    /// Injects a fault at every `every`-th operation, from the first.
     fn survives(&self, every: usize) {
         let directory = scratch(self.name);
         let library = library(&directory);
-        let does = |arguments: &[&str]| {
-            let said = plica(&directory, arguments);
-            assert!(said.status.success(), "{}", text(&said.stderr));
-        };
         if let Some(before) = self.before {
             fs::write(directory.join("tube.toml"), HEAD.to_owned() + before).unwrap();
-            does(&["run", "tube.toml", "--out", "before"]);
+            succeed(&directory, &["run", "tube.toml", "--out", "before"]);
         }
         let cut = directory.join("cut");
-        let again = || {
+        let reset = || {
             let _ = fs::remove_dir_all(&cut);
             if self.before.is_some() {
                 copy(&directory.join("before"), &cut);
             }
         };
         fs::write(directory.join("tube.toml"), HEAD.to_owned() + self.case).unwrap();
-        again();
-        does(self.act);
-        let whole = left(&cut);
-        for (how, gone) in FAULTS {
+        reset();
+        succeed(&directory, self.command);
+        let expected = contents(&cut);
+        for (how, kills) in FAULTS {
             let mut at = 1;
             loop {
-                again();
-                let said = Command::new(env!("CARGO_BIN_EXE_plica"))
-                    .args(self.act)
+                reset();
+                let output = Command::new(PLICA)
+                    .args(self.command)
                     .current_dir(&directory)
                     .env("LD_PRELOAD", &library)
                     .env("FAULT_AT", at.to_string())
                     .env("FAULT_HOW", how)
                     .output()
                     .unwrap();
-                let told = text(&said.stderr);
-                if said.status.success() {
+                let stderr = text(&output.stderr);
+                if output.status.success() {
                     break;
                 }
-                if gone {
-                    assert_eq!(said.status.signal(), Some(9), "{how} at {at}: {told}");
+                if kills {
+                    assert_eq!(output.status.signal(), Some(9), "{how} at {at}: {stderr}");
                 } else {
-                    // Told as it should be.
-                    assert_eq!(said.status.code(), Some(3), "{how} at {at}: {told}");
-                    assert!(told.contains("No space left"), "{how} at {at}: {told}");
+                    assert_eq!(output.status.code(), Some(3), "{how} at {at}: {stderr}");
+                    assert!(stderr.contains("No space left"), "{how} at {at}: {stderr}");
                 }
                 let what = format!("{}: {how} at {at}", self.name);
-                self.mended(&directory, &what);
-                assert_same_after(&what, &whole, &cut);
+                self.repair(&directory, &what);
+                assert_contents(&what, &expected, &cut);
                 at += every;
             }
             assert!(at > 20.max(every), "{how}: {at}");
@@ -131,110 +123,109 @@ impl Act<'_> {
         }
     }
 
-    /// Does what mends it.
-    fn mended(&self, directory: &Path, what: &str) {
-        let mut told = vec![];
-        for arguments in self.mend {
+    /// Runs the repair commands until one succeeds.
+    fn repair(&self, directory: &Path, what: &str) {
+        let mut errors = vec![];
+        for arguments in self.repair {
             let before = directory
                 .join("cut")
                 .exists()
-                .then(|| left(&directory.join("cut")));
+                .then(|| contents(&directory.join("cut")));
             let Output { status, stderr, .. } = plica(directory, arguments);
             if status.success() {
                 return;
             }
-            // What does not mend it leaves it as it is, and says why.
+            // A refused repair leaves the directory unchanged.
             assert!(
                 matches!(status.code(), Some(2 | 3)),
                 "{what}: {}",
                 text(&stderr)
             );
             if let Some(before) = before {
-                assert_same_after(what, &before, &directory.join("cut"));
+                assert_contents(what, &before, &directory.join("cut"));
             }
-            told.push(text(&stderr));
+            errors.push(text(&stderr));
         }
-        panic!("{what}: {}", told.join("\n"));
+        panic!("{what}: {}", errors.join("\n"));
     }
 }
 
-/// By another command, in a run whose case has a title of its file only.
 const RESUME: &[&str] = &["resume", "cut"];
 const RUN: &[&str] = &["run", "tube.toml", "--out", "cut"];
-const GO_ON: &[&str] = &["run", "tube.toml", "--out", "cut", "--resume"];
+const RUN_RESUME: &[&str] = &["run", "tube.toml", "--out", "cut", "--resume"];
 const OVERWRITE: &[&str] = &["run", "tube.toml", "--out", "cut", "--overwrite"];
 
-fn all(every: usize) {
-    let plain = MORE.to_owned() + PLAIN;
-    let fresh = Act {
+/// Injects faults at every `every`-th operation of all scenarios.
+fn test_all(every: usize) {
+    let case = MORE.to_owned() + WITHOUT_PICTURES;
+    let fresh = Scenario {
         name: "faults-fresh",
         before: None,
-        case: &plain,
-        act: RUN,
-        mend: &[GO_ON],
+        case: &case,
+        command: RUN,
+        repair: &[RUN_RESUME],
     };
     fresh.survives(every);
-    Act {
+    Scenario {
         name: "faults-resume",
         case: &(MORE.to_owned() + "[output]\nstates_every = 2\n"),
-        mend: &[RESUME, GO_ON],
+        repair: &[RESUME, RUN_RESUME],
         ..fresh
     }
     .survives(2 * every);
-    // A former run of something else, which is to be replaced. As long as it is whole it is not taken for one of the new case.
-    let other = plain.replace("1e-4", "2e-4");
-    Act {
+    // Overwrite the run of another case. Until it is removed it must not be mistaken for a run of the new case.
+    let other = case.replace("1e-4", "2e-4");
+    Scenario {
         name: "faults-overwrite",
         before: Some(&other),
-        act: OVERWRITE,
-        mend: &[GO_ON, OVERWRITE],
+        command: OVERWRITE,
+        repair: &[RUN_RESUME, OVERWRITE],
         ..fresh
     }
     .survives(every);
-    // A complete run whose case has got another stage.
-    Act {
+    // Resume a complete run whose case has a new stage.
+    Scenario {
         name: "faults-changed",
-        before: Some(PLAIN),
-        act: GO_ON,
+        before: Some(WITHOUT_PICTURES),
+        command: RUN_RESUME,
         ..fresh
     }
     .survives(every);
-    // To the end of pictures, and what is tidied up after them.
-    Act {
+    // Include pictures and the removal of temporary files after them.
+    Scenario {
         name: "faults-pictures",
         before: Some("[output]\nstates_every = 2\n"),
         case: &(MORE.to_owned() + "[output]\nstates_every = 2\n"),
-        act: GO_ON,
-        mend: &[GO_ON],
+        command: RUN_RESUME,
+        repair: &[RUN_RESUME],
     }
     .survives(2 * every);
-    // Pictures alone, of a run that was complete without.
-    Act {
+    // Draw the pictures of a run that was completed without them.
+    Scenario {
         name: "faults-drawn",
         before: Some("[output]\npictures = false\n"),
         case: "",
-        act: GO_ON,
-        mend: &[GO_ON],
+        command: RUN_RESUME,
+        repair: &[RUN_RESUME],
     }
     .survives(2 * every);
-    Act {
+    Scenario {
         name: "faults-stability",
-        before: Some(&plain),
-        act: &["stability", "cut"],
-        mend: &[&["stability", "cut"]],
+        before: Some(&case),
+        command: &["stability", "cut"],
+        repair: &[&["stability", "cut"]],
         ..fresh
     }
     .survives(every);
 }
 
 #[test]
-fn a_run_survives_faults_here_and_there() {
-    all(19);
+fn runs_survive_faults_at_some_file_operations() {
+    test_all(19);
 }
 
-/// For the slow suite: `cargo test --release -p plica-cli --test faults -- --ignored`.
 #[test]
 #[ignore = "takes minutes"]
-fn a_run_survives_a_fault_at_every_operation_on_files() {
-    all(1);
+fn runs_survive_faults_at_every_file_operation() {
+    test_all(1);
 }

@@ -1,19 +1,15 @@
-//! Runs that are killed, stopped, cut off by a full disk or found with broken checkpoints, and taken up again: what they leave
-//! in the end is what a run leaves that was let alone, to the byte, wall times aside.
+//! `plica resume`: runs that were killed, stopped or ended by a full disk, or whose checkpoints are damaged. The resumed run must
+//! have the same files as an uninterrupted run, except for wall times.
 
-mod common;
-
-use common::{assert_same, left, plica, scratch, text};
+use crate::common::{PLICA, assert_contents, contents, fail, plica, scratch, succeed, text};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-const PLICA: &str = env!("CARGO_BIN_EXE_plica");
-
-/// Axisymmetric, through two stages, with states that are saved and others that are kept for pictures only.
-const ROUND: &str = r#"
+/// An axisymmetric case with two stages, which saves every third state and keeps others for pictures only.
+const AXISYMMETRIC: &str = r#"
 [tube]
 length = 2.0
 thickness = 0.1
@@ -34,7 +30,7 @@ drive.outer-wall.pressure = 1e-4
 states_every = 3
 "#;
 
-/// In three dimensions, with an imperfect end.
+/// A three-dimensional case with an imperfect end.
 const TILTED: &str = r#"
 symmetry = "none"
 [tube]
@@ -57,24 +53,24 @@ steps = 2
 drive.ileum.twist_degrees = 10
 "#;
 
-/// Through pseudo-time, whose velocity is carried on.
+/// Returns a case in pseudo-time, whose velocity is part of the checkpoint.
 fn damped() -> String {
-    ROUND.replace("[output]", "[solver]\nscheme = \"newmark\"\n[solver.pseudo_time]\nsettle = false\n[output]\nprofiles_every = 2")
+    AXISYMMETRIC.replace("[output]", "[solver]\nscheme = \"newmark\"\n[solver.pseudo_time]\nsettle = false\n[output]\nprofiles_every = 2")
 }
 
-/// A case, and what its run leaves that is let alone; how long that takes.
-fn undisturbed(directory: &Path, case: &str) -> (BTreeMap<PathBuf, Vec<u8>>, Duration) {
+/// Runs a case without interruption. Returns the contents of the run and the time it took.
+fn uninterrupted(directory: &Path, case: &str) -> (BTreeMap<PathBuf, Vec<u8>>, Duration) {
     fs::write(directory.join("case.toml"), case).unwrap();
     let begin = Instant::now();
-    let said = plica(directory, &["run", "case.toml", "--out", "whole"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
-    (left(&directory.join("whole")), begin.elapsed())
+    succeed(directory, &["run", "case.toml", "--out", "whole"]);
+    (contents(&directory.join("whole")), begin.elapsed())
 }
 
-/// Numbers that look random, the same every time.
+/// Pseudo-random numbers from a seed.
 struct Chance(u64);
 
 impl Chance {
+    /// Returns a number from 0 to 1.
     fn next(&mut self) -> f64 {
         self.0 = self
             .0
@@ -84,8 +80,8 @@ impl Chance {
     }
 }
 
-/// Runs or goes on, and sends a signal if it is not done by then.
-fn cut(directory: &Path, after: Duration, signal: &str) -> ExitStatus {
+/// Starts or resumes a run and sends a signal after a time.
+fn interrupt(directory: &Path, after: Duration, signal: &str) -> ExitStatus {
     let mut child = Command::new(PLICA)
         .args(["run", "case.toml", "--out", "cut", "--resume"])
         .current_dir(directory)
@@ -109,10 +105,10 @@ fn cut(directory: &Path, after: Duration, signal: &str) -> ExitStatus {
     child.wait().unwrap()
 }
 
-/// Kills runs of a case at random moments, so often in all.
-fn survives(name: &str, case: &str, kills: usize, seed: u64) {
+/// Kills runs of a case at random times until `kills` signals have been sent, and compares what they resume to.
+fn kill_at_random(name: &str, case: &str, kills: usize, seed: u64) {
     let directory = scratch(name);
-    let (whole, took) = undisturbed(&directory, case);
+    let (expected, took) = uninterrupted(&directory, case);
     let mut chance = Chance(seed);
     let mut killed = 0;
     while killed < kills {
@@ -120,36 +116,35 @@ fn survives(name: &str, case: &str, kills: usize, seed: u64) {
         loop {
             let after = took.mul_f64(0.7 * chance.next());
             let signal = ["KILL", "TERM", "INT"][(3.0 * chance.next()) as usize];
-            let status = cut(&directory, after, signal);
+            let status = interrupt(&directory, after, signal);
             if status.success() {
                 break;
             }
-            // By the signal, or with what a run says that was asked to stop.
+            // Killed by the signal, or stopped on request.
             assert!(matches!(status.code(), None | Some(130)), "{status}");
             killed += 1;
         }
-        assert_same(&whole, &directory.join("cut"));
+        assert_contents("", &expected, &directory.join("cut"));
     }
 }
 
 #[test]
-fn a_run_that_is_killed_is_taken_up_again() {
-    survives("resume-round", ROUND, 4, 1);
-    survives("resume-tilted", TILTED, 3, 2);
-    survives("resume-damped", &damped(), 3, 3);
+fn runs_killed_at_random_times_resume() {
+    kill_at_random("resume-round", AXISYMMETRIC, 4, 1);
+    kill_at_random("resume-tilted", TILTED, 3, 2);
+    kill_at_random("resume-damped", &damped(), 3, 3);
 }
 
-/// For the slow suite: `cargo test --release -p plica-cli --test resume -- --ignored`.
 #[test]
 #[ignore = "takes minutes"]
-fn runs_that_are_killed_two_hundred_times_are_taken_up_again() {
-    survives("resume-many-round", ROUND, 80, 11);
-    survives("resume-many-tilted", TILTED, 70, 12);
-    survives("resume-many-damped", &damped(), 60, 13);
+fn runs_killed_two_hundred_times_resume() {
+    kill_at_random("resume-many-round", AXISYMMETRIC, 80, 11);
+    kill_at_random("resume-many-tilted", TILTED, 70, 12);
+    kill_at_random("resume-many-damped", &damped(), 60, 13);
 }
 
-/// A run that was killed on its way, after some states.
-fn stopped(directory: &Path) -> PathBuf {
+/// Starts a run and kills it after some states.
+fn kill_after_some_states(directory: &Path) -> PathBuf {
     let run = directory.join("cut");
     for _ in 0..50 {
         let _ = fs::remove_dir_all(&run);
@@ -174,9 +169,10 @@ fn stopped(directory: &Path) -> PathBuf {
             return run;
         }
     }
-    panic!("no run was caught on its way");
+    panic!("every run ended before it could be killed");
 }
 
+/// Flips a bit in the middle of a file.
 fn flip(path: &Path) {
     let mut bytes = fs::read(path).unwrap();
     let middle = bytes.len() / 2;
@@ -185,11 +181,11 @@ fn flip(path: &Path) {
 }
 
 #[test]
-fn a_broken_checkpoint_is_noticed_and_the_one_before_it_used() {
+fn a_damaged_checkpoint_is_detected_and_the_previous_one_used() {
     let directory = scratch("resume-broken");
-    let (whole, _) = undisturbed(&directory, TILTED);
-    type Break = fn(&Path, &Path);
-    let breaks: [(Break, &str); 4] = [
+    let (expected, _) = uninterrupted(&directory, TILTED);
+    type Damage = fn(&Path, &Path);
+    let damages: [(Damage, &str); 4] = [
         (|now, _| flip(now), "damaged"),
         (
             |now, _| {
@@ -199,7 +195,7 @@ fn a_broken_checkpoint_is_noticed_and_the_one_before_it_used() {
             "cut short",
         ),
         (|now, _| fs::write(now, "").unwrap(), "cut short"),
-        // Of another run of the same tube.
+        // The checkpoint of another run of the same tube.
         (
             |now, other| {
                 fs::copy(other.join("checkpoint.safetensors"), now).unwrap();
@@ -208,47 +204,44 @@ fn a_broken_checkpoint_is_noticed_and_the_one_before_it_used() {
         ),
     ];
     fs::write(directory.join("other.toml"), TILTED.replace("0.02", "0.01")).unwrap();
-    let said = plica(&directory, &["run", "other.toml", "--out", "other"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
-    for (break_it, what) in breaks {
-        let run = stopped(&directory);
+    succeed(&directory, &["run", "other.toml", "--out", "other"]);
+    for (damage, what) in damages {
+        let run = kill_after_some_states(&directory);
         let now = run.join("checkpoint.safetensors");
         if !now.exists() {
-            // Killed between the two: there is only the one before.
+            // Killed between two operations: only the previous one exists.
             fs::copy(run.join("checkpoint-before.safetensors"), &now).unwrap();
         }
-        break_it(&now, &directory.join("other"));
-        let said = plica(&directory, &["resume", "cut"]);
-        let told = text(&said.stderr);
-        assert!(said.status.success(), "{told}");
+        damage(&now, &directory.join("other"));
+        let output = plica(&directory, &["resume", "cut"]);
+        let stderr = text(&output.stderr);
+        assert!(output.status.success(), "{stderr}");
         assert!(
-            told.contains(what) && told.contains("the checkpoint before"),
-            "{told}"
+            stderr.contains(what) && stderr.contains("the checkpoint before"),
+            "{stderr}"
         );
-        assert_same(&whole, &run);
+        assert_contents("", &expected, &run);
     }
-    // With neither there is nothing to go on from, and nothing is touched.
-    let run = stopped(&directory);
+    // Without a valid checkpoint the run is left unchanged.
+    let run = kill_after_some_states(&directory);
     for name in ["checkpoint.safetensors", "checkpoint-before.safetensors"] {
         fs::write(run.join(name), "nonsense").unwrap();
     }
-    let before = left(&run);
-    let said = plica(&directory, &["resume", "cut"]);
-    let told = text(&said.stderr);
-    assert_eq!(said.status.code(), Some(3), "{told}");
+    let before = contents(&run);
+    let stderr = fail(&directory, &["resume", "cut"], 3);
     assert!(
-        told.contains("nothing to go on from") && told.contains("--overwrite"),
-        "{told}"
+        stderr.contains("nothing to go on from") && stderr.contains("--overwrite"),
+        "{stderr}"
     );
-    assert_same(&before, &run);
+    assert_contents("", &before, &run);
 }
 
 #[test]
-fn a_case_may_change_ahead_of_where_the_run_is() {
+fn later_stages_of_a_case_may_change() {
     let directory = scratch("resume-changed");
-    let case = ROUND.replace("states_every = 3", "states_every = 1");
-    let (whole, _) = undisturbed(&directory, &case);
-    // A run that is complete has another stage before it when the case gets one.
+    let case = AXISYMMETRIC.replace("states_every = 3", "states_every = 1");
+    let (expected, _) = uninterrupted(&directory, &case);
+    // A complete run continues with a new stage.
     let short = case
         .split("[[stages]]\nname = \"press\"")
         .next()
@@ -256,16 +249,14 @@ fn a_case_may_change_ahead_of_where_the_run_is() {
         .to_owned()
         + "[output]\nstates_every = 1\n";
     fs::write(directory.join("case.toml"), &short).unwrap();
-    let said = plica(&directory, &["run", "case.toml", "--out", "cut"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
+    succeed(&directory, &["run", "case.toml", "--out", "cut"]);
     fs::write(directory.join("case.toml"), &case).unwrap();
-    let said = plica(
+    succeed(
         &directory,
         &["run", "case.toml", "--out", "cut", "--resume"],
     );
-    assert!(said.status.success(), "{}", text(&said.stderr));
-    assert_same(&whole, &directory.join("cut"));
-    // What lies behind may not.
+    assert_contents("", &expected, &directory.join("cut"));
+    // What has been computed must not change.
     for (from, to, what) in [
         ("length = 2.0", "length = 2.5", "tube.length: 2.0 -> 2.5"),
         (
@@ -280,19 +271,21 @@ fn a_case_may_change_ahead_of_where_the_run_is() {
         ),
     ] {
         fs::write(directory.join("case.toml"), case.replace(from, to)).unwrap();
-        let said = plica(
+        let stderr = fail(
             &directory,
             &["run", "case.toml", "--out", "cut", "--resume"],
+            2,
         );
-        let told = text(&said.stderr);
-        assert_eq!(said.status.code(), Some(2), "{told}");
-        assert!(told.contains(what) && told.contains("must stay"), "{told}");
-        assert_same(&whole, &directory.join("cut"));
+        assert!(
+            stderr.contains(what) && stderr.contains("must stay"),
+            "{stderr}"
+        );
+        assert_contents("", &expected, &directory.join("cut"));
     }
 }
 
 #[test]
-fn what_is_no_run_is_not_taken_up_and_what_is_not_there_begins() {
+fn resume_refuses_other_directories_and_starts_missing_runs() {
     let directory = scratch("resume-none");
     fs::write(directory.join("case.toml"), TILTED).unwrap();
     fs::create_dir(directory.join("mine")).unwrap();
@@ -302,45 +295,45 @@ fn what_is_no_run_is_not_taken_up_and_what_is_not_there_begins() {
         &["resume", "mine"],
         &["resume", "nowhere"],
     ] {
-        let said = plica(&directory, arguments);
-        assert_eq!(said.status.code(), Some(3), "{arguments:?}");
+        fail(&directory, arguments, 3);
         assert_eq!(fs::read_dir(directory.join("mine")).unwrap().count(), 1);
     }
-    let said = plica(&directory, &["run", "case.toml", "--resume", "--overwrite"]);
-    assert_eq!(said.status.code(), Some(2));
-    let said = plica(
+    fail(
+        &directory,
+        &["run", "case.toml", "--resume", "--overwrite"],
+        2,
+    );
+    succeed(
         &directory,
         &["run", "case.toml", "--out", "new", "--resume"],
     );
-    assert!(said.status.success(), "{}", text(&said.stderr));
 }
 
 #[test]
-fn a_run_that_is_complete_stays_as_it_is() {
+fn a_complete_run_stays_unchanged() {
     let directory = scratch("resume-complete");
-    let (whole, _) = undisturbed(&directory, ROUND);
+    let (expected, _) = uninterrupted(&directory, AXISYMMETRIC);
     for arguments in [
         &["resume", "whole"][..],
         &["run", "case.toml", "--out", "whole", "--resume"],
     ] {
-        let said = plica(&directory, arguments);
-        assert!(said.status.success(), "{}", text(&said.stderr));
-        assert!(text(&said.stdout).contains("nothing to go on with"));
-        assert_same(&whole, &directory.join("whole"));
+        let stdout = succeed(&directory, arguments);
+        assert!(stdout.contains("nothing to go on with"));
+        assert_contents("", &expected, &directory.join("whole"));
     }
-    // Its steps are behind it.
+    // The steps of a completed stage must not change.
     fs::write(
         directory.join("case.toml"),
-        ROUND.replace("steps = 4", "steps = 5"),
+        AXISYMMETRIC.replace("steps = 4", "steps = 5"),
     )
     .unwrap();
-    let said = plica(
+    fail(
         &directory,
         &["run", "case.toml", "--out", "whole", "--resume"],
+        2,
     );
-    assert_eq!(said.status.code(), Some(2), "{}", text(&said.stderr));
-    assert_same(&whole, &directory.join("whole"));
-    // One of another version has no checkpoint that fits, and maybe another history; neither is a reason to begin again.
+    assert_contents("", &expected, &directory.join("whole"));
+    // A run of another version, whose checkpoint and history do not match, is not started again.
     let run = directory.join("whole");
     fs::remove_file(run.join("checkpoint.safetensors")).unwrap();
     let history = fs::read_to_string(run.join("history.csv")).unwrap();
@@ -350,17 +343,16 @@ fn a_run_that_is_complete_stays_as_it_is() {
     )
     .unwrap();
     fs::write(run.join("manifest.json"), "{\"program\": \"plica\"}").unwrap();
-    let said = plica(&directory, &["resume", "whole"]);
-    assert_eq!(said.status.code(), Some(3), "{}", text(&said.stderr));
+    fail(&directory, &["resume", "whole"], 3);
     assert!(run.join("states/state-0010.safetensors").exists());
 }
 
 #[test]
-fn a_run_that_was_killed_while_it_began_begins() {
+fn a_run_killed_while_its_directory_was_created_starts() {
     let directory = scratch("resume-begun");
-    let (whole, _) = undisturbed(&directory, TILTED);
+    let (expected, _) = uninterrupted(&directory, TILTED);
     let run = directory.join("cut");
-    let begun: [&[(&str, &str)]; 4] = [
+    let beginnings: [&[(&str, &str)]; 4] = [
         &[("lock", "process 1\n")],
         &[("lock", ""), ("manifest.part", "{")],
         &[("manifest.json", "{\"program\": \"plica\"}")],
@@ -370,41 +362,39 @@ fn a_run_that_was_killed_while_it_began_begins() {
             ("history.csv", "step,sta"),
         ],
     ];
-    for files in begun {
+    for files in beginnings {
         let _ = fs::remove_dir_all(&run);
         fs::create_dir(&run).unwrap();
         for (name, content) in files {
             fs::write(run.join(name), content).unwrap();
         }
-        let said = plica(
+        succeed(
             &directory,
             &["run", "case.toml", "--out", "cut", "--resume"],
         );
-        assert!(said.status.success(), "{files:?}: {}", text(&said.stderr));
-        assert_same(&whole, &run);
+        assert_contents("", &expected, &run);
     }
 }
 
-/// What a case names may have changed by the time that it is taken up again; what it was then is kept.
+/// The run directory keeps a copy of the start state, whose file may change before the run is resumed.
 #[test]
-fn a_run_goes_on_with_the_state_that_it_began_from() {
+fn a_run_resumes_with_its_original_start_state() {
     let directory = scratch("resume-start");
-    fs::write(directory.join("first.toml"), ROUND).unwrap();
-    let said = plica(&directory, &["run", "first.toml", "--out", "first"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
+    fs::write(directory.join("first.toml"), AXISYMMETRIC).unwrap();
+    succeed(&directory, &["run", "first.toml", "--out", "first"]);
     let start = directory.join("start.safetensors");
     fs::copy(first_state(&directory, 6), &start).unwrap();
-    let head = ROUND.split("[[stages]]").next().unwrap();
+    let head = AXISYMMETRIC.split("[[stages]]").next().unwrap();
     let case = format!(
         "{head}\n[start]\nstate = \"start.safetensors\"\n[[stages]]\nsteps = 8\ndrive.circular.diameter_ratio = 0.5\n[output]\nstates_every = 0\n"
     );
-    let (whole, _) = undisturbed(&directory, &case);
+    let (expected, _) = uninterrupted(&directory, &case);
     let resume = || {
-        let said = plica(
+        let output = plica(
             &directory,
             &["run", "case.toml", "--out", "cut", "--resume"],
         );
-        (said.status.code(), text(&said.stderr))
+        (output.status.code(), text(&output.stderr))
     };
     let changes: [fn(&Path, &Path); 2] = [
         |first, start| {
@@ -413,24 +403,24 @@ fn a_run_goes_on_with_the_state_that_it_began_from() {
         |_, start| fs::remove_file(start).unwrap(),
     ];
     for change in changes {
-        let run = stopped(&directory);
+        let run = kill_after_some_states(&directory);
         change(&directory.join("first"), &start);
-        let (code, told) = resume();
-        assert_eq!(code, Some(0), "{told}");
-        assert_same(&whole, &run);
+        let (code, stderr) = resume();
+        assert_eq!(code, Some(0), "{stderr}");
+        assert_contents("", &expected, &run);
         fs::copy(first_state(&directory, 6), &start).unwrap();
     }
-    // What is kept is told of by its own name where it is damaged.
-    let run = stopped(&directory);
+    // A damaged copy is reported under its own name.
+    let run = kill_after_some_states(&directory);
     flip(&run.join("start.safetensors"));
-    let (code, told) = resume();
-    assert_eq!(code, Some(3), "{told}");
+    let (code, stderr) = resume();
+    assert_eq!(code, Some(3), "{stderr}");
     assert!(
-        told.contains("cut/start.safetensors") && told.contains("damaged"),
-        "{told}"
+        stderr.contains("cut/start.safetensors") && stderr.contains("damaged"),
+        "{stderr}"
     );
-    // Under another name it is looked at; the same state is the same start.
-    let run = stopped(&directory);
+    // A file of another name is compared with the copy.
+    let run = kill_after_some_states(&directory);
     let other = directory.join("other.safetensors");
     fs::write(
         directory.join("case.toml"),
@@ -438,22 +428,27 @@ fn a_run_goes_on_with_the_state_that_it_began_from() {
     )
     .unwrap();
     fs::copy(first_state(&directory, 3), &other).unwrap();
-    let before = left(&run);
-    let (code, told) = resume();
-    assert_eq!(code, Some(2), "{told}");
+    let before = contents(&run);
+    let (code, stderr) = resume();
+    assert_eq!(code, Some(2), "{stderr}");
     let difference = "start.state: \"start.safetensors\" -> \"other.safetensors\"";
     assert!(
-        told.contains("the state that it starts from (`other.safetensors` is another) must stay")
-            && told.contains(difference),
-        "{told}"
+        stderr.contains("the state that it starts from (`other.safetensors` is another) must stay")
+            && stderr.contains(difference),
+        "{stderr}"
     );
-    assert_same(&before, &run);
+    assert_contents("", &before, &run);
     fs::copy(first_state(&directory, 6), &other).unwrap();
-    let (code, told) = resume();
-    assert_eq!(code, Some(0), "{told}");
-    let went_on = left(&run);
-    let apart = |(name, _): &(&PathBuf, &Vec<u8>)| name.as_path() != Path::new("case.toml");
-    assert!(went_on.iter().filter(apart).eq(whole.iter().filter(apart)));
+    let (code, stderr) = resume();
+    assert_eq!(code, Some(0), "{stderr}");
+    let found = contents(&run);
+    let differs = |(name, _): &(&PathBuf, &Vec<u8>)| name.as_path() != Path::new("case.toml");
+    assert!(
+        found
+            .iter()
+            .filter(differs)
+            .eq(expected.iter().filter(differs))
+    );
 }
 
 fn first_state(directory: &Path, number: usize) -> PathBuf {
@@ -461,11 +456,11 @@ fn first_state(directory: &Path, number: usize) -> PathBuf {
 }
 
 #[test]
-fn a_directory_has_one_owner() {
+fn a_run_directory_is_locked_by_its_process() {
     let directory = scratch("resume-owner");
     fs::write(
         directory.join("case.toml"),
-        ROUND.replace("steps = 6", "steps = 600"),
+        AXISYMMETRIC.replace("steps = 6", "steps = 600"),
     )
     .unwrap();
     let mut first = Command::new(PLICA)
@@ -480,7 +475,7 @@ fn a_directory_has_one_owner() {
     while !run.join("checkpoint.safetensors").exists() {
         assert!(
             begin.elapsed() < Duration::from_secs(60),
-            "the first run does not come to a state"
+            "the first run does not reach a state"
         );
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -489,32 +484,32 @@ fn a_directory_has_one_owner() {
         &["resume", "cut"],
         &["stability", "cut"],
     ] {
-        let said = plica(&directory, arguments);
-        let told = text(&said.stderr);
-        assert_eq!(said.status.code(), Some(3), "{arguments:?}: {told}");
-        assert!(told.contains(&format!("process {}", first.id())), "{told}");
+        let stderr = fail(&directory, arguments, 3);
+        assert!(
+            stderr.contains(&format!("process {}", first.id())),
+            "{stderr}"
+        );
     }
     first.kill().unwrap();
     first.wait().unwrap();
-    // A lock is never stale.
+    // The lock of a killed process does not block others.
     fs::write(
         directory.join("case.toml"),
-        ROUND.replace("steps = 6", "steps = 7"),
+        AXISYMMETRIC.replace("steps = 6", "steps = 7"),
     )
     .unwrap();
-    let said = plica(
+    succeed(
         &directory,
         &["run", "case.toml", "--out", "cut", "--overwrite"],
     );
-    assert!(said.status.success(), "{}", text(&said.stderr));
 }
 
-/// A file that cannot be written to its end, as on a full disk: the limit of a shell on the size of files.
+/// The shell's limit on the size of files interrupts a write, as a full disk does.
 #[test]
-fn a_full_disk_loses_nothing() {
+fn runs_resume_after_a_full_disk() {
     let directory = scratch("resume-full");
-    let (whole, _) = undisturbed(&directory, TILTED);
-    // In units of 512 bytes: checkpoints of later states do not fit, or history does not.
+    let (expected, _) = uninterrupted(&directory, TILTED);
+    // In blocks of 512 bytes: the history, or checkpoints of later states, do not fit.
     let sizes: Vec<u64> = [
         ("checkpoint.safetensors", 2),
         ("states/state-0002.safetensors", 1),
@@ -532,19 +527,18 @@ fn a_full_disk_loses_nothing() {
         let _ = fs::remove_dir_all(directory.join("cut"));
         let script =
             format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" run case.toml --out cut");
-        let said = Command::new("sh")
+        let output = Command::new("sh")
             .args(["-c", &script, PLICA])
             .current_dir(&directory)
             .output()
             .unwrap();
-        let told = text(&said.stderr);
-        assert_eq!(said.status.code(), Some(3), "{blocks}: {told}");
-        assert!(told.contains("error: cut/"), "{told}");
-        let said = plica(
+        let stderr = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{blocks}: {stderr}");
+        assert!(stderr.contains("error: cut/"), "{stderr}");
+        succeed(
             &directory,
             &["run", "case.toml", "--out", "cut", "--resume"],
         );
-        assert!(said.status.success(), "{blocks}: {}", text(&said.stderr));
-        assert_same(&whole, &directory.join("cut"));
+        assert_contents("", &expected, &directory.join("cut"));
     }
 }

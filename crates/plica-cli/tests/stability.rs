@@ -1,13 +1,11 @@
-//! `plica stability`: what it finds, and what it says where it finds nothing.
+//! `plica stability`.
 
-mod common;
-
-use common::{compare, plica, scratch, text};
+use crate::common::{PLICA, compare, plica, scratch, succeed, text};
 use plica::study::SavedState;
 use std::fs;
 use std::path::Path;
 
-/// The relaxing tube on a coarse mesh.
+/// A relaxing tube on a coarse mesh.
 const RELAXING: &str = "\
 [mesh]
 control_points = { axial = 60, around = 48, thickness = 4 }
@@ -25,45 +23,49 @@ drive.long.length_ratio = 1.07
 pictures = false
 ";
 
-/// Runs a case and tests its stability: exit code, standard output, standard error.
-fn tested(directory: &Path, case: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
+/// Runs a case and tests its stability. Returns exit code, standard output and standard error.
+fn run_and_test(directory: &Path, case: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     fs::write(directory.join("case.toml"), case).unwrap();
     let run = ["run", "case.toml", "--out", "run", "--overwrite"];
-    let said = plica(directory, &run);
-    assert!(said.status.success(), "{}", text(&said.stderr));
+    succeed(directory, &run);
     stability(directory, arguments)
 }
 
+/// Tests the stability of the run. Returns exit code, standard output and standard error.
 fn stability(directory: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
-    let said = plica(directory, &[&["stability", "run"], arguments].concat());
-    (said.status.code(), text(&said.stdout), text(&said.stderr))
+    let output = plica(directory, &[&["stability", "run"], arguments].concat());
+    (
+        output.status.code(),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
 }
 
 #[test]
-fn a_relaxing_tube_turns_oval_first() {
+fn a_relaxing_tube_becomes_oval_first() {
     let directory = scratch("stability");
-    let (code, told, errors) = tested(&directory, RELAXING, &["--threads", "2"]);
-    assert_eq!(code, Some(0), "{errors}");
-    let lost = told.lines().find(|line| line.contains("lost")).unwrap();
+    let (code, stdout, stderr) = run_and_test(&directory, RELAXING, &["--threads", "2"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    let lost = stdout.lines().find(|line| line.contains("lost")).unwrap();
     let cells: Vec<&str> = lost.split_whitespace().collect();
     assert_eq!(
         cells[..8],
         ["relax", "2", "turns", "oval", "lost", "0", ">", "1"],
-        "{told}"
+        "{stdout}"
     );
     let [critical, from, to] = [9, 10, 11].map(|i| cells[i].parse::<f64>().unwrap());
     // 1.0681 on finer meshes.
-    assert!((critical - 1.0681).abs() < 2e-3, "{told}");
+    assert!((critical - 1.0681).abs() < 2e-3, "{stdout}");
     assert!(
         from <= critical && critical <= to && to - from <= 1.01e-4,
-        "{told}"
+        "{stdout}"
     );
     assert!(
-        told.contains("first to go            harmonic 2 (turns oval), at Lmax/L"),
-        "{told}"
+        stdout.contains("first to go            harmonic 2 (turns oval), at Lmax/L"),
+        "{stdout}"
     );
-    // A line a state, under three of heading.
-    assert_eq!(errors.lines().count(), 3 + 7, "{errors}");
+    // Three lines of heading and one line per state.
+    assert_eq!(stderr.lines().count(), 3 + 7, "{stderr}");
 
     let run = directory.join("run");
     let mode = SavedState::read(&run.join("modes/mode-01-harmonic-2.safetensors")).unwrap();
@@ -75,7 +77,7 @@ fn a_relaxing_tube_turns_oval_first() {
     assert!((-1e-2..0.0).contains(&mode.arrays["eigenvalue"].values[0]));
     let largest = shape.values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
     assert_eq!(largest, 1.0);
-    assert!((mode.load.muscles[0] - to).abs() < 1e-5, "{told}");
+    assert!((mode.load.muscles[0] - to).abs() < 1e-5, "{stdout}");
     for picture in ["stability.png", "mode.png"] {
         let bytes = fs::read(run.join(picture)).unwrap();
         assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"), "{picture}");
@@ -83,37 +85,37 @@ fn a_relaxing_tube_turns_oval_first() {
     let table = |name: &str| fs::read_to_string(run.join(name)).unwrap();
     let (critical_values, eigenvalues) = (table("stability.csv"), table("eigenvalues.csv"));
     assert_eq!(critical_values.lines().count(), 2, "{critical_values}");
-    // Seven states and the two ends of the bracket.
+    // Seven states and the two limits of the bracket.
     assert_eq!(eigenvalues.lines().count(), 1 + 7 + 2, "{eigenvalues}");
 
-    // Another number of threads changes nothing, fewer harmonics leave nothing of the former test.
+    // The results do not depend on the number of threads. A test of fewer modes removes the previous results.
     let (_, alone, _) = stability(&directory, &["--threads", "1"]);
-    assert_eq!((alone, table("eigenvalues.csv")), (told, eigenvalues));
-    let (code, told, _) = stability(&directory, &["--harmonics", "1"]);
+    assert_eq!((alone, table("eigenvalues.csv")), (stdout, eigenvalues));
+    let (code, stdout, _) = stability(&directory, &["--harmonics", "1"]);
     assert_eq!(code, Some(0));
     assert!(
-        told.starts_with("  all 7 states are stable, to harmonics 0 to 1\n"),
-        "{told}"
+        stdout.starts_with("  all 7 states are stable, to harmonics 0 to 1\n"),
+        "{stdout}"
     );
     assert!(!run.join("modes/mode-01-harmonic-2.safetensors").exists());
     assert!(!run.join("mode.png").exists() && run.join("stability.png").exists());
 }
 
 #[test]
-fn runs_that_cannot_be_tested_are_told_apart() {
+fn runs_that_cannot_be_tested_are_explained() {
     let directory = scratch("stability-refused");
     let mut page = String::new();
     let mut note =
-        |what: &str, expected: i32, (code, told, errors): (Option<i32>, String, String)| {
+        |what: &str, expected: i32, (code, stdout, stderr): (Option<i32>, String, String)| {
             assert_eq!(
-                (code, told.as_str()),
+                (code, stdout.as_str()),
                 (Some(expected), ""),
-                "{what}: {errors}"
+                "{what}: {stderr}"
             );
-            // The heading and its states aside.
-            let error = errors
+            // Without the heading and the states.
+            let error = stderr
                 .find("error: ")
-                .map_or(errors.as_str(), |at| &errors[at..]);
+                .map_or(stderr.as_str(), |at| &stderr[at..]);
             page += &format!("==== {what}\n{error}\n");
         };
     let short = RELAXING
@@ -123,12 +125,12 @@ fn runs_that_cannot_be_tested_are_told_apart() {
     fs::create_dir(directory.join("run")).unwrap();
     note("an empty directory", 3, stability(&directory, &[]));
     let none = format!("{short}states_every = 0\n");
-    note("no states", 2, tested(&directory, &none, &[]));
+    note("no states", 2, run_and_test(&directory, &none, &[]));
     let fold = format!("symmetry = {{ fold = 24 }}\n{short}");
     note(
         "harmonics of several rings",
         2,
-        tested(&directory, &fold, &["--harmonics", "2"]),
+        run_and_test(&directory, &fold, &["--harmonics", "2"]),
     );
     note(
         "a state that was not saved",
@@ -136,11 +138,11 @@ fn runs_that_cannot_be_tested_are_told_apart() {
         stability(&directory, &["--state", "7"]),
     );
     let twisted = short.replace("[output]", "drive.ileum.twist_degrees = 5.0\n[output]");
-    note("twisted", 2, tested(&directory, &twisted, &[]));
+    note("twisted", 2, run_and_test(&directory, &twisted, &[]));
 
     let state = directory.join("run/states/state-0001.safetensors");
     let case = directory.join("run/case.toml");
-    assert_eq!(tested(&directory, &short, &[]).0, Some(0));
+    assert_eq!(run_and_test(&directory, &short, &[]).0, Some(0));
     note(
         "modes of one ring",
         2,
@@ -153,14 +155,14 @@ fn runs_that_cannot_be_tested_are_told_apart() {
     let mut other = SavedState::from_bytes(&rest).unwrap();
     (other.row, other.load.muscles[0]) = (1, 1.01);
     fs::write(&state, other.to_bytes().unwrap()).unwrap();
-    let (code, told, errors) = stability(&directory, &[]);
-    // Its digits are those of the machine.
-    let (about, rule) = errors.rsplit_once("residual ").unwrap();
+    let (code, stdout, stderr) = stability(&directory, &[]);
+    // The residual depends on the machine.
+    let (about, rule) = stderr.rsplit_once("residual ").unwrap();
     let rule = &rule[rule.find(" of the").unwrap()..];
     note(
         "no equilibrium",
         3,
-        (code, told, format!("{about}residual ...{rule}")),
+        (code, stdout, format!("{about}residual ...{rule}")),
     );
     other.layout.mesh.axial = 61;
     other.u.extend([0.0; 12]);
@@ -177,7 +179,7 @@ fn runs_that_cannot_be_tested_are_told_apart() {
 }
 
 #[test]
-fn the_lowest_modes_of_a_tube_that_is_not_round_are_told() {
+fn the_lowest_modes_of_a_three_dimensional_tube_are_found() {
     let directory = scratch("stability-modes");
     let case = "\
 symmetry = { fold = 2 }
@@ -198,14 +200,14 @@ drive.long.length_ratio = 1.02
 pictures = false
 ";
     let modes = ["--modes", "2", "--state", "1"];
-    let (code, told, errors) = tested(&directory, case, &modes);
-    assert_eq!(code, Some(0), "{errors}");
-    // A heading, two modes, where it all is.
-    let lines: Vec<&str> = told.lines().collect();
-    assert_eq!(lines.len(), 4, "{told}");
+    let (code, stdout, stderr) = run_and_test(&directory, case, &modes);
+    assert_eq!(code, Some(0), "{stderr}");
+    // A heading, two modes and the names of the files.
+    let lines: Vec<&str> = stdout.lines().collect();
+    assert_eq!(lines.len(), 4, "{stdout}");
     let first: Vec<&str> = lines[1].split_whitespace().collect();
     assert_eq!(first[..6], ["1", "relax", "1.0200", "1.0000", "0", "1"]);
-    assert_eq!(first[8], "2", "turns oval: {told}");
+    assert_eq!(first[8], "2", "turns oval: {stdout}");
     let run = directory.join("run");
     let table = fs::read_to_string(run.join("eigenpairs.csv")).unwrap();
     assert_eq!(table.lines().count(), 3, "{table}");
@@ -229,9 +231,9 @@ pictures = false
     let picture = fs::read(run.join("mode.png")).unwrap();
     assert!(picture.starts_with(b"\x89PNG\r\n\x1a\n"));
 
-    // The same again, to the last digit.
+    // The results do not depend on the number of threads.
     let (_, alone, _) = stability(&directory, &[&modes[..], &["--threads", "1"]].concat());
-    assert_eq!(alone, told);
+    assert_eq!(alone, stdout);
     assert_eq!(
         fs::read_to_string(run.join("eigenpairs.csv")).unwrap(),
         table
@@ -240,30 +242,26 @@ pictures = false
 
 #[cfg(unix)]
 #[test]
-fn an_interrupted_test_writes_nothing() {
+fn an_interrupted_stability_test_writes_nothing() {
     use std::io::{BufRead, BufReader};
     use std::process::{Command, Stdio};
 
     let directory = scratch("stability-interrupt");
     let case = RELAXING.replace("steps = 6", "steps = 60");
     fs::write(directory.join("case.toml"), case).unwrap();
-    assert!(
-        plica(&directory, &["run", "case.toml", "--out", "run"])
-            .status
-            .success()
-    );
-    let mut test = Command::new(env!("CARGO_BIN_EXE_plica"))
+    succeed(&directory, &["run", "case.toml", "--out", "run"]);
+    let mut test = Command::new(PLICA)
         .args(["stability", "run", "--tolerance", "1e-9"])
         .current_dir(&directory)
         .stderr(Stdio::piped())
         .stdout(Stdio::null())
         .spawn()
         .unwrap();
-    let mut told = BufReader::new(test.stderr.take().unwrap()).lines();
-    assert!(told.any(|line| line.unwrap().contains("lowest eigenvalue")));
+    let mut lines = BufReader::new(test.stderr.take().unwrap()).lines();
+    assert!(lines.any(|line| line.unwrap().contains("lowest eigenvalue")));
     let pid = test.id().to_string();
     Command::new("kill").args(["-INT", &pid]).status().unwrap();
-    let rest: Vec<String> = told.map(Result::unwrap).collect();
+    let rest: Vec<String> = lines.map(Result::unwrap).collect();
     assert_eq!(test.wait().unwrap().code(), Some(130), "{rest:?}");
     assert_eq!(rest.last().unwrap(), "interrupted; nothing was written");
     assert!(!directory.join("run/stability.csv").exists());

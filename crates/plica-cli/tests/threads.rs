@@ -1,102 +1,79 @@
-//! The same numbers, to the bit, for any number of threads: more than this machine has as well.
+//! Results are bitwise equal for any number of threads, also for more than the machine has.
 
-mod common;
-
-use common::{plica, root, scratch, text, timeless};
+use crate::common::{
+    PLICA, assert_contents, contents, plica, read, root, scratch, short_run, text,
+};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// What a run of a case leaves on so many threads: history without wall times, states, profiles.
-fn left(directory: &Path, case: &str, threads: usize) -> Vec<(String, Vec<u8>)> {
-    let out = directory.join(format!("{threads}"));
-    // Not by --threads, which never takes more than there are.
-    let said = Command::new(env!("CARGO_BIN_EXE_plica"))
-        .args(["run", case, "--out"])
-        .arg(&out)
-        .env("RAYON_NUM_THREADS", threads.to_string())
-        .current_dir(directory)
-        .output()
-        .unwrap();
-    assert!(
-        matches!(said.status.code(), Some(0 | 1)),
-        "{case}: {}",
-        text(&said.stderr)
-    );
-    let mut files = vec![];
-    for folder in ["states", "profiles"] {
-        for entry in fs::read_dir(out.join(folder)).unwrap().flatten() {
-            let name = entry
-                .path()
-                .strip_prefix(&out)
-                .unwrap()
-                .display()
-                .to_string();
-            files.push((name, fs::read(entry.path()).unwrap()));
-        }
-    }
-    let history = fs::read_to_string(out.join("history.csv")).unwrap();
-    files.push(("history.csv".into(), timeless(&history).into_bytes()));
-    files.sort();
-    files
-}
-
-fn same_for_any_number(name: &str, case: &str) {
+/// Asserts that the results of a case are the same on one, two and eight threads.
+fn assert_same(name: &str, case: &str) {
     let directory = scratch(&format!("threads-{name}"));
     fs::write(directory.join("case.toml"), case).unwrap();
-    let alone = left(&directory, "case.toml", 1);
-    assert!(alone.len() > 3, "{name}");
-    for threads in [2, 8] {
+    let run = |threads: usize| {
+        // --threads uses at most as many as the machine has.
+        let output = Command::new(PLICA)
+            .args(["run", "case.toml", "--out", &threads.to_string()])
+            .env("RAYON_NUM_THREADS", threads.to_string())
+            .current_dir(&directory)
+            .output()
+            .unwrap();
+        let stderr = text(&output.stderr);
         assert!(
-            left(&directory, "case.toml", threads) == alone,
-            "{name} differs on {threads} threads"
+            matches!(output.status.code(), Some(0 | 1)),
+            "{name}: {stderr}"
         );
+        directory.join(threads.to_string())
+    };
+    let expected = contents(&run(1));
+    assert!(expected.len() > 3, "{name}");
+    for threads in [2, 8] {
+        let what = format!("{name} on {threads} threads");
+        assert_contents(&what, &expected, &run(threads));
     }
 }
 
-/// A case that comes along, with fewer steps if it is to be short.
-fn coming(name: &str) -> String {
-    fs::read_to_string(root().join("cases").join(name)).unwrap() + "\n"
+/// Reads a case of the repository.
+fn case(name: &str) -> String {
+    read(Path::new("cases").join(name)) + "\n"
 }
 
 #[test]
-fn a_run_is_the_same_on_one_two_and_eight_threads() {
-    same_for_any_number(
+fn results_do_not_depend_on_the_number_of_threads() {
+    assert_same(
         "small",
-        &coming("small.toml")
+        &case("small.toml")
             .replace("steps = 15", "steps = 5")
             .replace("steps = 25", "steps = 5"),
     );
     let tilted = "symmetry = \"none\"\n[muscles.circular]\ndirection = \"circular\"\nzone = [0.5, 1.5]\n[mesh]\ncontrol_points = { axial = 20, around = 12, thickness = 4 }\n\
         [[imperfections]]\nof = \"colon-end\"\namplitude = 0.01\nshape = { wave = { mode = 1 } }\n[[stages]]\nsteps = 4\ndrive.circular.diameter_ratio = 0.7\n";
-    same_for_any_number("tilted", tilted);
+    assert_same("tilted", tilted);
 }
 
-/// For the slow suite: `cargo test --release -p plica-cli --test threads -- --ignored`.
 #[test]
 #[ignore = "takes many minutes"]
-fn every_case_that_comes_along_is_the_same_on_one_two_and_eight_threads() {
+fn results_of_all_cases_do_not_depend_on_the_number_of_threads() {
     for entry in fs::read_dir(root().join("cases")).unwrap().flatten() {
         let name = entry.file_name().into_string().unwrap();
         if name.ends_with(".toml") {
-            same_for_any_number(&name, &coming(&name));
+            assert_same(&name, &case(&name));
         }
     }
 }
 
 #[test]
-fn more_threads_than_there_are_are_not_used() {
+fn no_more_threads_than_cores_are_used() {
     let directory = scratch("threads-many");
-    let run = common::short_run(&directory);
-    let case = run.join("case.toml").display().to_string();
-    let said = plica(
-        &directory,
-        &["run", &case, "--out", "many", "--threads", "1024"],
+    let output = plica(
+        &short_run(&directory),
+        &["report", ".", "--threads", "1024"],
     );
-    assert!(said.status.success());
+    let stderr = text(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
     assert!(
-        text(&said.stderr).contains("1024 threads are asked for"),
-        "{}",
-        text(&said.stderr)
+        stderr.contains("--threads 1024: this machine has"),
+        "{stderr}"
     );
 }

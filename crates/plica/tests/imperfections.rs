@@ -1,9 +1,9 @@
-//! Small imperfections grow where the perfect path of a tube is about to be lost.
+//! Small imperfections grow where the perfect tube is about to lose stability.
 
 use plica::assembly::SplineTube;
 use plica::study::{self, Observer, Row, RunDirectory};
 
-/// Nobody watches.
+/// An observer that does nothing.
 struct Nobody;
 
 impl Observer for Nobody {
@@ -11,8 +11,8 @@ impl Observer for Nobody {
     fn working(&mut self, _: &str, _: f64) {}
 }
 
-/// Runs a case; state by state the length ratio, and the wave of harmonic n by which the inner wall has
-/// moved since rest where that is largest: its parts in phase with cos nφ and with sin nφ.
+/// Runs a case. Returns for every state the length ratio and the largest displacement of the inner wall since the first state in
+/// circumferential mode n, by its parts in phase with cos nφ and sin nφ.
 fn waves(name: &str, case: &str, n: usize) -> Vec<(f64, [f64; 2])> {
     let plan = plica::case::read(case, name).unwrap();
     let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
@@ -34,13 +34,13 @@ fn waves(name: &str, case: &str, n: usize) -> Vec<(f64, [f64; 2])> {
         .collect()
 }
 
-/// The sizes of these waves.
+/// Returns the amplitudes of these waves.
 fn growth(name: &str, case: &str, n: usize) -> Vec<(f64, f64)> {
     let waves = waves(name, case, n).into_iter();
     waves.map(|(ratio, [x, y])| (ratio, x.hypot(y))).collect()
 }
 
-/// The largest wave of harmonic n in the radial control values of the innermost points.
+/// Returns the largest wave of circumferential mode n in the radial control values of the innermost points.
 fn largest_wave(tube: &SplineTube, u: &[f64], n: usize) -> [f64; 2] {
     let k = tube.sector.rings;
     let wave = |row: &[f64]| {
@@ -58,8 +58,8 @@ fn largest_wave(tube: &SplineTube, u: &[f64], n: usize) -> [f64; 2] {
 }
 
 #[test]
-fn an_oval_wall_grows_to_the_side_to_which_it_is_oval() {
-    // A crest at 30°, and one across it.
+fn an_oval_imperfection_of_the_wall_grows_along_its_crest() {
+    // A crest at 30°, and one perpendicular to it.
     for (name, degrees, side) in [("oval-30", 30.0_f64, 1.0), ("oval-120", 120.0, -1.0)] {
         let case = format!(
             "symmetry = {{ fold = 2 }}
@@ -82,7 +82,7 @@ fn an_oval_wall_grows_to_the_side_to_which_it_is_oval() {
         let waves = waves(name, &case, 2);
         let [x, y] = waves[4].1;
         let (sin, cos) = 60.0_f64.to_radians().sin_cos();
-        // Along the crest, more and more.
+        // The wave is in phase with the crest and grows.
         let size = x.hypot(y);
         assert!(side * (x * cos + y * sin) > 0.99 * size, "{waves:?}");
         let before = waves[2].1;
@@ -90,8 +90,8 @@ fn an_oval_wall_grows_to_the_side_to_which_it_is_oval() {
     }
 }
 
-/// A tube of coarse mesh whose colon end is imperfect in one harmonic, and what leads it on.
-fn case(symmetry: &str, around: usize, harmonic: usize, led: &str) -> String {
+/// Returns a case on a coarse mesh whose colon end has an imperfection in one circumferential mode.
+fn case(symmetry: &str, around: usize, harmonic: usize, stages: &str) -> String {
     format!(
         "symmetry = {symmetry}
         [muscles.longitudinal]
@@ -103,25 +103,25 @@ fn case(symmetry: &str, around: usize, harmonic: usize, led: &str) -> String {
         of = 'colon-end'
         amplitude = 1e-4
         shape = {{ wave = {{ mode = {harmonic} }} }}
-        {led}"
+        {stages}"
     )
 }
 
 #[test]
-fn an_oval_end_makes_a_relaxing_tube_oval_where_it_is_about_to_collapse() {
+fn an_oval_end_makes_a_relaxing_tube_oval_near_its_critical_value() {
     let relaxing = "[[stages]]
         steps = 6
         drive.longitudinal.length_ratio = 1.06";
     let oval = growth("oval", &case("{ fold = 2 }", 16, 2, relaxing), 2);
-    // The perfect tube loses harmonic 2 near Lmax/L = 1.07 on this mesh. Far from that the oval grows
-    // with the relaxation; close to it much faster.
+    // The perfect tube loses stability to mode 2 near Lmax/L = 1.07 on this mesh. Far from there the oval grows in proportion
+    // to the relaxation, close to it much faster.
     let at = |step: usize| oval[step].1;
     assert!(at(1) > 1e-6 && at(2) < 2.5 * at(1), "{oval:?}");
     assert!(at(6) > 4.0 * at(3), "{oval:?}");
 }
 
 #[test]
-fn a_shifted_end_makes_an_invaginating_tube_lean_where_it_is_about_to_tilt() {
+fn a_shifted_end_makes_an_invaginating_tube_tilt_near_its_critical_value() {
     let invaginating = "[muscles.circular]
         direction = 'circular'
         zone = [0.5, 1.0]
@@ -131,10 +131,10 @@ fn a_shifted_end_makes_an_invaginating_tube_lean_where_it_is_about_to_tilt() {
         [[stages]]
         steps = 19
         drive.longitudinal.length_ratio = 1.19";
-    let lean = growth("lean", &case("'none'", 12, 1, invaginating), 1);
-    // The perfect tube loses harmonic 1 near Lmax/L = 1.19 on this mesh.
-    let at = |step: usize| lean[step].1;
-    assert!((lean[21].0 - 1.17).abs() < 1e-12);
-    assert!(at(19) < 1.3 * at(17), "{lean:?}");
-    assert!(at(23) > 2.0 * at(21), "{lean:?}");
+    let tilt = growth("tilt", &case("'none'", 12, 1, invaginating), 1);
+    // The perfect tube loses stability to mode 1 near Lmax/L = 1.19 on this mesh.
+    let at = |step: usize| tilt[step].1;
+    assert!((tilt[21].0 - 1.17).abs() < 1e-12);
+    assert!(at(19) < 1.3 * at(17), "{tilt:?}");
+    assert!(at(23) > 2.0 * at(21), "{tilt:?}");
 }

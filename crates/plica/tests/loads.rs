@@ -1,5 +1,5 @@
-//! Rings under dead pressure, against the closed form of a thin one. True pressure, plates and growth are
-//! among the checks of `plica verify`.
+//! Rings under dead loads and follower pressure, against the closed form of a thin ring. `plica verify` checks plates, growth and
+//! other pressures.
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
@@ -21,7 +21,7 @@ fn tube(length: f64, poisson_ratio: f64) -> Tube {
     }
 }
 
-/// A tube on so many elements along, around and through, of which `rings` are solved for.
+/// Returns the problem of a tube with the given numbers of elements and of independent rings.
 fn problem(tube: &Tube, [along, around, through]: [usize; 3], rings: usize) -> TubeProblem {
     let mesh = Mesh {
         axial: along + 3,
@@ -34,6 +34,7 @@ fn problem(tube: &Tube, [along, around, through]: [usize; 3], rings: usize) -> T
     TubeProblem::new(SplineTube::new(tube, &mesh, rings))
 }
 
+/// Returns a follower pressure.
 fn follower(follower: f64) -> Pressure {
     Pressure {
         follower,
@@ -41,6 +42,7 @@ fn follower(follower: f64) -> Pressure {
     }
 }
 
+/// Returns the load of a follower pressure on the outer wall.
 fn outside(tube: &Tube, pressure: f64) -> Load {
     Load {
         pressures: [Pressure::default(), follower(pressure)],
@@ -55,7 +57,7 @@ fn tight() -> Settings {
     }
 }
 
-/// The state under a load, reached from rest in equal steps.
+/// Returns the state under a load, reached from rest in equal steps.
 fn under(problem: &TubeProblem, load: &Load, steps: usize) -> State<Load> {
     let u = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(problem, problem.tube.tube.rest(), u, tight()).unwrap();
@@ -67,16 +69,21 @@ fn under(problem: &TubeProblem, load: &Load, steps: usize) -> State<Load> {
 }
 
 fn assert_near(what: &str, found: f64, expected: f64, tolerance: f64) {
-    let off = found / expected - 1.0;
-    println!("{what}: {found:.9e}, expected {expected:.9e}, off by {off:.1e}");
+    let error = found / expected - 1.0;
+    println!("{what}: {found:.9e}, expected {expected:.9e}, error {error:.1e}");
     assert!(
-        off.abs() < tolerance,
+        error.abs() < tolerance,
         "{what}: {found}, expected {expected}"
     );
 }
 
-/// Where the lowest eigenvalue of a harmonic is zero on the way to a load, as a fraction of it.
-fn lost(problem: &TubeProblem, load: &Load, harmonic: usize, [mut from, mut to]: [f64; 2]) -> f64 {
+/// Returns the fraction of a load at which the lowest eigenvalue of a circumferential mode is zero, by the secant method.
+fn critical_fraction(
+    problem: &TubeProblem,
+    load: &Load,
+    harmonic: usize,
+    [mut from, mut to]: [f64; 2],
+) -> f64 {
     let harmonics = Harmonics::new(&problem.tube, harmonic);
     let lowest = |t: f64| {
         let state = under(problem, &problem.tube.tube.rest().towards(load, t), 1);
@@ -84,7 +91,6 @@ fn lost(problem: &TubeProblem, load: &Load, harmonic: usize, [mut from, mut to]:
         assert_eq!(tested.negative > 0, tested.lowest < 0.0);
         tested.lowest
     };
-    // By secants.
     let mut values = [lowest(from), lowest(to)];
     for _ in 0..3 {
         let next = from - values[0] * (to - from) / (values[1] - values[0]);
@@ -94,8 +100,8 @@ fn lost(problem: &TubeProblem, load: &Load, harmonic: usize, [mut from, mut to]:
 }
 
 #[test]
-fn a_ring_under_dead_pressure_turns_oval_at_four_thirds_of_the_true_one() {
-    // 4 E I/r³ where the load keeps its direction, 3 E I/r³ where it follows a thin ring.
+fn a_ring_under_dead_load_buckles_at_four_thirds_of_the_follower_pressure() {
+    // The critical load of a thin ring is 4 E I/r³ if it keeps its direction, and 3 E I/r³ if it follows the wall.
     let tube = Tube {
         thickness: 0.01,
         ..tube(0.1, 0.3)
@@ -113,8 +119,8 @@ fn a_ring_under_dead_pressure_turns_oval_at_four_thirds_of_the_true_one() {
         ],
         ..tube.rest()
     };
-    let critical = lost(&problem, &dead, 2, [3.9, 4.1]);
-    assert_near("dead", critical, 4.0, 0.03);
-    let critical = lost(&problem, &outside(&tube, bending), 2, [2.9, 3.1]);
-    assert_near("true", critical, 3.0, 0.03);
+    let critical = critical_fraction(&problem, &dead, 2, [3.9, 4.1]);
+    assert_near("dead load", critical, 4.0, 0.03);
+    let critical = critical_fraction(&problem, &outside(&tube, bending), 2, [2.9, 3.1]);
+    assert_near("follower pressure", critical, 3.0, 0.03);
 }

@@ -1,11 +1,11 @@
-//! A tube of many rings against the axisymmetric one.
+//! Three-dimensional solutions of perfect tubes match the axisymmetric ones.
 
 use plica::assembly::SplineTube;
 use plica::equilibrium::TubeProblem;
 use plica::solve::{Path, Step};
 use plica::study::{self, Observer, Plan, Row, RunDirectory};
 
-/// The main case on a small mesh, contracted in three steps to Dmin/D = 0.6.
+/// Contracts a tube in three steps to Dmin/D = 0.6. Returns energies and steps, and the last displacement.
 fn contracted(plan: &Plan, problem: &TubeProblem) -> (Vec<(f64, Step)>, Vec<f64>) {
     let rest = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(problem, plan.tube.rest(), rest, plan.solver.clone()).unwrap();
@@ -20,6 +20,7 @@ fn contracted(plan: &Plan, problem: &TubeProblem) -> (Vec<(f64, Step)>, Vec<f64>
     (states, path.state().u.clone())
 }
 
+/// Returns the main case on a small mesh.
 fn small() -> Plan {
     let text = include_str!("../../../cases/invagination.toml");
     let mut plan = plica::case::read(text, "invagination").unwrap();
@@ -32,7 +33,7 @@ fn problem(plan: &Plan, rings: usize) -> TubeProblem {
 }
 
 #[test]
-fn a_perfect_tube_in_three_dimensions_is_the_axisymmetric_one() {
+fn a_perfect_tube_in_three_dimensions_matches_the_axisymmetric_one() {
     let plan = small();
     let (axisymmetric, ring) = contracted(&plan, &problem(&plan, 1));
     for rings in [12, 4] {
@@ -40,8 +41,7 @@ fn a_perfect_tube_in_three_dimensions_is_the_axisymmetric_one() {
         for ((energy, step), (exact, _)) in states.iter().zip(&axisymmetric) {
             let error = energy / (exact * rings as f64) - 1.0;
             assert!(error.abs() < 1e-8, "{rings} rings: {error:e}");
-            // The harmonic solver is the inverse of the tangent; what is kept in single precision
-            // may ask for a second iteration.
+            // The harmonic solver is the inverse of the tangent; its single precision may require a second iteration.
             assert!(step.inner_iterations <= 2 * step.iterations, "{step:?}");
         }
         for (rings, exact) in u.chunks_exact(rings).zip(&ring) {
@@ -67,19 +67,16 @@ fn the_path_in_three_dimensions_does_not_depend_on_the_number_of_threads() {
     }
 }
 
-/// Nobody watches.
+/// An observer that does nothing.
 struct Nobody;
 
 impl Observer for Nobody {
     fn accepted(&mut self, _: &Row) {}
     fn working(&mut self, _: &str, _: f64) {}
-    fn stop(&mut self) -> bool {
-        false
-    }
 }
 
 #[test]
-fn a_round_state_loses_the_same_harmonics_whatever_is_solved_for() {
+fn an_axisymmetric_state_has_the_same_unstable_modes_in_every_symmetry() {
     let unstable = |symmetry: &str| {
         let case = format!(
             "symmetry = {symmetry}\n\
@@ -105,7 +102,7 @@ fn a_round_state_loses_the_same_harmonics_whatever_is_solved_for() {
             .collect::<Vec<_>>()
     };
     let one = unstable("\"axisymmetric\"");
-    // Blocks of the ring's own, and those that the tangent of many rings is solved with.
+    // One ring assembles the blocks of the modes; many rings use those of the harmonic solver.
     assert_eq!(one[6].1, "none");
     assert!(one[8].1.starts_with("2:"), "{one:?}");
     for symmetry in ["\"none\"", "{ fold = 2 }"] {

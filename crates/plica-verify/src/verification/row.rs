@@ -1,46 +1,46 @@
-//! Rows of the table: a computed quantity, its reference and its tolerance.
+//! One line of the table: what was computed, what it should be, and whether it is.
 
 use std::fmt::Write as _;
 
-/// Largest accepted error of a quantity.
+/// How far a number may be off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// Relative to the reference.
+    /// So much of the reference.
     Relative(f64),
-    /// In the unit of the quantity.
+    /// So much, in the unit of the quantity.
     Absolute(f64),
 }
 
-/// A computed quantity with its reference.
+/// A quantity of a case against its reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Problem for which it is computed.
+    /// What it is found on.
     pub case: String,
-    /// Name of the quantity; symbols are those of docs/model.md.
+    /// What it is; symbols are those of docs/model.md.
     pub quantity: String,
-    /// Value computed by Plica; NaN if the computation failed.
+    /// What Plica finds; not a number where it finds nothing.
     pub computed: f64,
-    /// Reference value.
+    /// What it should be.
     pub reference: f64,
-    /// Source of the reference value.
+    /// Who says so.
     pub source: String,
-    /// Largest accepted error.
+    /// How far it may be off.
     pub tolerance: Tolerance,
-    /// Error message of a failed computation.
-    pub failure: Option<String>,
+    /// Why nothing was found.
+    pub trouble: Option<String>,
 }
 
 impl Row {
-    /// Returns the error, relative or absolute as the tolerance is.
+    /// How far it is off, as the tolerance counts.
     pub fn error(&self) -> f64 {
-        let difference = (self.computed - self.reference).abs();
+        let off = (self.computed - self.reference).abs();
         match self.tolerance {
-            Tolerance::Relative(_) => difference / self.reference.abs(),
-            Tolerance::Absolute(_) => difference,
+            Tolerance::Relative(_) => off / self.reference.abs(),
+            Tolerance::Absolute(_) => off,
         }
     }
 
-    /// Returns whether the error is within the tolerance; false for NaN.
+    /// Whether it is near enough. Not a number never is.
     pub fn passes(&self) -> bool {
         let (Tolerance::Relative(most) | Tolerance::Absolute(most)) = self.tolerance;
         self.error() <= most
@@ -68,7 +68,7 @@ const COLUMNS: [&str; 8] = [
     "source",
 ];
 
-/// Returns the cells of a row, in the order of the columns.
+/// The numbers of a row, in the columns' order.
 fn cells(row: &Row) -> [String; 8] {
     [
         row.case.clone(),
@@ -78,14 +78,14 @@ fn cells(row: &Row) -> [String; 8] {
         short(row.error()),
         row.tolerance.text(),
         if row.passes() { "ok" } else { "FAILED" }.into(),
-        match &row.failure {
-            Some(failure) => format!("{} ({failure})", row.source),
+        match &row.trouble {
+            Some(trouble) => format!("{} ({trouble})", row.source),
             None => row.source.clone(),
         },
     ]
 }
 
-/// Formats a number with eight digits.
+/// Eight digits, as a table has them.
 fn long(x: f64) -> String {
     if x == 0.0 {
         "0".into()
@@ -105,7 +105,7 @@ fn short(x: f64) -> String {
     }
 }
 
-/// Returns the rows as a table in aligned columns, for a terminal.
+/// The rows in columns, for a terminal.
 pub fn in_columns(rows: &[Row]) -> String {
     let cells: Vec<[String; 8]> = std::iter::once(COLUMNS.map(String::from))
         .chain(rows.iter().map(cells))
@@ -119,7 +119,7 @@ pub fn in_columns(rows: &[Row]) -> String {
     for (at, row) in cells.iter().enumerate() {
         let mut line = String::new();
         for (i, cell) in row.iter().enumerate() {
-            // A case is written in its first row only.
+            // A case is named once.
             let cell = if i == 0 && at > 0 && cell == case {
                 ""
             } else {
@@ -138,7 +138,7 @@ pub fn in_columns(rows: &[Row]) -> String {
     text
 }
 
-/// Returns the rows as a table of Markdown.
+/// The rows as a table of Markdown.
 pub fn in_markdown(rows: &[Row]) -> String {
     let line = |cells: [String; 8]| {
         format!(
@@ -166,12 +166,12 @@ mod tests {
             reference: 2.0,
             source: "Lamé".into(),
             tolerance,
-            failure: None,
+            trouble: None,
         }
     }
 
     #[test]
-    fn a_row_passes_within_its_tolerance_and_never_with_nan() {
+    fn a_row_passes_within_its_tolerance_and_never_without_a_number() {
         assert!(row(2.001, Tolerance::Relative(1e-3)).passes());
         assert!(!row(2.003, Tolerance::Relative(1e-3)).passes());
         assert!(row(2.003, Tolerance::Absolute(4e-3)).passes());
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_aligned() {
+    fn columns_stand_under_each_other() {
         let rows = [
             row(2.0, Tolerance::Relative(1e-3)),
             row(1.5, Tolerance::Absolute(1e-3)),

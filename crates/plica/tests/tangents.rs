@@ -1,10 +1,10 @@
-//! What must hold of every case of the house.
+//! The tangent of every case of the repository is the derivative of its residual.
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
 use plica::assembly::SplineTube;
 
-/// A sum of waves with wave numbers and phases from a fixed recurrence, of size one.
+/// Returns a displacement field of size one: a sum of waves with pseudo-random wave numbers and phases.
 fn waves(seed: u64) -> impl Fn(f64, f64, f64) -> [f64; 3] {
     let mut state = seed;
     let mut next = || {
@@ -25,20 +25,21 @@ fn waves(seed: u64) -> impl Fn(f64, f64, f64) -> [f64; 3] {
     }
 }
 
+/// Returns u + h d.
 fn moved(u: &[f64], direction: &[f64], h: f64) -> Vec<f64> {
     u.iter().zip(direction).map(|(u, d)| u + h * d).collect()
 }
 
 #[test]
-fn the_tangent_of_every_case_is_the_slope_of_its_residual() {
+fn the_tangent_of_every_case_is_the_derivative_of_its_residual() {
     let cases = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
-    let mut held = 0;
+    let mut tested = 0;
     for entry in std::fs::read_dir(cases).unwrap() {
         let path = entry.unwrap().path();
         let name = path.display();
         let text = std::fs::read_to_string(&path).unwrap();
         let mut plan = plica::case::read(&text, "case").unwrap();
-        // Seconds, not minutes.
+        // A small mesh keeps the test short.
         plan.mesh.axial = plan.mesh.axial.min(40);
         plan.mesh.thickness = plan.mesh.thickness.min(5);
         let rings = plan.mesh.rings(plan.symmetry);
@@ -48,8 +49,8 @@ fn the_tangent_of_every_case_is_the_slope_of_its_residual() {
             let waves = waves(seed);
             tube.control_values(|z, r, ring| waves(z, r, ring as f64 / rings as f64))
         };
-        // A displacement less than an eighth as large as the wall is thick: ends that are held stay, and the
-        // control points beside them are as near as that.
+        // The displacement is smaller than an eighth of the thickness, because control points next to a fixed end
+        // move while the end does not.
         let mut u = moved(
             &vec![0.0; tube.unknowns()],
             &field(1),
@@ -71,9 +72,9 @@ fn the_tangent_of_every_case_is_the_slope_of_its_residual() {
         };
         let order = (error(1e-3) / error(5e-4)).log2();
         assert!((order - 2.0).abs() < 0.05, "{name}: order {order}");
-        // A wrong entry would leave an error that no step makes smaller.
+        // A wrong entry would cause an error independent of the step.
         assert!(error(1e-4) < 1e-3 * size(&exact), "{name}");
-        held += 1;
+        tested += 1;
     }
-    assert!(held >= 6, "only {held} cases");
+    assert!(tested >= 6, "{tested} cases");
 }

@@ -1,13 +1,11 @@
 //! Cases that start from a saved state.
 
-mod common;
-
-use common::{compare, plica, scratch, text};
+use crate::common::{Table, compare, damage, fail, plica, scratch, succeed, text};
 use plica::study::SavedState;
 use std::fs;
 use std::path::Path;
 
-/// A ring contracts on a coarse mesh.
+/// A contraction on a coarse mesh.
 const FIRST: &str = "\
 [muscles.ring]
 direction = \"circular\"
@@ -25,63 +23,49 @@ steps = 2
 drive.ring.diameter_ratio = 0.8
 ";
 
-/// The same tube goes on from there.
+/// Returns a case that continues from a state of that case.
 fn next(state: &str) -> String {
     FIRST
-        .replace("contract", "go-on")
+        .replace("contract", "continue")
         .replace("0.8", "0.75")
         .replace("[mesh]", &format!("[start]\nstate = \"{state}\"\n\n[mesh]"))
 }
 
-/// Runs a case of a name: exit code and standard error.
+/// Runs a case under a name. Returns exit code and standard error.
 fn run(directory: &Path, name: &str, case: &str) -> (Option<i32>, String) {
     let file = format!("cases/{name}.toml");
     fs::create_dir_all(directory.join("cases")).unwrap();
     fs::write(directory.join(&file), case).unwrap();
-    let said = plica(directory, &["run", &file, "--out", name]);
-    (said.status.code(), text(&said.stderr))
-}
-
-/// Cells of a column of a history.
-fn column(run: &Path, name: &str) -> Vec<String> {
-    let table = fs::read_to_string(run.join("history.csv")).unwrap();
-    let cells = |line: &str| -> Vec<String> { line.split(',').map(str::to_owned).collect() };
-    let names = cells(table.lines().next().unwrap());
-    let at = names.iter().position(|n| n == name).unwrap();
-    table
-        .lines()
-        .skip(1)
-        .map(|line| cells(line)[at].clone())
-        .collect()
-}
-
-fn numbers(run: &Path, name: &str) -> Vec<f64> {
-    column(run, name)
-        .iter()
-        .map(|cell| cell.parse().unwrap())
-        .collect()
+    let output = plica(directory, &["run", &file, "--out", name]);
+    (output.status.code(), text(&output.stderr))
 }
 
 const STATE: &str = "../first/states/state-0002.safetensors";
 
 #[test]
-fn a_run_goes_on_from_a_state_of_its_own_mesh_as_if_it_had_not_stopped() {
+fn a_run_from_a_state_on_the_same_mesh_continues_the_path() {
     let directory = scratch("start-same");
-    let stages = "\n[[stages]]\nname = \"go-on\"\nsteps = 2\ndrive.ring.diameter_ratio = 0.75\n";
+    let stages = "\n[[stages]]\nname = \"continue\"\nsteps = 2\ndrive.ring.diameter_ratio = 0.75\n";
     for (name, case) in [
         ("whole", FIRST.to_owned() + stages),
         ("first", FIRST.to_owned()),
         ("second", next(STATE)),
     ] {
-        let (code, told) = run(&directory, name, &case);
-        assert_eq!(code, Some(0), "{name}: {told}");
+        let (code, stderr) = run(&directory, name, &case);
+        assert_eq!(code, Some(0), "{name}: {stderr}");
     }
     let [whole, second] = ["whole", "second"].map(|name| directory.join(name));
-    assert_eq!(column(&second, "stage"), ["start", "go-on", "go-on"]);
-    // The state is in equilibrium already.
-    assert_eq!(column(&second, "iterations")[0], "0");
-    assert_eq!(numbers(&second, "diameter_ratio")[0], 0.8);
-    let (all, rest) = (numbers(&whole, "energy"), numbers(&second, "energy"));
+    assert_eq!(
+        Table::history(&second).words("stage"),
+        ["start", "continue", "continue"]
+    );
+    // The start state is in equilibrium.
+    assert_eq!(Table::history(&second).words("iterations")[0], "0");
+    assert_eq!(Table::history(&second).numbers("diameter_ratio")[0], 0.8);
+    let (all, rest) = (
+        Table::history(&whole).numbers("energy"),
+        Table::history(&second).numbers("energy"),
+    );
     for (a, b) in all[2..].iter().zip(&rest) {
         assert!((a / b - 1.0).abs() < 1e-9, "{all:?}, {rest:?}");
     }
@@ -90,17 +74,19 @@ fn a_run_goes_on_from_a_state_of_its_own_mesh_as_if_it_had_not_stopped() {
         manifest.contains(&format!("\"start_state\": \"{STATE}\"")),
         "{manifest}"
     );
-    // Its stability is told from its own states.
+    // The stability test uses the run's own states.
     fs::remove_dir_all(directory.join("first")).unwrap();
-    let said = plica(&directory, &["stability", "second", "--harmonics", "2"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
+    succeed(&directory, &["stability", "second", "--harmonics", "2"]);
 }
 
 #[test]
-fn a_state_is_carried_to_another_symmetry_and_another_mesh() {
+fn a_state_is_transferred_to_another_symmetry_and_mesh() {
     let directory = scratch("start-other");
     assert_eq!(run(&directory, "first", FIRST).0, Some(0));
-    let energy = *numbers(&directory.join("first"), "energy").last().unwrap();
+    let energy = *Table::history(&directory.join("first"))
+        .numbers("energy")
+        .last()
+        .unwrap();
     let fold = format!("symmetry = {{ fold = 12 }}\n{}", next(STATE));
     let finer = "{ axial = 44, around = 36, thickness = 5 }";
     let coarse = "{ axial = 24, around = 24, thickness = 4 }";
@@ -108,24 +94,27 @@ fn a_state_is_carried_to_another_symmetry_and_another_mesh() {
     for (name, case, iterations, close) in
         [("fold", fold, 0..=0, 1e-12), ("fine", fine, 1..=20, 2e-2)]
     {
-        let (code, told) = run(&directory, name, &case);
-        assert_eq!(code, Some(0), "{name}: {told}");
+        let (code, stderr) = run(&directory, name, &case);
+        assert_eq!(code, Some(0), "{name}: {stderr}");
         let path = directory.join(name);
-        let found = numbers(&path, "energy")[0];
+        let found = Table::history(&path).numbers("energy")[0];
         assert!(
             (found / energy - 1.0).abs() < close,
             "{name}: {found}, {energy}"
         );
         assert!(
-            iterations.contains(&(numbers(&path, "iterations")[0] as usize)),
+            iterations.contains(&(Table::history(&path).numbers("iterations")[0] as usize)),
             "{name}"
         );
         assert!(
-            numbers(&path, "residual").iter().all(|&r| r <= 1e-6),
+            Table::history(&path)
+                .numbers("residual")
+                .iter()
+                .all(|&r| r <= 1e-6),
             "{name}"
         );
     }
-    // Every ring moves as the one did.
+    // Every ring has the displacement of the axisymmetric state.
     let read = |name| SavedState::read(&directory.join(name)).unwrap();
     let one = read("first/states/state-0002.safetensors");
     let fold = read("fold/states/state-0000.safetensors");
@@ -134,7 +123,7 @@ fn a_state_is_carried_to_another_symmetry_and_another_mesh() {
 }
 
 #[test]
-fn a_state_that_is_none_of_this_tube_is_explained() {
+fn unsuitable_start_states_are_explained() {
     let directory = scratch("start-broken");
     let fold = format!("symmetry = {{ fold = 12 }}\n{FIRST}");
     assert_eq!(run(&directory, "first", FIRST).0, Some(0));
@@ -143,9 +132,8 @@ fn a_state_that_is_none_of_this_tube_is_explained() {
     let whole = fs::read(&state).unwrap();
     fs::write(directory.join("cases/short"), &whole[..100]).unwrap();
     fs::write(directory.join("cases/text"), "[[stages]]\n").unwrap();
-    let mut damaged = whole;
-    *damaged.last_mut().unwrap() ^= 1;
-    fs::write(directory.join("cases/flipped"), damaged).unwrap();
+    fs::copy(&state, directory.join("cases/flipped")).unwrap();
+    damage(&directory.join("cases/flipped"));
     let other = "../fold/states/state-0002.safetensors";
     let mut page = String::new();
     for (what, case) in [
@@ -170,43 +158,35 @@ fn a_state_that_is_none_of_this_tube_is_explained() {
         ),
     ] {
         fs::write(directory.join("cases/case.toml"), case).unwrap();
-        let said = plica(&directory, &["check", "cases/case.toml"]);
-        let mut told = text(&said.stderr);
-        assert_eq!(said.status.code(), Some(2), "{what}: {told}");
-        // A checksum is of the version that wrote it.
-        if let Some((before, _)) = told.split_once("its checksum is ") {
-            told = format!("{before}its checksum is ...\n");
+        let mut stderr = fail(&directory, &["check", "cases/case.toml"], 2);
+        // The checksum depends on the version.
+        if let Some((before, _)) = stderr.split_once("its checksum is ") {
+            stderr = format!("{before}its checksum is ...\n");
         }
-        page += &format!("==== {what}\n{told}\n");
+        page += &format!("==== {what}\n{stderr}\n");
     }
-    compare("start.txt", &page);
+    compare("start_state.txt", &page);
 }
 
 #[test]
-fn a_case_does_not_reach_out_of_its_folder_by_itself() {
+fn a_case_reads_only_files_in_allowed_directories() {
     let directory = scratch("start-reach");
     assert_eq!(run(&directory, "first", FIRST).0, Some(0));
     let folder = directory.join("cases");
     fs::write(folder.join("next.toml"), next(STATE)).unwrap();
-    // From where the program runs it is within; from the folder of the case it is not.
-    assert!(
-        plica(&directory, &["check", "cases/next.toml"])
-            .status
-            .success()
-    );
+    // The state lies in the working directory of the first command, but not of the others.
+    succeed(&directory, &["check", "cases/next.toml"]);
     for command in [&["check", "next.toml"][..], &["run", "next.toml"]] {
-        let said = plica(&folder, command);
-        let told = text(&said.stderr);
-        assert_eq!(said.status.code(), Some(2), "{told}");
+        let stderr = fail(&folder, command, 2);
         assert!(
-            told.contains("next.toml:") && told.contains("--within DIR"),
-            "{told}"
+            stderr.contains("next.toml:") && stderr.contains("--within DIR"),
+            "{stderr}"
         );
         assert!(!folder.join("runs").exists());
         let asked = [command, &["--within", ".."]].concat();
-        assert!(plica(&folder, &asked).status.success());
+        succeed(&folder, &asked);
     }
-    // Nor through a link.
+    // Symbolic links are followed before the check.
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(
@@ -220,6 +200,5 @@ fn a_case_does_not_reach_out_of_its_folder_by_itself() {
             Some(2)
         );
     }
-    let said = plica(&folder, &["check", "next.toml", "--within", "nowhere"]);
-    assert_eq!(said.status.code(), Some(2));
+    fail(&folder, &["check", "next.toml", "--within", "nowhere"], 2);
 }

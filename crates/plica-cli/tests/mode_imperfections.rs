@@ -1,20 +1,18 @@
-//! Cases whose geometry has the shape of a mode.
+//! Geometric imperfections with the shape of a buckling mode.
 
-mod common;
-
-use common::{compare, plica, text};
+use crate::common::{self, Table, compare, fail, succeed};
 use plica::study::SavedState;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// An empty directory of one test, with a place for cases.
+/// Creates an empty directory for a test, with a directory for cases.
 fn scratch(name: &str) -> PathBuf {
     let path = common::scratch(name);
     fs::create_dir(path.join("cases")).unwrap();
     path
 }
 
-/// A tube relaxes on a coarse mesh, past where it turns oval.
+/// A tube that relaxes on a coarse mesh until after it becomes oval.
 const PERFECT: &str = "\
 [muscles.long]
 direction = \"longitudinal\"
@@ -32,7 +30,7 @@ steps = 4
 drive.long.length_ratio = 1.08
 ";
 
-/// The same tube, imperfect in the shape of a mode.
+/// Returns the case of the same tube with an imperfection in the shape of a mode.
 fn imperfect(symmetry: &str, mode: &str) -> String {
     format!(
         "symmetry = {symmetry}\n{PERFECT}
@@ -44,15 +42,14 @@ shape = {{ mode = \"{mode}\" }}
     )
 }
 
-/// Runs a case of a name.
+/// Runs a case under a name.
 fn run(directory: &Path, name: &str, case: &str) {
     let file = format!("cases/{name}.toml");
     fs::write(directory.join(&file), case).unwrap();
-    let said = plica(directory, &["run", &file, "--out", name, "-t", "2"]);
-    assert!(said.status.success(), "{name}: {}", text(&said.stderr));
+    succeed(directory, &["run", &file, "--out", name, "-t", "2"]);
 }
 
-/// The perfect tube's mode of harmonic 2, saved as a mode of a harmonic and changed otherwise.
+/// Saves the perfect tube's mode 2 with another circumferential mode number and changed values.
 fn save(directory: &Path, name: &str, harmonic: f64, change: impl Fn(usize, &mut f64)) {
     let mut mode = SavedState::read(&directory.join(MODE)).unwrap();
     mode.arrays.get_mut("harmonic").unwrap().values = vec![harmonic];
@@ -66,54 +63,39 @@ fn save(directory: &Path, name: &str, harmonic: f64, change: impl Fn(usize, &mut
 
 const MODE: &str = "perfect/modes/mode-01-harmonic-2.safetensors";
 
-/// A directory with a run of the perfect tube and its modes.
-fn tested(name: &str) -> PathBuf {
+/// Creates a directory with a run of the perfect tube and its modes.
+fn perfect(name: &str) -> PathBuf {
     let directory = scratch(name);
     run(&directory, "perfect", PERFECT);
-    let said = plica(&directory, &["stability", "perfect", "--harmonics", "2"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
-    assert!(directory.join(MODE).exists(), "{}", text(&said.stdout));
+    let stdout = succeed(&directory, &["stability", "perfect", "--harmonics", "2"]);
+    assert!(directory.join(MODE).exists(), "{}", stdout);
     directory
 }
 
-/// The numbers of a column of a history.
-fn numbers(run: &Path, name: &str) -> Vec<f64> {
-    let table = fs::read_to_string(run.join("history.csv")).unwrap();
-    let mut lines = table
-        .lines()
-        .map(|line| line.split(',').collect::<Vec<_>>());
-    let at = lines
-        .next()
-        .unwrap()
-        .iter()
-        .position(|n| *n == name)
-        .unwrap();
-    lines.map(|cells| cells[at].parse().unwrap()).collect()
-}
-
 #[test]
-fn a_tube_that_has_the_shape_of_its_mode_leaves_its_path_in_it() {
-    let directory = tested("modes-oval");
+fn a_mode_shaped_imperfection_grows_along_the_path() {
+    let directory = perfect("modes-oval");
     let case = imperfect("{ fold = 2 }", &format!("../{MODE}"));
-    // To just before the perfect tube would turn oval.
+    // Stop just before the critical value of the perfect tube.
     run(&directory, "oval", &case.replace("1.08", "1.06"));
     let path = directory.join("oval");
-    // At rest it is where it is imperfect, and free of stress.
+    let history = Table::history(&path);
+    // The first state is the imperfect shape, free of stress.
     let state = |n: usize| {
         let file = format!("states/state-{n:04}.safetensors");
         SavedState::read(&path.join(file)).unwrap().u
     };
     let largest = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let rest = state(0);
-    // Control values are somewhat higher than the wall that they draw.
+    // Control values slightly exceed the displacement they describe.
     assert!(
         (0.99..1.15).contains(&(largest(&rest) / 1e-4)),
         "{}",
         largest(&rest)
     );
-    assert_eq!(numbers(&path, "energy")[0], 0.0);
-    assert!(numbers(&path, "residual").iter().all(|&r| r <= 1e-6));
-    // What differs from ring to ring grows in the shape of the mode.
+    assert_eq!(history.numbers("energy")[0], 0.0);
+    assert!(history.numbers("residual").iter().all(|&r| r <= 1e-6));
+    // The non-axisymmetric part grows in the shape of the mode.
     let oval = |u: &[f64]| -> Vec<f64> {
         let rings = u.chunks_exact(8);
         let wave = |rings: &[f64]| {
@@ -136,7 +118,7 @@ fn a_tube_that_has_the_shape_of_its_mode_leaves_its_path_in_it() {
     assert!((grown[0] - 1.0).abs() < 1e-9 && grown[1] > 1.0, "{grown:?}");
     assert!(grown[2] > 2.0 * grown[1], "{grown:?}");
 
-    // The run keeps the mode, and names it.
+    // The run directory contains the mode, and the manifest names it.
     let kept = fs::read(path.join("imperfections/mode-01.safetensors")).unwrap();
     assert_eq!(kept, fs::read(directory.join(MODE)).unwrap());
     let manifest = fs::read_to_string(path.join("manifest.json")).unwrap();
@@ -144,9 +126,9 @@ fn a_tube_that_has_the_shape_of_its_mode_leaves_its_path_in_it() {
 }
 
 #[test]
-fn the_stability_of_a_tube_with_an_imperfect_geometry_is_told_from_what_its_run_has_kept() {
-    let directory = tested("modes-round");
-    // Of harmonic 0, without twist.
+fn stability_uses_the_mode_kept_in_the_run_directory() {
+    let directory = perfect("modes-round");
+    // Circumferential mode 0 without twist.
     save(&directory, "round", 0.0, |i, x| {
         if i % 3 == 2 {
             *x = 0.0;
@@ -154,24 +136,19 @@ fn the_stability_of_a_tube_with_an_imperfect_geometry_is_told_from_what_its_run_
     });
     run(&directory, "round", &imperfect("\"axisymmetric\"", "round"));
     fs::remove_file(directory.join("cases/round")).unwrap();
-    let said = plica(&directory, &["stability", "round", "--harmonics", "2"]);
-    assert!(said.status.success(), "{}", text(&said.stderr));
-    assert!(
-        text(&said.stdout).contains("turns oval"),
-        "{}",
-        text(&said.stdout)
-    );
+    let stdout = succeed(&directory, &["stability", "round", "--harmonics", "2"]);
+    assert!(stdout.contains("turns oval"), "{}", stdout);
 }
 
 #[test]
-fn a_mode_that_cannot_be_the_shape_of_a_tube_is_explained() {
-    let directory = tested("modes-broken");
+fn unsuitable_modes_are_explained() {
+    let directory = perfect("modes-broken");
     let mode = format!("../{MODE}");
     let none = imperfect("\"none\"", &mode);
     save(&directory, "fifth", 5.0, |_, _| ());
     save(&directory, "half", 0.5, |_, _| ());
     save(&directory, "nothing", 2.0, |_, x| *x = 0.0);
-    // Rows go to and fro along the tube.
+    // Rows alternate along the tube.
     save(&directory, "crumpled", 2.0, |i, x| {
         let row = i / 12;
         *x = if i % 3 == 0 && row % 2 == 1 { 1.0 } else { 0.0 };
@@ -198,10 +175,8 @@ fn a_mode_that_cannot_be_the_shape_of_a_tube_is_explained() {
         ),
     ] {
         fs::write(directory.join("cases/case.toml"), case).unwrap();
-        let said = plica(&directory, &["check", "cases/case.toml"]);
-        let told = text(&said.stderr);
-        assert_eq!(said.status.code(), Some(2), "{what}: {told}");
-        page += &format!("==== {what}\n{told}\n");
+        let stderr = fail(&directory, &["check", "cases/case.toml"], 2);
+        page += &format!("==== {what}\n{stderr}\n");
     }
-    compare("modes.txt", &page);
+    compare("mode_imperfections.txt", &page);
 }

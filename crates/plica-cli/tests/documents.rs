@@ -1,20 +1,25 @@
-//! Holds the pages against the files, the tests and the tables that they speak of.
+//! The documents agree with the files, commands, tests and columns they name.
 
-mod common;
-
-use common::{files, quoted, root, text};
+use crate::common::{files, quoted, read, root, succeed};
 use plica::study::Row;
+use std::collections::BTreeMap;
 use std::fs;
+use std::path::PathBuf;
 
-#[test]
-fn links_lead_somewhere() {
+/// Returns the paths of all pages.
+fn pages() -> Vec<PathBuf> {
     let mut pages = files(&root().join("docs"), "md");
     let top = fs::read_dir(root()).unwrap();
     pages.extend(top.map(|entry| entry.unwrap().path()));
     pages.retain(|page| page.extension().is_some_and(|e| e == "md"));
     assert!(pages.len() >= 9);
-    for page in pages {
-        for link in text(&page).split("](").skip(1) {
+    pages
+}
+
+#[test]
+fn links_point_to_existing_files() {
+    for page in pages() {
+        for link in read(&page).split("](").skip(1) {
             let target = link.split([')', '#']).next().unwrap();
             if !target.contains("://") {
                 let file = page.parent().unwrap().join(target);
@@ -24,17 +29,60 @@ fn links_lead_somewhere() {
     }
 }
 
+/// Commands in shell blocks, of the program or run by cargo.
 #[test]
-fn the_readme_shows_the_case_it_runs() {
-    let case = text("cases/invagination.toml");
-    assert!(text("README.md").contains(&format!("```toml\n{case}```")));
+fn the_commands_of_the_pages_exist() {
+    let mut help = BTreeMap::new();
+    let commands = succeed(&root(), &["--help"]);
+    let mut checked = 0;
+    for page in pages() {
+        let text = read(&page);
+        let blocks = text.split("```").skip(1).step_by(2);
+        let lines = blocks.filter_map(|block| block.strip_prefix("sh\n"));
+        for line in lines.flat_map(str::lines) {
+            let line = line.split(" #").next().unwrap();
+            let starts = ["plica ", "cargo run --release -- "];
+            let Some(words) = starts.iter().find_map(|start| line.strip_prefix(start)) else {
+                continue;
+            };
+            let mut words = words.split_whitespace();
+            let command = words.next().unwrap().to_owned();
+            let place = format!("{}: {line}", page.display());
+            let exists = commands.contains(&format!("\n  {command} "));
+            assert!(exists || command == "--help", "{place}");
+            let help = help
+                .entry(command.clone())
+                .or_insert_with(|| succeed(&root(), &[&command, "--help"]));
+            for word in words {
+                if let Some(option) = word.strip_prefix("--") {
+                    let option = format!("--{}", option.split('=').next().unwrap());
+                    let is_end = |c: char| !c.is_alphanumeric() && c != '-';
+                    let known = help
+                        .match_indices(&option)
+                        .any(|(at, _)| help[at + option.len()..].starts_with(is_end));
+                    assert!(known, "{place}: {option}");
+                }
+                if word.starts_with("cases/") {
+                    assert!(root().join(word).exists(), "{place}: {word}");
+                }
+            }
+            checked += 1;
+        }
+    }
+    assert!(checked > 10, "{checked} commands");
 }
 
 #[test]
-fn verification_names_tests_that_exist() {
+fn the_readme_shows_the_case_it_runs() {
+    let case = read("cases/invagination.toml");
+    assert!(read("README.md").contains(&format!("```toml\n{case}```")));
+}
+
+#[test]
+fn the_tests_named_in_verification_exist() {
     let sources = files(&root().join("crates"), "rs");
-    let sources: Vec<String> = sources.iter().map(text).collect();
-    let page = text("docs/verification.md");
+    let sources: Vec<String> = sources.iter().map(read).collect();
+    let page = read("docs/verification.md");
     let (_, table) = page.split_once("## By test").unwrap();
     let rows = table.lines().filter(|line| line.ends_with("` |"));
     let names: Vec<String> = rows
@@ -49,7 +97,7 @@ fn verification_names_tests_that_exist() {
 }
 
 #[test]
-fn the_columns_of_the_history_are_listed() {
+fn the_columns_of_the_history_are_documented() {
     let row = Row {
         step: 0,
         stage: String::new(),
@@ -93,7 +141,7 @@ fn the_columns_of_the_history_are_listed() {
     let written = String::from_utf8(writer.into_inner().unwrap()).unwrap();
     let columns: Vec<&str> = written.lines().next().unwrap().split(',').collect();
 
-    let page = text("docs/run-directory.md");
+    let page = read("docs/run-directory.md");
     let (_, section) = page.split_once("## `history.csv`").unwrap();
     let section = section.split("\n## ").next().unwrap();
     let rows = section.lines().filter(|line| line.starts_with("| `"));

@@ -1,6 +1,7 @@
-//! Tubes between sliding ends, as short rings in plane strain and longer, that the checks solve with Plica.
+//! Short tubes between sliding ends, which are rings in plane strain, and longer ones: Plica's side of
+//! the comparisons.
 
-use super::VerificationError;
+use super::found::Trouble;
 use plica::activation::{Direction, Muscle, Profile};
 use plica::assembly::{Point, SplineTube};
 use plica::equilibrium::TubeProblem;
@@ -9,29 +10,29 @@ use plica::solve::{Path, Settings, State};
 use plica::stability::Harmonics;
 use plica::tube::{Integration, Load, Mesh, Pressure, Support, Tube};
 
-/// A tube and its discretisation.
+/// A tube, and the elements along, around and through it.
 #[derive(Clone, Debug)]
-pub struct TubeModel {
+pub struct Specimen {
     /// The tube.
     pub tube: Tube,
     /// Elements along, around and through the wall.
     pub elements: [usize; 3],
-    /// Degree p of the splines.
+    /// p.
     pub degree: usize,
-    /// Integration of the volumetric energy.
+    /// How the resistance to a change of volume is integrated.
     pub volumetric: Integration,
 }
 
-/// Returns solver settings with a tolerance near rounding.
-pub fn tight_settings() -> Settings {
+/// Newton as exact as rounding lets it be.
+pub fn tight() -> Settings {
     Settings {
         tolerance: 1e-10,
         ..Settings::default()
     }
 }
 
-impl TubeModel {
-    /// Creates a perfect cubic tube with E = 1 between sliding ends.
+impl Specimen {
+    /// A perfect tube of E = 1 between sliding ends, outer radius ½, of cubics.
     pub fn new(length: f64, thickness: f64, poisson_ratio: f64, elements: [usize; 3]) -> Self {
         let tube = Tube {
             length,
@@ -49,13 +50,13 @@ impl TubeModel {
         }
     }
 
-    /// Creates a ring in plane strain, 0.1 D long, with one element along.
+    /// A ring in plane strain: a tenth of a diameter long, one element along.
     pub fn ring(thickness: f64, poisson_ratio: f64, through: usize) -> Self {
         Self::new(0.1, thickness, poisson_ratio, [1, 120, through])
     }
 
-    /// Adds a muscle of uniform activation along the whole tube.
-    pub fn with_uniform_muscle(mut self, direction: Direction) -> Self {
+    /// With a muscle over more than all of the tube, the same everywhere.
+    pub fn with_even_muscle(mut self, direction: Direction) -> Self {
         self.tube.muscles.push(Muscle {
             name: "even".into(),
             direction,
@@ -65,7 +66,7 @@ impl TubeModel {
         self
     }
 
-    /// Returns the discretised tube with `rings` control rings.
+    /// Laid out in splines, `rings` to solve for.
     pub fn problem(&self, rings: usize) -> TubeProblem {
         let p = self.degree;
         let [along, around, through] = self.elements;
@@ -80,30 +81,26 @@ impl TubeModel {
         TubeProblem::new(SplineTube::new(&self.tube, &mesh, rings))
     }
 
-    /// Returns the load of follower pressures on the inner and the outer wall.
-    pub fn under_pressure(&self, [inner, outer]: [f64; 2]) -> Load {
-        let pressure = |follower| Pressure {
+    /// Rest with true pressure on the inner wall and the outer wall.
+    pub fn pressed(&self, [inner, outer]: [f64; 2]) -> Load {
+        let true_pressure = |follower| Pressure {
             follower,
             dead: 0.0,
         };
         Load {
-            pressures: [pressure(inner), pressure(outer)],
+            pressures: [true_pressure(inner), true_pressure(outer)],
             ..self.tube.rest()
         }
     }
 }
 
-/// Solves for the state under a load, which is applied from rest in equal steps.
+/// The state under a load, from rest in equal steps.
 ///
 /// # Errors
-/// [`VerificationError::Path`] if a step fails.
-pub fn solve_from_rest(
-    problem: &TubeProblem,
-    load: &Load,
-    steps: usize,
-) -> Result<State<Load>, VerificationError> {
+/// [`Trouble::Path`] where the path ends before.
+pub fn under(problem: &TubeProblem, load: &Load, steps: usize) -> Result<State<Load>, Trouble> {
     let u = vec![0.0; problem.tube.unknowns()];
-    let mut path = Path::begin(problem, problem.tube.tube.rest(), u, tight_settings())?;
+    let mut path = Path::begin(problem, problem.tube.tube.rest(), u, tight())?;
     path.begin_segment(load.clone());
     for n in 1..=steps {
         path.advance(n as f64 / steps as f64, &mut ())?;
@@ -111,12 +108,12 @@ pub fn solve_from_rest(
     Ok(path.state().clone())
 }
 
-/// Returns the energy of the whole tube.
+/// Energy of the whole tube.
 pub fn energy(problem: &TubeProblem, state: &State<Load>) -> f64 {
     state.energy * problem.tube.sector.repeats()
 }
 
-/// Returns a point away from the ends. At angle 0, the middle of an element, the radial direction is exact.
+/// A point of the wall away from ends; angle 0 is the middle of an element, where outwards is outwards.
 fn point(problem: &TubeProblem, radius: f64) -> Point {
     Point {
         z: 0.3 * problem.tube.tube.length,
@@ -125,19 +122,19 @@ fn point(problem: &TubeProblem, radius: f64) -> Point {
     }
 }
 
-/// Returns the radial displacement of the wall at a reference radius.
-pub fn radial_displacement(problem: &TubeProblem, state: &State<Load>, radius: f64) -> f64 {
-    // The spline circle intersects the exact one near this angle.
+/// How far the wall at a radius has moved away from the axis.
+pub fn swelling(problem: &TubeProblem, state: &State<Load>, radius: f64) -> f64 {
+    // Where the spline circle crosses the exact one.
     let at = Point {
         angle: 0.3,
         ..point(problem, radius)
     };
     let sample = problem.tube.sample(&state.load, &state.u, at);
-    let radius = |[_, x, y]: [f64; 3]| x.hypot(y);
-    radius(sample.position) - radius(sample.reference)
+    let away = |[_, x, y]: [f64; 3]| x.hypot(y);
+    away(sample.position) - away(sample.reference)
 }
 
-/// Returns the Cauchy stresses along, outwards and around at a reference radius.
+/// Cauchy stress along, outwards and around at a radius.
 pub fn stress(problem: &TubeProblem, state: &State<Load>, radius: f64) -> [f64; 3] {
     let at = point(problem, radius);
     let Fe = problem.tube.sample(&state.load, &state.u, at).elastic;
@@ -146,20 +143,20 @@ pub fn stress(problem: &TubeProblem, state: &State<Load>, radius: f64) -> [f64; 
     [0, 1, 2].map(|i| sigma.0[i][i] / Fe.determinant())
 }
 
-/// Returns the fraction of a load at which the lowest eigenvalue of a circumferential mode is zero, by the secant
-/// method from two guesses.
+/// Where the lowest eigenvalue of a harmonic is zero on the way from rest to a load, as a fraction of
+/// it: by secants from two guesses.
 ///
 /// # Errors
-/// [`VerificationError`] if a state or an eigenvalue is not found, or the eigenvalue changes its sign earlier.
-pub fn critical_fraction(
+/// [`Trouble`] where there is no state or no eigenvalue.
+pub fn lost(
     problem: &TubeProblem,
     load: &Load,
     harmonic: usize,
     [mut from, mut to]: [f64; 2],
-) -> Result<f64, VerificationError> {
+) -> Result<f64, Trouble> {
     let harmonics = Harmonics::new(&problem.tube, harmonic);
-    let lowest = |t: f64| -> Result<f64, VerificationError> {
-        let state = solve_from_rest(problem, &problem.tube.tube.rest().towards(load, t), 1)?;
+    let lowest = |t: f64| -> Result<f64, Trouble> {
+        let state = under(problem, &problem.tube.tube.rest().towards(load, t), 1)?;
         Ok(harmonics
             .lowest(harmonic, &state.load, &state.u, 1)?
             .first()
@@ -170,14 +167,14 @@ pub fn critical_fraction(
         let next = from - values[0] * (to - from) / (values[1] - values[0]);
         (from, to, values) = (to, next, [values[1], lowest(next)?]);
     }
-    // The method has converged, and the eigenvalue is positive halfway.
+    // Found, and not lost long before.
     let halfway = lowest(0.5 * to)?;
     if values[1].abs() > 1e-5 * halfway.abs() || halfway <= 0.0 {
-        let message = format!(
+        let what = format!(
             "lowest eigenvalue {:.1e} where it should be zero, {halfway:.1e} halfway",
             values[1]
         );
-        return Err(VerificationError::Solve(message));
+        return Err(Trouble::Solve(what));
     }
     Ok(to)
 }

@@ -1,8 +1,6 @@
-//! A run that cannot be followed to its end: what it leaves, what it says, and how it goes on.
+//! Runs that do not converge: their messages, and resuming them with other settings.
 
-mod common;
-
-use common::{plica, scratch, text};
+use crate::common::{fail, plica, scratch, succeed, text};
 use std::fs;
 
 const CASE: &str = r#"
@@ -32,13 +30,11 @@ pictures = false
 "#;
 
 #[test]
-fn a_lost_run_says_where_and_what_may_help_and_goes_on_with_that() {
+fn a_lost_run_reports_the_place_and_a_remedy_that_works() {
     let directory = scratch("lost");
     fs::write(directory.join("case.toml"), CASE).unwrap();
-    let said = plica(&directory, &["run", "case.toml", "--out", "run"]);
-    let told = text(&said.stderr);
-    assert_eq!(said.status.code(), Some(1), "{told}");
-    let last = told.lines().last().unwrap();
+    let stderr = fail(&directory, &["run", "case.toml", "--out", "run"], 1);
+    let last = stderr.lines().last().unwrap();
     for word in [
         "in stage `strangle`",
         "newton:",
@@ -52,44 +48,43 @@ fn a_lost_run_says_where_and_what_may_help_and_goes_on_with_that() {
     ] {
         assert!(last.contains(word), "{word}: {last}");
     }
-    // Where the muscle pulls.
+    // The residual is largest near the muscle.
     let z = last.split("farthest off at z = ").nth(1).unwrap();
     let z: f64 = z.split(' ').next().unwrap().parse().unwrap();
     assert!((0.4..1.1).contains(&z), "{last}");
     let manifest = fs::read_to_string(directory.join("run/manifest.json")).unwrap();
     assert!(manifest.contains(r#""verdict": "lost""#) && manifest.contains("farthest off at z = "));
     assert!(directory.join("run/states/state-0002.safetensors").exists());
-    // As it advises.
+    // Follow the advice.
     fs::write(
         directory.join("case.toml"),
         CASE.replace("max_step_halvings = 0", "max_step_halvings = 8"),
     )
     .unwrap();
-    let said = plica(
+    succeed(
         &directory,
         &["run", "case.toml", "--out", "run", "--resume"],
     );
-    assert!(said.status.success(), "{}", text(&said.stderr));
     assert!(directory.join("run/states/state-0003.safetensors").exists());
 }
 
 #[test]
-fn a_run_that_has_no_first_state_says_so() {
+fn a_run_without_a_first_state_reports_that() {
     let directory = scratch("lost-first");
-    let dented = "[[imperfections]]\nof = \"colon-end\"\namplitude = 0.025\nshape = { wave = { mode = 2 } }\n";
+    let oval = "[[imperfections]]\nof = \"colon-end\"\namplitude = 0.025\nshape = { wave = { mode = 2 } }\n";
     let case = CASE
         .replace("newton_iterations = 4", "newton_iterations = 1")
         .replace("relaxation_steps = 4", "relaxation_steps = 1")
         .replace(
             "[[stages]]\nname = \"contract\"",
-            &(dented.to_owned() + "[[stages]]\nname = \"contract\""),
+            &(oval.to_owned() + "[[stages]]\nname = \"contract\""),
         );
     fs::write(directory.join("case.toml"), case).unwrap();
-    let said = plica(&directory, &["run", "case.toml", "--out", "run"]);
-    let told = text(&said.stderr);
-    assert_eq!(said.status.code(), Some(1), "{told}");
-    assert!(text(&said.stdout).ends_with("no state was accepted\n"));
-    let last = told.lines().last().unwrap();
+    let output = plica(&directory, &["run", "case.toml", "--out", "run"]);
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    assert!(text(&output.stdout).ends_with("no state was accepted\n"));
+    let last = stderr.lines().last().unwrap();
     for word in [
         "not brought to rest",
         "no first state",

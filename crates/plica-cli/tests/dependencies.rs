@@ -1,14 +1,12 @@
-//! What Plica builds on: under which licences, and why.
+//! Licences and purposes of the dependencies.
 
-mod common;
-
-use common::{root, text};
+use crate::common::{read, root, text};
 use std::process::Command;
 
-/// Whether one may choose among the licences of an expression (SPDX; `/` is an old way to write OR) so that all are allowed.
+/// Returns whether an SPDX expression can be satisfied by allowed licences only. `/` is an old notation of OR.
 fn is_allowed(expression: &str, allowed: &[String]) -> bool {
     let bare = expression.replace(['(', ')'], " ").replace('/', " OR ");
-    // Every part that must hold has an alternative that is allowed: stricter than the expression where brackets nest.
+    // Each operand of AND needs an allowed alternative: stricter than the expression where brackets nest.
     bare.split(" AND ").all(|part| {
         part.split(" OR ")
             .any(|licence| allowed.iter().any(|one| one == licence.trim()))
@@ -16,9 +14,9 @@ fn is_allowed(expression: &str, allowed: &[String]) -> bool {
 }
 
 #[test]
-fn licences_go_together() {
-    // Those that a program under MIT or Apache 2.0 may be made of; cargo deny takes them from there, too.
-    let deny: toml::Table = text("deny.toml").parse().unwrap();
+fn licences_are_compatible() {
+    // `cargo deny` uses the same list.
+    let deny: toml::Table = read("deny.toml").parse().unwrap();
     let allowed = deny["licenses"]["allow"].as_array().unwrap();
     let allowed: Vec<String> = allowed
         .iter()
@@ -31,18 +29,14 @@ fn licences_go_together() {
             && is_allowed("MIT/Apache-2.0")
     );
     assert!(!is_allowed("GPL-3.0-only") && !is_allowed("MIT AND LGPL-2.1"));
-    let told = Command::new(env!("CARGO"))
+    let output = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version", "1", "--locked", "--offline"])
         .current_dir(root())
         .output()
         .unwrap();
-    assert!(
-        told.status.success(),
-        "{}",
-        String::from_utf8_lossy(&told.stderr)
-    );
-    let told: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap();
-    let packages = told["packages"].as_array().unwrap();
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
     assert!(packages.len() > 50);
     for package in packages {
         let licence = package["license"].as_str().unwrap_or("none");
@@ -56,10 +50,11 @@ fn licences_go_together() {
 }
 
 #[test]
-fn every_dependency_says_what_it_is_for() {
-    for file in ["crates/plica/Cargo.toml", "crates/plica-cli/Cargo.toml"] {
+fn every_dependency_has_a_purpose() {
+    for name in ["plica", "plica-view", "plica-verify", "plica-cli"] {
+        let file = format!("crates/{name}/Cargo.toml");
         let mut within = false;
-        for line in text(file).lines() {
+        for line in read(&file).lines() {
             if line.starts_with('[') {
                 within = line.contains("dependencies");
             } else if within && line.contains('=') && !line.starts_with("plica") {

@@ -1,4 +1,4 @@
-//! Tubes of many rings whose ends leave rigid motions open.
+//! Three-dimensional tubes whose ends permit rigid-body motions.
 
 use plica::assembly::SplineTube;
 use plica::equilibrium::TubeProblem;
@@ -6,7 +6,7 @@ use plica::solve::{Integrator, Path, PseudoTime, Scheme, State};
 use plica::study::Plan;
 use plica::tube::{Axial, Imperfection, Load, Part, Shape, Support, Wave};
 
-/// Ends that leave something to pin, first; what fixed ones cost is what they are held against.
+/// Ends that permit rigid-body motions, and last a tube with a fixed end for comparison.
 const ENDS: [[Support; 2]; 4] = [
     [Support::Sliding, Support::Sliding],
     [Support::Free, Support::Sliding],
@@ -14,7 +14,7 @@ const ENDS: [[Support; 2]; 4] = [
     [Support::Fixed, Support::Free],
 ];
 
-/// The main case on a coarse mesh, held in some way.
+/// Returns the main case on a coarse mesh with the given ends and scheme.
 fn plan(ends: [Support; 2], scheme: Scheme) -> Plan {
     let text = include_str!("../../../cases/invagination.toml");
     let mut plan = plica::case::read(text, "invagination").unwrap();
@@ -28,12 +28,12 @@ fn problem(plan: &Plan, rings: usize) -> TubeProblem {
     TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings))
 }
 
-/// Dmin/D = 0.85.
+/// Returns the load of Dmin/D = 0.85.
 fn contracted(plan: &Plan) -> Load {
     plan.tube.rest().towards(&plan.stages[0].load, 0.2)
 }
 
-/// Energies and costs of two states: solves, and iterations inside them.
+/// Returns energy, number of solves and number of inner iterations of two states.
 fn states(plan: &Plan, rings: usize) -> Vec<(f64, usize, usize)> {
     let problem = problem(plan, rings);
     let rest = problem.tube.start();
@@ -55,7 +55,7 @@ fn states(plan: &Plan, rings: usize) -> Vec<(f64, usize, usize)> {
 }
 
 #[test]
-fn loose_tubes_in_three_dimensions_are_the_axisymmetric_ones_at_the_cost_of_fixed_ones() {
+fn three_dimensional_solutions_with_rigid_body_motions_match_the_axisymmetric_ones() {
     let damped = |integrator| {
         Scheme::PseudoTime(PseudoTime {
             integrator,
@@ -79,7 +79,7 @@ fn loose_tubes_in_three_dimensions_are_the_axisymmetric_ones_at_the_cost_of_fixe
                 for ((energy, solves, inner), (exact, ..)) in found.iter().zip(&exact) {
                     let error = energy / exact - 1.0;
                     assert!(error.abs() < 1e-10, "{ends:?}, {rings} rings: {error:e}");
-                    // The preconditioner is the inverse, as it is with fixed ends.
+                    // The preconditioner is the exact inverse, as it is with fixed ends.
                     assert!(*inner <= solves + 2, "{ends:?}, {rings} rings: {found:?}");
                 }
             }
@@ -87,9 +87,13 @@ fn loose_tubes_in_three_dimensions_are_the_axisymmetric_ones_at_the_cost_of_fixe
     }
 }
 
-/// What a loose tube comes to that starts displaced along z and sideways, its muscle stronger on some
-/// sides than on others.
-fn lopsided(ends: [Support; 2], harmonic: usize, rings: usize, shift: f64) -> State<Load> {
+/// Returns the state of a tube with an uneven muscle that starts from a displacement along z and sideways.
+fn uneven_contraction(
+    ends: [Support; 2],
+    harmonic: usize,
+    rings: usize,
+    shift: f64,
+) -> State<Load> {
     let mut plan = plan(ends, Scheme::Static);
     plan.tube.imperfections.push(Imperfection {
         of: Part::Muscle(0),
@@ -114,17 +118,22 @@ fn lopsided(ends: [Support; 2], harmonic: usize, rings: usize, shift: f64) -> St
     let state = path.state().clone();
     assert!(state.relative_residual <= plan.solver.tolerance);
 
-    // With the forces that pins would have to carry.
+    // The residual includes the reactions of the rigid-body constraints.
     let forces = tube.forces(&state.load, &state.u).unwrap();
     let free = forces.residual.iter().zip(tube.prescribed());
-    let squares = free.filter(|(_, given)| !**given).map(|(r, _)| r * r);
-    let left = squares.sum::<f64>().sqrt() / forces.residual_scale;
-    assert!(left <= 1.1 * plan.solver.tolerance, "{ends:?}: {left:e}");
+    let squares = free
+        .filter(|(_, prescribed)| !**prescribed)
+        .map(|(r, _)| r * r);
+    let residual = squares.sum::<f64>().sqrt() / forces.residual_scale;
+    assert!(
+        residual <= 1.1 * plan.solver.tolerance,
+        "{ends:?}: {residual:e}"
+    );
     state
 }
 
 #[test]
-fn what_is_pinned_of_a_tube_that_is_not_round_carries_no_force_wherever_it_is_pinned() {
+fn rigid_body_constraints_of_an_uneven_tube_carry_no_force() {
     use Support::{Free, Sliding};
     let same = |one: &State<Load>, energy: f64| {
         let rows = one
@@ -135,9 +144,12 @@ fn what_is_pinned_of_a_tube_that_is_not_round_carries_no_force_wherever_it_is_pi
         let error = energy / one.energy - 1.0;
         assert!(error.abs() < 1e-10, "{error:e}");
     };
-    // Of harmonics 0 and 2 alone, shifts and tilts are nothing to pin.
-    let oval = lopsided([Sliding, Sliding], 2, 12, 0.0);
-    same(&oval, 2.0 * lopsided([Sliding, Sliding], 2, 6, 0.0).energy);
-    let bent = lopsided([Free, Free], 1, 12, 0.0);
-    same(&bent, lopsided([Free, Free], 1, 12, 4e-3).energy);
+    // With circumferential modes 0 and 2 alone, shifts and tilts need no constraint.
+    let oval = uneven_contraction([Sliding, Sliding], 2, 12, 0.0);
+    same(
+        &oval,
+        2.0 * uneven_contraction([Sliding, Sliding], 2, 6, 0.0).energy,
+    );
+    let bent = uneven_contraction([Free, Free], 1, 12, 0.0);
+    same(&bent, uneven_contraction([Free, Free], 1, 12, 4e-3).energy);
 }

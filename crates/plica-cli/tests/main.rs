@@ -1,0 +1,22 @@
+//! Tests of the program, and of the repository as a whole.
+
+mod common;
+
+mod command_line;
+mod export;
+mod faults;
+mod main_case;
+mod mode_imperfections;
+mod render;
+mod report;
+mod reproduce;
+mod resume;
+mod stability;
+mod start_state;
+mod threads;
+mod unfinished;
+mod verify;
+
+mod architecture;
+mod dependencies;
+mod documents;
