@@ -4,7 +4,7 @@ use crate::args::CaseArguments;
 use crate::failure::Failure;
 use plica::case::{self, Open, Wanted};
 use plica::study::{NamedMode, Plan, RunDirectory, SavedState, SavedStateError, StudyError};
-use plica_view::draw::boxes;
+use plica_view::draw::missing_glyphs;
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub fn advice(plan: &Plan) -> Vec<String> {
     let mut advice = case::advice(plan);
     let names = plan.stages.iter().map(|stage| &stage.name[..]);
     let drawn: String = std::iter::once(&plan.title[..]).chain(names).collect();
-    let boxes: String = boxes(&drawn).into_iter().collect();
+    let boxes: String = missing_glyphs(&drawn).into_iter().collect();
     if !boxes.is_empty() {
         advice.push(format!(
             "there are no letters for {boxes} of titles and names in the fonts of pictures: PNGs show boxes (SVGs and reports are set in the fonts of whoever reads them)"

@@ -7,7 +7,7 @@ use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::video;
 use crate::{console, threads};
-use plica_view::draw::{DrawError, REST};
+use plica_view::draw::{DrawError, LAST_FRAME_FACTOR};
 use plica_view::report::{self, Appearance, Field, Shown};
 use std::sync::Mutex;
 
@@ -89,7 +89,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
     match drawn.map_err(failure)? {
         Some(bytes) => {
             let bytes = match video {
-                Some(path) => video::convert(&bytes, path, seconds * (REST - 1.0))?,
+                Some(path) => video::convert(&bytes, path, seconds * (LAST_FRAME_FACTOR - 1.0))?,
                 None => bytes,
             };
             let name = format!("{}-path.apng", look.field.name());

@@ -39,14 +39,14 @@ pub fn energies(
     curves: Vec<Curve>,
     ran: &Ran,
     shown: &[(&Row, Shown)],
-    rules: Vec<plica_view::draw::Rule>,
+    rules: Vec<plica_view::draw::VerticalLine>,
 ) -> Result<Vec<u8>, Trouble> {
     let inset = |&(row, shown): &(&Row, Shown)| -> Result<Inset, Trouble> {
         let Panel { surfaces, .. } = panel(ran, row, "")?;
         Ok(Inset {
             surfaces,
             at: (row.length_ratio, row.energy),
-            shown,
+            centre: shown,
             width: 0.27,
         })
     };
@@ -57,7 +57,7 @@ pub fn energies(
         x_label: "*L*_{max}/*L*".into(),
         y_label: "strain energy *W*/(*E* *D*^{3})".into(),
         curves,
-        rules,
+        vertical_lines: rules,
         insets: insets?,
         y_range: Some((0.0, 1.15 * highest)),
         proportion: 0.6,

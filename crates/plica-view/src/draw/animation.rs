@@ -1,15 +1,17 @@
-//! Pictures that follow each other, as an animated PNG: browsers and slides show it, and any other program its first picture.
+//! Animated PNG files. Programs without support for animation show the first frame.
 
 use super::{DrawError, Image};
 
-/// How much longer than the others the last picture stays.
-pub const REST: f64 = 8.0;
+/// The last frame of an animation is shown this many times longer than the others.
+pub const LAST_FRAME_FACTOR: f64 = 8.0;
 
-/// The bytes of an animated PNG of so many pictures that begins anew again and again, each shown for so many seconds. They are
-/// asked for one after the other, and not kept; where one is none the work ends, with nothing.
+/// Encodes `count` frames as a looping animated PNG, each shown for `seconds`.
+///
+/// Frames are requested one at a time and not kept in memory. A frame that is `None` cancels: the result is `None`.
 ///
 /// # Errors
-/// [`DrawError::Empty`] without pictures, [`DrawError::Backend`] if they differ in size or the encoder refuses; and theirs.
+/// [`DrawError::Empty`] without frames, [`DrawError::Backend`] if frames differ in size or the encoder fails, and errors of
+/// the frames themselves.
 pub fn animation(
     count: usize,
     frames: impl IntoIterator<Item = Result<Option<Image>, DrawError>>,
@@ -38,12 +40,12 @@ pub fn animation(
         };
         if (frame.width, frame.height) != size {
             return Err(DrawError::Backend(format!(
-                "picture {i} is of {} x {} pixels, the first of {} x {}",
+                "frame {i} has {} x {} pixels, the first {} x {}",
                 frame.width, frame.height, size.0, size.1
             )));
         }
         let last = i + 1 == count;
-        let milliseconds = 1e3 * seconds * if last { REST } else { 1.0 };
+        let milliseconds = 1e3 * seconds * if last { LAST_FRAME_FACTOR } else { 1.0 };
         let milliseconds = milliseconds.round().clamp(1.0, 65_535.0) as u16;
         writer
             .set_frame_delay(milliseconds, 1000)
@@ -61,13 +63,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_picture_comes_back() {
-        let picture = |shade: u8| {
+    fn every_frame_is_decoded_unchanged() {
+        let frame = |shade: u8| {
             let mut image = Image::white(20.0, 16.0).unwrap();
             image.pixels[5] = [shade, 1, 2];
             image
         };
-        let frames = [picture(10), picture(20), picture(30)];
+        let frames = [frame(10), frame(20), frame(30)];
         let given = |frames: &[Image]| frames.iter().cloned().map(Some).map(Ok).collect::<Vec<_>>();
         let bytes = animation(3, given(&frames), 0.1).unwrap().unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
@@ -85,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_of_two_sizes_are_an_error() {
+    fn frames_of_different_sizes_are_an_error() {
         let frames = [20.0, 21.0].map(|width| Image::white(width, 16.0).map(Some));
         assert!(matches!(
             animation(2, frames, 0.1),
@@ -98,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn work_that_is_broken_off_leaves_nothing() {
+    fn a_cancelled_animation_is_none() {
         let frames = [Image::white(20.0, 16.0).map(Some), Ok(None)];
         assert_eq!(animation(2, frames, 0.1).unwrap(), None);
     }

@@ -1,19 +1,19 @@
-//! A page measured in points, and what is drawn on it: lines, areas, texts, pictures.
+//! A page measured in points, and the primitives on it: lines, areas, text and images.
 //!
-//! A page becomes pixels by `paint`, lines and texts by `vector`; both draw the same marks in the same order.
+//! `rasterise` turns a page into pixels and `svg` into an SVG file; both draw the same primitives in the same order.
 
-use super::text::{Run, line};
+use super::text::{Run, layout};
 use super::{DrawError, Image};
 
-/// Lines end where they are farther from the corner, in points.
-const FAR: f64 = 1e5;
-/// Ink of axes and texts.
+/// Largest coordinate of a line, in points; lines are interrupted beyond it.
+const MAX_COORDINATE: f64 = 1e5;
+/// Colour of axes and text.
 pub(super) const INK: [u8; 3] = [34, 34, 34];
 
-/// A place on the page: points to the right of and below the top left corner.
-pub(super) type Place = (f64, f64);
+/// A position on the page: points to the right of and below the top left corner.
+pub(super) type Position = (f64, f64);
 
-/// Where a text hangs on its place.
+/// Part of a text that is aligned with its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Anchor {
     Start,
@@ -21,7 +21,7 @@ pub(super) enum Anchor {
     End,
 }
 
-/// A pen; `dash` is the length of stroke and gap, (0, 0) for a whole line.
+/// Colour, width and dash pattern of a line; `dash` is the length of dash and gap, (0, 0) for a solid line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pen {
     pub colour: [u8; 3],
@@ -39,65 +39,65 @@ impl Pen {
     }
 }
 
-/// A rectangle by its top left corner, width and height.
+/// A rectangle given by its top left corner, width and height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rectangle {
-    pub corner: Place,
+    pub corner: Position,
     pub width: f64,
     pub height: f64,
 }
 
-/// What an area is bounded by.
+/// Shape of a filled area.
 #[derive(Clone, Debug)]
 pub(super) enum Area {
-    Disc { middle: Place, radius: f64 },
+    Disc { middle: Position, radius: f64 },
     Rectangle(Rectangle),
-    Polygon(Vec<Place>),
+    Polygon(Vec<Position>),
 }
 
-/// Something on the page; lengths in points.
+/// An item on the page; lengths in points.
 #[derive(Clone, Debug)]
-pub(super) enum Mark {
-    /// Two places at least, joined in their order.
-    Line { places: Vec<Place>, pen: Pen },
-    /// Filled, without an outline.
+pub(super) enum Primitive {
+    /// A polyline through at least two positions.
+    Line { points: Vec<Position>, pen: Pen },
+    /// A filled area without an outline.
     Area { area: Area, colour: [u8; 3] },
-    /// Runs from `start` on to the right, or upward.
+    /// Runs of text from `start` to the right, or upwards.
     Text {
         runs: Vec<Run>,
-        start: Place,
+        start: Position,
         upward: bool,
         colour: [u8; 3],
     },
-    /// What follows shows only in here, up to the next of its kind.
+    /// Clips the following primitives to a rectangle, until the next primitive of this kind.
     Clip(Option<Rectangle>),
 }
 
-/// A picture laid over everything drawn, its top left corner at a pixel of the page.
+/// An image on top of all primitives; `at` is the pixel of the page at its top left corner.
 #[derive(Clone, Debug)]
-pub(super) struct Stamp {
-    pub picture: Image,
+pub(super) struct Overlay {
+    pub image: Image,
     pub at: [i64; 2],
 }
 
-/// A page being drawn.
+/// A page under construction.
 pub(super) struct Canvas {
     /// Width and height in points.
     pub size: (f64, f64),
     /// Width and height in pixels.
     pub pixels: [usize; 2],
-    pub marks: Vec<Mark>,
-    pub stamps: Vec<Stamp>,
+    pub primitives: Vec<Primitive>,
+    pub overlays: Vec<Overlay>,
 }
 
 impl Canvas {
-    /// A white page of `width` by `height` points that becomes `width_px` pixels wide.
+    /// Creates a white page of `width` by `height` points that is rasterised to a width of `width_px` pixels.
     pub fn new(width: f64, height: f64, width_px: usize) -> Result<Self, DrawError> {
         Ok(Self {
             size: (width, height),
             pixels: Image::size(width_px as f64, height * width_px as f64 / width)?,
-            marks: Vec::new(),
-            stamps: Vec::new(),
+            primitives: Vec::new(),
+            overlays: Vec::new(),
         })
     }
 
@@ -106,16 +106,16 @@ impl Canvas {
         self.pixels[0] as f64 / self.size.0
     }
 
-    pub fn line(&mut self, from: Place, to: Place, pen: Pen) {
+    pub fn line(&mut self, from: Position, to: Position, pen: Pen) {
         self.polyline(&[from, to], pen);
     }
 
-    /// Joins the places in their order; one that is not finite, or absurdly far, breaks the line.
-    pub fn polyline(&mut self, places: &[Place], pen: Pen) {
-        let runs = places.split(|(x, y)| !(x.abs() < FAR && y.abs() < FAR));
+    /// Draws a polyline; a position that is not finite, or far off the page, interrupts it.
+    pub fn polyline(&mut self, points: &[Position], pen: Pen) {
+        let runs = points.split(|(x, y)| !(x.abs() < MAX_COORDINATE && y.abs() < MAX_COORDINATE));
         for run in runs.filter(|run| run.len() > 1) {
-            let places = run.to_vec();
-            self.marks.push(Mark::Line { places, pen });
+            let points = run.to_vec();
+            self.primitives.push(Primitive::Line { points, pen });
         }
     }
 
@@ -126,12 +126,12 @@ impl Canvas {
             Area::Polygon(corners) => corners.iter().all(|(x, y)| (x + y).is_finite()),
         };
         if is_finite {
-            self.marks.push(Mark::Area { area, colour });
+            self.primitives.push(Primitive::Area { area, colour });
         }
     }
 
-    /// A filled disc; a white rim lifts it off the lines beneath.
-    pub fn disc(&mut self, middle: Place, radius: f64, colour: [u8; 3], rim: f64) {
+    /// Draws a filled disc with a white rim of the given width.
+    pub fn disc(&mut self, middle: Position, radius: f64, colour: [u8; 3], rim: f64) {
         let disc = |radius| Area::Disc { middle, radius };
         if rim > 0.0 {
             self.fill(disc(radius + rim), [255; 3]);
@@ -139,8 +139,8 @@ impl Canvas {
         self.fill(disc(radius), colour);
     }
 
-    /// A filled rectangle without an outline.
-    pub fn rectangle(&mut self, corner: Place, width: f64, height: f64, colour: [u8; 3]) {
+    /// Draws a filled rectangle without an outline.
+    pub fn rectangle(&mut self, corner: Position, width: f64, height: f64, colour: [u8; 3]) {
         let rectangle = Rectangle {
             corner,
             width,
@@ -149,14 +149,14 @@ impl Canvas {
         self.fill(Area::Rectangle(rectangle), colour);
     }
 
-    /// A filled polygon without an outline.
-    pub fn polygon(&mut self, corners: &[Place], colour: [u8; 3]) {
+    /// Draws a filled polygon without an outline.
+    pub fn polygon(&mut self, corners: &[Position], colour: [u8; 3]) {
         self.fill(Area::Polygon(corners.to_vec()), colour);
     }
 
-    /// What is drawn until [`Canvas::unclip`] shows only inside this rectangle.
-    pub fn clip(&mut self, corner: Place, width: f64, height: f64) {
-        self.marks.push(Mark::Clip(Some(Rectangle {
+    /// Clips everything drawn until [`Canvas::unclip`] to a rectangle.
+    pub fn clip(&mut self, corner: Position, width: f64, height: f64) {
+        self.primitives.push(Primitive::Clip(Some(Rectangle {
             corner,
             width,
             height,
@@ -164,19 +164,26 @@ impl Canvas {
     }
 
     pub fn unclip(&mut self) {
-        self.marks.push(Mark::Clip(None));
+        self.primitives.push(Primitive::Clip(None));
     }
 
-    /// Writes a label with its baseline at `place`; `size` in points.
-    pub fn text(&mut self, (x, y): Place, label: &str, size: f64, anchor: Anchor, colour: [u8; 3]) {
-        let (runs, width) = line(label, size);
+    /// Draws a label with its baseline at a position; `size` is the font size in points.
+    pub fn text(
+        &mut self,
+        (x, y): Position,
+        label: &str,
+        size: f64,
+        anchor: Anchor,
+        colour: [u8; 3],
+    ) {
+        let (runs, width) = layout(label, size);
         let before = match anchor {
             Anchor::Start => 0.0,
             Anchor::Middle => width / 2.0,
             Anchor::End => width,
         };
         let start = (x - before, y);
-        self.marks.push(Mark::Text {
+        self.primitives.push(Primitive::Text {
             runs,
             start,
             upward: false,
@@ -184,10 +191,10 @@ impl Canvas {
         });
     }
 
-    /// Writes a label that reads upward, the middle of its baseline at `place`.
-    pub fn text_upward(&mut self, (x, y): Place, label: &str, size: f64) {
-        let (runs, width) = line(label, size);
-        self.marks.push(Mark::Text {
+    /// Draws a label that reads upwards, with the middle of its baseline at a position.
+    pub fn text_upward(&mut self, (x, y): Position, label: &str, size: f64) {
+        let (runs, width) = layout(label, size);
+        self.primitives.push(Primitive::Text {
             runs,
             start: (x, y + width / 2.0),
             upward: true,
@@ -195,9 +202,9 @@ impl Canvas {
         });
     }
 
-    /// Lays a picture over everything drawn, its top left corner at the pixel nearest to `place`; its white is transparent.
-    pub fn stamp(&mut self, picture: Image, (x, y): Place) {
+    /// Places an image over everything drawn, its top left corner at the pixel nearest to a position; its white is transparent.
+    pub fn overlay(&mut self, image: Image, (x, y): Position) {
         let at = [x, y].map(|v| (v * self.pixels_per_point()).round() as i64);
-        self.stamps.push(Stamp { picture, at });
+        self.overlays.push(Overlay { image, at });
     }
 }

@@ -1,97 +1,46 @@
-//! Curves against axes: energy paths, wall profiles.
+//! Charts: curves with axes, a legend, markers and insets.
 //!
-//! Curves are drawn in the order of their points, so a wall that folds over itself comes out as it is.
+//! A curve connects its points in the given order, so a wall that folds over itself is drawn correctly.
 
-use super::canvas::{Anchor, Canvas, INK, Pen, Place};
-use super::colour::{line_colour, mix};
-use super::frame::Frame;
-use super::inset::Inset;
-use super::text::{CAPITAL, fitting};
+use super::annotations::{draw_legend, draw_markers, draw_vertical_lines, label_rows, legend_rows};
+use super::canvas::{Anchor, Canvas, INK, Pen, Position};
+use super::colour::line_colour;
+use super::frame::{Frame, Shape, axis_range};
+use super::inset::draw_insets;
+use super::text::{CAP_HEIGHT, TEXT_SIZE, TITLE_SIZE, truncated};
 use super::ticks::{Ticks, power_of_ten};
-use super::{DrawError, Image, Packing};
+use super::{Compression, Curve, DrawError, Image, Inset, Marker, VerticalLine};
 
-/// Sizes of axis titles and of everything else, in points.
-pub(super) const TITLE: f64 = 9.0;
-pub(super) const TEXT: f64 = 8.0;
-pub(super) const ROW: f64 = 12.0;
-
-/// How a curve is stroked.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Stroke {
-    /// A full line.
-    #[default]
-    Solid,
-    /// A thinner, paler line of the same colour: the inner wall beside the outer one.
-    Fine,
-    /// A dashed line.
-    Dashed,
-}
-
-/// A polyline through its points in their order; a point that is not finite breaks it.
-#[derive(Clone, Debug, Default)]
-pub struct Curve {
-    /// Name in the legend; a curve without one is left out of it.
-    pub label: String,
-    /// Places in data units.
-    pub points: Vec<(f64, f64)>,
-    /// Number of a colour, see [`line_colour`]: 0 is black.
-    pub colour: usize,
-    /// How it is stroked.
-    pub stroke: Stroke,
-    /// Whether each point gets a dot.
-    pub dots: bool,
-}
-
-/// A dot with a label beside it, set where it hides least.
-#[derive(Clone, Debug, Default)]
-pub struct Marker {
-    /// Place in data units.
-    pub at: (f64, f64),
-    /// What it says.
-    pub label: String,
-    /// Its colour, as of a curve.
-    pub colour: usize,
-}
-
-/// A vertical line across the frame, named above it: where the wall turns square.
-#[derive(Clone, Debug, Default)]
-pub struct Rule {
-    /// Place along x.
-    pub at: f64,
-    /// What it says.
-    pub label: String,
-}
-
-/// Curves in a frame. Labels may slant (`*z*/*D*`), lower (`_{max}`) and raise (`^{3}`).
+/// Curves in a frame. Labels may contain italics (`*z*/*D*`), subscripts (`_{max}`) and superscripts (`^{3}`).
 #[derive(Clone, Debug)]
 pub struct Chart {
-    /// Line above everything; empty for none.
+    /// Title above the chart; empty for none.
     pub title: String,
     /// Title of the horizontal axis.
     pub x_label: String,
-    /// Title of the vertical axis; a common power of ten is added to it in brackets.
+    /// Title of the vertical axis; a common power of ten is appended in brackets.
     pub y_label: String,
-    /// The curves, later ones on top.
+    /// Curves; later ones are drawn on top.
     pub curves: Vec<Curve>,
-    /// Places to point out.
+    /// Labelled points.
     pub markers: Vec<Marker>,
-    /// Values of x to point out.
-    pub rules: Vec<Rule>,
-    /// Small tubes.
+    /// Labelled values of x.
+    pub vertical_lines: Vec<VerticalLine>,
+    /// Small tubes inside the frame.
     pub insets: Vec<Inset>,
-    /// One unit of x as long as one unit of y.
+    /// Draws x and y to the same scale.
     pub equal_aspect: bool,
-    /// Height of the frame over its width, where the two axes need no equal units.
+    /// Height of the frame divided by its width, unless the aspect is equal.
     pub proportion: f64,
-    /// Ends of the horizontal axis; chosen from the data if absent.
+    /// Range of the horizontal axis; taken from the data if `None`.
     pub x_range: Option<(f64, f64)>,
-    /// Ends of the vertical axis; chosen from the data if absent.
+    /// Range of the vertical axis; taken from the data if `None`.
     pub y_range: Option<(f64, f64)>,
-    /// Printed width in points: a journal's column is about 250, its page about 510.
+    /// Printed width in points: a journal column is about 250 points wide, a page about 510.
     pub width_pt: f64,
 }
 
-/// Pixels per point of pictures in what is drawn as lines.
+/// Pixels per point of the raster images embedded in an SVG file.
 const SVG_PIXELS: f64 = 5.0;
 
 impl Default for Chart {
@@ -102,7 +51,7 @@ impl Default for Chart {
             y_label: String::new(),
             curves: Vec::new(),
             markers: Vec::new(),
-            rules: Vec::new(),
+            vertical_lines: Vec::new(),
             insets: Vec::new(),
             equal_aspect: false,
             proportion: 0.66,
@@ -114,59 +63,87 @@ impl Default for Chart {
 }
 
 impl Chart {
-    /// The chart as the bytes of a PNG file of `width_px` pixels across.
+    /// Returns the chart as a PNG file `width_px` pixels wide.
     ///
     /// # Errors
-    /// [`DrawError::Empty`] without a finite point, [`DrawError::Range`] for a given range that is none,
-    /// [`DrawError::Size`] for an absurd size.
+    /// [`DrawError::Empty`] without a finite point, [`DrawError::Range`] for an invalid range,
+    /// [`DrawError::Size`] for an image that is too small or too large.
     pub fn png(&self, width_px: usize) -> Result<Vec<u8>, DrawError> {
-        let packing = if self.insets.is_empty() {
-            Packing::Plain
+        let compression = if self.insets.is_empty() {
+            Compression::LineArt
         } else {
-            Packing::Small
+            Compression::Small
         };
         let image = self.image(width_px)?;
-        image.to_png(self.width_pt * 25.4 / 72.0, packing)
+        image.to_png(self.width_pt * 25.4 / 72.0, compression)
     }
 
-    /// The chart as pixels.
+    /// Returns the chart as pixels.
     ///
     /// # Errors
     /// As [`Chart::png`].
     pub fn image(&self, width_px: usize) -> Result<Image, DrawError> {
-        self.page(width_px)?.finish()
+        self.page(width_px)?.rasterise()
     }
 
-    /// The chart as an SVG file, its texts as texts.
+    /// Returns the chart as an SVG file in which text stays text.
     ///
     /// # Errors
     /// As [`Chart::png`].
     pub fn svg(&self) -> Result<String, DrawError> {
         self.page((SVG_PIXELS * self.width_pt).ceil() as usize)?
-            .finish_svg()
+            .to_svg()
     }
 
     fn page(&self, width_px: usize) -> Result<Canvas, DrawError> {
-        let legend = self.legend_rows();
-        let names = self.rule_rows()?;
-        let (frame, x, y) = self.frame(
-            legend.len(),
-            names.iter().map(|n| n.1 + 1).max().unwrap_or(0),
-        )?;
+        let legend = legend_rows(&self.curves, self.width_pt);
+        let (x, y) = self.ranges()?;
+        let names = label_rows(&self.vertical_lines, x, self.width_pt);
+        let shape = Shape {
+            equal_aspect: self.equal_aspect,
+            proportion: self.proportion,
+            width_pt: self.width_pt,
+            has_title: !self.title.is_empty(),
+            has_y_label: !self.y_label.is_empty(),
+            legend_rows: legend.len(),
+            label_rows: names.iter().map(|n| n.1 + 1).max().unwrap_or(0),
+        };
+        let (frame, x, y) = Frame::new(&shape, x, y);
 
         let tail = if self.x_label.is_empty() { 20.0 } else { 35.0 };
         let mut canvas = Canvas::new(self.width_pt, frame.bottom() + tail, width_px)?;
         if !self.title.is_empty() {
-            let title = fitting(&self.title, TITLE, self.width_pt - frame.left - 4.0);
-            canvas.text((frame.left, 13.0), &title, TITLE, Anchor::Start, INK);
+            let title = truncated(&self.title, TITLE_SIZE, self.width_pt - frame.left - 4.0);
+            canvas.text((frame.left, 13.0), &title, TITLE_SIZE, Anchor::Start, INK);
         }
-        self.draw_legend(&mut canvas, &frame, &legend);
+        draw_legend(&mut canvas, &frame, &legend, shape.has_title);
         self.draw_axes(&mut canvas, &frame, &x, &y)?;
-        self.draw_rules(&mut canvas, &frame, &names);
+        draw_vertical_lines(&mut canvas, &frame, &names);
         self.draw_curves(&mut canvas, &frame);
-        self.draw_insets(&mut canvas, &frame)?;
-        self.draw_markers(&mut canvas, &frame);
+        draw_insets(&self.insets, &mut canvas, &frame)?;
+        draw_markers(
+            &self.markers,
+            &self.curves,
+            &self.vertical_lines,
+            &mut canvas,
+            &frame,
+        );
         Ok(canvas)
+    }
+
+    /// Returns the ranges of x and y: the given ones, or those of the data plus a margin.
+    fn ranges(&self) -> Result<((f64, f64), (f64, f64)), DrawError> {
+        let curves = self.curves.iter().flat_map(|c| &c.points);
+        let points = curves.chain(self.markers.iter().map(|m| &m.at));
+        let finite: Vec<_> = points
+            .filter(|(x, y)| x.is_finite() && y.is_finite())
+            .collect();
+        if finite.is_empty() {
+            return Err(DrawError::Empty { what: "chart" });
+        }
+        let x = axis_range(self.x_range, finite.iter().map(|p| p.0))?;
+        let y = axis_range(self.y_range, finite.iter().map(|p| p.1))?;
+        Ok((x, y))
     }
 
     fn draw_axes(
@@ -187,17 +164,23 @@ impl Chart {
             axis,
         );
         for (at, text) in x.at.iter().zip(&x.labels) {
-            let (across, _) = frame.place((*at, frame.y.0));
+            let (across, _) = frame.position((*at, frame.y.0));
             canvas.line((across, bottom), (across, bottom + 3.0), axis);
-            canvas.text((across, bottom + 12.5), text, TEXT, Anchor::Middle, INK);
+            canvas.text(
+                (across, bottom + 12.5),
+                text,
+                TEXT_SIZE,
+                Anchor::Middle,
+                INK,
+            );
         }
         for (at, text) in y.at.iter().zip(&y.labels) {
-            let (_, down) = frame.place((frame.x.0, *at));
+            let (_, down) = frame.position((frame.x.0, *at));
             canvas.line((left - 3.0, down), (left, down), axis);
             canvas.text(
-                (left - 5.5, down + TEXT * CAPITAL / 2.0),
+                (left - 5.5, down + TEXT_SIZE * CAP_HEIGHT / 2.0),
                 text,
-                TEXT,
+                TEXT_SIZE,
                 Anchor::End,
                 INK,
             );
@@ -206,53 +189,44 @@ impl Chart {
         canvas.text(
             (left + frame.width / 2.0, bottom + 26.0),
             &x_title,
-            TITLE,
+            TITLE_SIZE,
             Anchor::Middle,
             INK,
         );
         let y_title = with_exponent(&self.y_label, y.exponent);
         if !y_title.is_empty() {
-            let place = (9.0 + TITLE * CAPITAL / 2.0, frame.top + frame.height / 2.0);
-            canvas.text_upward(place, &y_title, TITLE);
+            let position = (
+                9.0 + TITLE_SIZE * CAP_HEIGHT / 2.0,
+                frame.top + frame.height / 2.0,
+            );
+            canvas.text_upward(position, &y_title, TITLE_SIZE);
         }
         Ok(())
     }
 
     fn draw_curves(&self, canvas: &mut Canvas, frame: &Frame) {
-        // Half a point of room, so that a line along the edge keeps its width.
+        // The margin of half a point keeps the full width of a line along the edge.
         canvas.clip(
             (frame.left - 0.5, frame.top - 0.5),
             frame.width + 1.0,
             frame.height + 1.0,
         );
         for curve in &self.curves {
-            let places: Vec<Place> = curve.points.iter().map(|&p| frame.place(p)).collect();
-            canvas.polyline(&places, pen(curve));
+            let positions: Vec<Position> =
+                curve.points.iter().map(|&p| frame.position(p)).collect();
+            canvas.polyline(&positions, curve.pen());
         }
         canvas.unclip();
         for curve in self.curves.iter().filter(|c| c.dots) {
-            for place in curve
+            for position in curve
                 .points
                 .iter()
-                .map(|&p| frame.place(p))
-                .filter(|&p| frame.holds(p))
+                .map(|&p| frame.position(p))
+                .filter(|&p| frame.contains(p))
             {
-                canvas.disc(place, 1.7, line_colour(curve.colour), 0.0);
+                canvas.disc(position, 1.7, line_colour(curve.colour), 0.0);
             }
         }
-    }
-}
-
-pub(super) fn pen(curve: &Curve) -> Pen {
-    let colour = line_colour(curve.colour);
-    match curve.stroke {
-        Stroke::Solid => Pen::new(colour, if curve.dots { 1.1 } else { 1.5 }),
-        Stroke::Fine => Pen::new(mix(colour, [255; 3], 0.3), 0.8),
-        Stroke::Dashed => Pen {
-            colour,
-            width: 1.2,
-            dash: (4.5, 2.5),
-        },
     }
 }
 
@@ -269,8 +243,8 @@ mod tests {
     use super::*;
     use crate::draw::Image;
 
-    fn fold() -> Chart {
-        // An S that overhangs: x is not monotone.
+    fn folded() -> Chart {
+        // An S-shaped curve with an overhang: x is not monotone.
         let points = vec![(0.0, 0.5), (1.0, 0.5), (0.7, 0.2), (3.0, 0.2)];
         Chart {
             curves: vec![Curve {
@@ -282,19 +256,19 @@ mod tests {
     }
 
     #[test]
-    fn png_has_the_width_asked_for_and_ink_in_the_fold() {
-        let image = Image::from_png(&fold().png(600).unwrap()).unwrap();
+    fn png_has_the_requested_width_and_shows_the_curve() {
+        let image = Image::from_png(&folded().png(600).unwrap()).unwrap();
         assert_eq!(image.width, 600);
         let dark = image.pixels.iter().filter(|p| p[0] < 60).count();
         assert!(dark > 1500, "{dark} dark pixels");
     }
 
     #[test]
-    fn svg_has_lines_and_texts() {
+    fn svg_contains_paths_and_text() {
         let chart = Chart {
             x_label: "*z*/*D*".into(),
             y_label: "less < more".into(),
-            ..fold()
+            ..folded()
         };
         let svg = chart.svg().unwrap();
         for part in [
@@ -309,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_data_is_an_error() {
+    fn invalid_data_is_an_error() {
         let nan = Curve {
             points: vec![(f64::NAN, 1.0)],
             ..Curve::default()
@@ -317,7 +291,7 @@ mod tests {
         assert!(matches!(
             Chart {
                 curves: vec![nan],
-                ..fold()
+                ..folded()
             }
             .png(600),
             Err(DrawError::Empty { .. })
@@ -325,16 +299,16 @@ mod tests {
         assert!(matches!(
             Chart {
                 x_range: Some((2.0, 1.0)),
-                ..fold()
+                ..folded()
             }
             .png(600),
             Err(DrawError::Range { .. })
         ));
-        assert!(matches!(fold().png(0), Err(DrawError::Size { .. })));
+        assert!(matches!(folded().png(0), Err(DrawError::Size { .. })));
         assert!(matches!(
             Chart {
                 width_pt: f64::NAN,
-                ..fold()
+                ..folded()
             }
             .png(600),
             Err(DrawError::Size { .. })

@@ -1,4 +1,4 @@
-//! Colours for fields and for lines, chosen to survive colour blindness and grey printing.
+//! Colours of fields and lines, distinguishable with colour-blindness and in grey printing.
 
 /// Viridis by S. van der Walt, N. Smith and E. Firing (matplotlib, CC0): every fifth of its 256 colours.
 const VIRIDIS: [u32; 52] = [
@@ -20,75 +20,68 @@ const MAGMA: [u32; 52] = [
     0x1A1042, 0x140E36, 0x0E0B2B, 0x090720, 0x050416, 0x02020B, 0x000004,
 ];
 
-/// Lines: black, then Okabe and Ito's (2008) blue, vermilion, green, purple, orange and sky blue.
+/// Line colours: black, then Okabe and Ito's (2008) blue, vermilion, green, purple, orange and sky blue.
 const LINES: [u32; 7] = [
     0x222222, 0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9,
 ];
 
-/// What is drawn where a field is not a number.
-pub const MISSING: [u8; 3] = [150, 150, 150];
+/// Colour of points where a field is NaN.
+pub(super) const MISSING: [u8; 3] = [150, 150, 150];
 
-/// A colour map that is even to the eye. All but the one for two signs rise or fall in lightness all
-/// the way.
+/// A perceptually uniform colour map. The lightness of all maps but the diverging one is monotone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Map {
-    /// Pale cream through red to purple: magma backwards, without its black end. Shading shows best on pale surfaces,
-    /// and most of a tube is unstressed.
+pub enum ColourMap {
+    /// Pale cream through red to purple: magma reversed, without its black end. Most of a tube is unstressed, and
+    /// shading is most visible on pale surfaces.
     #[default]
     Pale,
     /// Dark violet through green to yellow: viridis.
     Viridis,
     /// Blue through near white to vermilion, for fields of two signs.
-    Signed,
+    Diverging,
 }
 
-impl Map {
-    /// The colour at `t` from 0 to 1; beyond the ends the end colours, for NaN [`MISSING`].
+impl ColourMap {
+    /// Returns the colour at `t`, clamped to the range 0 to 1; grey for NaN.
     #[must_use]
     pub fn colour(self, t: f64) -> [u8; 3] {
         if t.is_nan() {
             return MISSING;
         }
         let t = t.clamp(0.0, 1.0);
-        let (table, place) = match self {
-            Map::Pale => (&MAGMA, 0.02 + 0.76 * t),
-            Map::Viridis => (&VIRIDIS, t),
-            Map::Signed => {
+        let (table, position) = match self {
+            ColourMap::Pale => (&MAGMA, 0.02 + 0.76 * t),
+            ColourMap::Viridis => (&VIRIDIS, t),
+            ColourMap::Diverging => {
                 let end = rgb(if t < 0.5 { LINES[1] } else { LINES[2] });
                 return mix([244; 3], end, (2.0 * t - 1.0).abs());
             }
         };
-        let place = place * (table.len() - 1) as f64;
-        let below = (place as usize).min(table.len() - 2);
+        let position = position * (table.len() - 1) as f64;
+        let below = (position as usize).min(table.len() - 2);
         mix(
             rgb(table[below]),
             rgb(table[below + 1]),
-            place - below as f64,
+            position - below as f64,
         )
     }
 }
 
-/// [`Map::Viridis`] at `t`.
-#[must_use]
-pub fn colour(t: f64) -> [u8; 3] {
-    Map::Viridis.colour(t)
-}
-
-/// The `n`th line colour; 0 is black, and the list starts over after six others.
+/// Returns line colour number `n`: 0 is black, followed by six colours; larger numbers repeat them.
 #[must_use]
 pub fn line_colour(n: usize) -> [u8; 3] {
     rgb(LINES[n % LINES.len()])
 }
 
-/// From `a` at t = 0 to `b` at t = 1.
+/// Interpolates from `a` at t = 0 to `b` at t = 1.
 pub(super) fn mix(a: [u8; 3], b: [u8; 3], t: f64) -> [u8; 3] {
     std::array::from_fn(|i| {
         (f64::from(a[i]) + t * (f64::from(b[i]) - f64::from(a[i]))).round() as u8
     })
 }
 
-/// sRGB byte to light, 0 to 1 (IEC 61966-2-1).
-pub(super) fn to_light(byte: u8) -> f64 {
+/// Converts an sRGB byte to linear light from 0 to 1 (IEC 61966-2-1).
+pub(super) fn to_linear(byte: u8) -> f64 {
     let c = f64::from(byte) / 255.0;
     if c <= 0.04045 {
         c / 12.92
@@ -97,8 +90,8 @@ pub(super) fn to_light(byte: u8) -> f64 {
     }
 }
 
-/// Light to sRGB byte, the inverse of [`to_light`].
-pub(super) fn to_byte(light: f64) -> u8 {
+/// Converts linear light to an sRGB byte; inverse of [`to_linear`].
+pub(super) fn to_srgb(light: f64) -> u8 {
     let l = light.clamp(0.0, 1.0);
     let c = if l <= 0.003_130_8 {
         12.92 * l
@@ -117,10 +110,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lightness_runs_evenly() {
+    fn lightness_changes_uniformly() {
         // CIE lightness L* from luminance
-        let lightness = |map: Map, i: i32| {
-            let [r, g, b] = map.colour(f64::from(i) / 20.0).map(to_light);
+        let lightness = |map: ColourMap, i: i32| {
+            let [r, g, b] = map.colour(f64::from(i) / 20.0).map(to_linear);
             let y: f64 = 0.2126 * r + 0.7152 * g + 0.0722 * b;
             if y > 0.008_856 {
                 116.0 * y.cbrt() - 16.0
@@ -128,7 +121,7 @@ mod tests {
                 903.3 * y
             }
         };
-        for (map, direction) in [(Map::Viridis, 1.0), (Map::Pale, -1.0)] {
+        for (map, direction) in [(ColourMap::Viridis, 1.0), (ColourMap::Pale, -1.0)] {
             for i in 0..20 {
                 let step = direction * (lightness(map, i + 1) - lightness(map, i));
                 assert!((2.5..5.5).contains(&step), "{map:?} from {i}/20: {step}");
@@ -137,14 +130,17 @@ mod tests {
     }
 
     #[test]
-    fn ends_and_missing() {
-        assert_eq!(colour(f64::NEG_INFINITY), [0x44, 0x01, 0x54]);
-        assert_eq!(colour(2.0), [0xFD, 0xE7, 0x25]);
-        assert_eq!(colour(f64::NAN), MISSING);
+    fn maps_clamp_and_show_missing_values() {
+        assert_eq!(
+            ColourMap::Viridis.colour(f64::NEG_INFINITY),
+            [0x44, 0x01, 0x54]
+        );
+        assert_eq!(ColourMap::Viridis.colour(2.0), [0xFD, 0xE7, 0x25]);
+        assert_eq!(ColourMap::Viridis.colour(f64::NAN), MISSING);
     }
 
     #[test]
-    fn light_round_trip() {
-        assert!((0..=255).all(|byte| to_byte(to_light(byte)) == byte));
+    fn srgb_round_trip() {
+        assert!((0..=255).all(|byte| to_srgb(to_linear(byte)) == byte));
     }
 }

@@ -1,83 +1,83 @@
-//! Opened tubes, coloured by a field, over one colour bar.
+//! Cutaways: tubes cut open and coloured by a field, above one colour bar.
 //!
-//! The tubes lie with z to the right and the colon end left, seen from the front and a little above; x points up and y
-//! towards the viewer. All panels share scale, place along z and colours.
+//! The z axis points to the right with the colon end on the left, x points up and y towards the viewer, who looks from the
+//! front and a little above. All panels share the scale, the position along z and the colours.
 
 use super::canvas::{Anchor, Canvas, INK, Pen};
-use super::colour::{Map, mix};
+use super::colour::{ColourMap, mix};
+use super::colour_bar::draw_colour_bar;
 use super::image::MIN_SIDE;
-use super::light::dot;
-use super::range::Range;
-use super::raster::{View, render};
-use super::text::{CAPITAL, fitting};
-use super::{DrawError, Image, Packing, Surface};
+use super::range::{Range, ResolvedRange};
+use super::render::render;
+use super::text::{CAP_HEIGHT, TEXT_SIZE, TITLE_SIZE, truncated};
+use super::vec3::dot;
+use super::view::View;
+use super::{Compression, DrawError, Image, Surface};
 
-pub(super) const TITLE: f64 = 9.0;
-pub(super) const TEXT: f64 = 8.0;
-/// Room for "colon" and "ileum" beside the tubes.
-pub(super) const SIDE: f64 = 36.0;
-/// The height of a panel, at most, in points.
-const TALLEST: f64 = 190.0;
-/// Of lengths along the tube, what must be left on the page for the bar to stand for all.
-const UPRIGHT: f64 = 0.98;
-/// How much of its colour glass has.
-const GLASS: f64 = 0.22;
+/// Margin for "colon" and "ileum" beside the tubes, in points.
+const SIDE: f64 = 36.0;
+/// Maximum height of a panel in points.
+const MAX_HEIGHT: f64 = 190.0;
+/// Smallest projected length of a unit along z for which the scale bar applies to all directions.
+const MIN_PROJECTION: f64 = 0.98;
+/// Opacity of translucent surfaces.
+const OPACITY: f64 = 0.22;
 
-/// One tube of the picture.
+/// One tube of a cutaway.
 #[derive(Clone, Debug, Default)]
 pub struct Panel {
-    /// What stands above it.
+    /// Text above the tube.
     pub label: String,
-    /// The tube, in units of D; see [`super::Opening::surfaces`].
+    /// Surfaces of the tube in units of D, see [`super::Opening::surfaces`].
     pub surfaces: Vec<Surface>,
-    /// What of the tube is seen through, as if of glass.
-    pub glass: Vec<Surface>,
+    /// Translucent surfaces in front of the tube.
+    pub translucent: Vec<Surface>,
 }
 
 impl Panel {
-    /// The tube from a direction, what is of glass before it.
-    fn seen(
+    /// Renders the tube, with the translucent surfaces in front.
+    fn image(
         &self,
         view: &View,
         range: (f64, f64),
-        map: Map,
+        map: ColourMap,
         samples: usize,
     ) -> Result<Image, DrawError> {
         let mut tube = render(&self.surfaces, view, range, map, samples)?;
-        if !self.glass.is_empty() {
-            // Where glass is behind the rest, both pictures are the same.
-            let all = [&self.surfaces[..], &self.glass].concat();
+        if !self.translucent.is_empty() {
+            // Both images are the same where translucent surfaces are hidden.
+            let all = [&self.surfaces[..], &self.translucent].concat();
             let all = render(&all, view, range, map, samples)?;
-            for (pixel, glass) in tube.pixels.iter_mut().zip(all.pixels) {
-                *pixel = mix(*pixel, glass, GLASS);
+            for (pixel, translucent) in tube.pixels.iter_mut().zip(all.pixels) {
+                *pixel = mix(*pixel, translucent, OPACITY);
             }
         }
         Ok(tube)
     }
 }
 
-/// Opened tubes, one above the other. Labels take the markup of [`super::Chart`].
+/// Tubes cut open, one above the other. Labels use the markup of [`super::Chart`].
 #[derive(Clone, Debug)]
 pub struct Cutaway {
-    /// Line above everything; empty for none.
+    /// Title above the picture; empty for none.
     pub title: String,
-    /// The tubes, from the top.
+    /// Tubes from top to bottom.
     pub panels: Vec<Panel>,
-    /// Name of the field; a common power of ten is added to it in brackets.
+    /// Name of the field; a common power of ten is appended in brackets.
     pub value_label: String,
-    /// Ends of the colour bar.
+    /// Rule for the ends of the colour bar.
     pub range: Range,
-    /// Colours of the field.
-    pub map: Map,
-    /// Direction of the viewer in the tube's coordinates; any but along z.
+    /// Colour map of the field.
+    pub map: ColourMap,
+    /// Direction towards the viewer in the coordinates of the tube; not along z.
     pub toward: [f64; 3],
-    /// Points that every panel makes room for, if there are any, instead of its own: those of all pictures of an animation, so that
-    /// these are of one size.
-    pub room: Vec<[f64; 3]>,
-    /// Samples along either side of a pixel, 1 to 4: 2 are smooth, 3 are finer and take longer.
+    /// Points that determine the size of every panel instead of its surfaces, unless empty. They give all frames of an
+    /// animation the same size.
+    pub bounds: Vec<[f64; 3]>,
+    /// Samples along each side of a pixel, 1 to 4: 2 give smooth edges, 3 are finer and take longer.
     pub samples: usize,
-    /// Length of the bar that tells the scale, in units of D, and what stands beneath it.
-    pub bar: (f64, String),
+    /// Length of the scale bar in units of D, and the text below it.
+    pub scale_bar: (f64, String),
     /// Printed width in points.
     pub width_pt: f64,
 }
@@ -89,40 +89,45 @@ impl Default for Cutaway {
             panels: Vec::new(),
             value_label: String::new(),
             range: Range::Automatic,
-            map: Map::default(),
+            map: ColourMap::default(),
             toward: [0.42, 1.0, -0.35],
-            room: Vec::new(),
+            bounds: Vec::new(),
             samples: 2,
-            bar: (1.0, "*D*".into()),
+            scale_bar: (1.0, "*D*".into()),
             width_pt: 510.0,
         }
     }
 }
 
 impl Cutaway {
-    /// The picture as the bytes of a PNG file of `width_px` pixels across.
+    /// Returns the picture as a PNG file `width_px` pixels wide.
     ///
     /// # Errors
-    /// [`DrawError::Empty`] without a finite point or value, [`DrawError::Grid`] for a surface whose lists do not fill
-    /// it, [`DrawError::Range`] for a given range that is none, [`DrawError::Size`] for an absurd size, [`DrawError::Triangles`] for too many.
+    /// [`DrawError::Empty`] without a finite point or value, [`DrawError::Grid`] for lists that do not match the grid,
+    /// [`DrawError::Range`] for an invalid range, [`DrawError::Size`] for an image that is too small or too large, and
+    /// [`DrawError::Triangles`] for too many triangles.
     pub fn png(&self, width_px: usize) -> Result<Vec<u8>, DrawError> {
-        self.packed(width_px, Packing::Small)
+        self.png_with(width_px, Compression::Small)
     }
 
-    /// The same, packed in another way.
+    /// Returns the picture as a PNG file with the given compression.
     ///
     /// # Errors
     /// As [`Cutaway::png`].
-    pub fn packed(&self, width_px: usize, packing: Packing) -> Result<Vec<u8>, DrawError> {
+    pub fn png_with(
+        &self,
+        width_px: usize,
+        compression: Compression,
+    ) -> Result<Vec<u8>, DrawError> {
         let image = self.image(width_px)?;
-        image.to_png(self.width_pt * 25.4 / 72.0, packing)
+        image.to_png(self.width_pt * 25.4 / 72.0, compression)
     }
 
-    /// Two points that make as much room as its panels take.
+    /// Returns two opposite corners, on the page, of the bounding box of all panels; see [`Cutaway::bounds`].
     ///
     /// # Errors
     /// As [`Cutaway::png`].
-    pub fn room(&self) -> Result<[[f64; 3]; 2], DrawError> {
+    pub fn bounding_box(&self) -> Result<[[f64; 3]; 2], DrawError> {
         let [right, up, _] = View::axes(self.toward);
         let (left, width) = self.extent(self.panels.iter(), right)?;
         let (low, height) = self.extent(self.panels.iter(), up)?;
@@ -130,7 +135,17 @@ impl Cutaway {
         Ok([corner(left, low), corner(left + width, low + height)])
     }
 
-    /// Pixels to a unit of D in a picture so many pixels wide.
+    /// Resolves the colour range for the values of all panels.
+    ///
+    /// # Errors
+    /// [`DrawError::Empty`] without a finite value, [`DrawError::Range`] for an invalid given range.
+    pub fn colour_range(&self) -> Result<ResolvedRange, DrawError> {
+        let surfaces = self.panels.iter().flat_map(|p| &p.surfaces);
+        self.range
+            .resolve(surfaces.flat_map(|s| &s.values).copied())
+    }
+
+    /// Returns the pixels per unit of D of a picture `width_px` pixels wide.
     ///
     /// # Errors
     /// [`DrawError::Empty`] without a finite point.
@@ -138,18 +153,18 @@ impl Cutaway {
         Ok(self.points_per_unit()? * width_px as f64 / self.width_pt)
     }
 
-    /// Printed points to a unit of D: a short tube is as wide as its height lets it be.
+    /// Returns the printed points per unit of D; the maximum height limits the width of a short tube.
     fn points_per_unit(&self) -> Result<f64, DrawError> {
         let [right, up, _] = View::axes(self.toward);
         let (_, width) = self.extent(self.panels.iter(), right)?;
-        let mut tallest: f64 = 0.0;
+        let mut highest: f64 = 0.0;
         for panel in &self.panels {
-            tallest = tallest.max(self.extent([panel].into_iter(), up)?.1);
+            highest = highest.max(self.extent([panel].into_iter(), up)?.1);
         }
-        Ok(((self.width_pt - 2.0 * SIDE) / width).min(TALLEST / tallest))
+        Ok(((self.width_pt - 2.0 * SIDE) / width).min(MAX_HEIGHT / highest))
     }
 
-    /// The picture as pixels.
+    /// Returns the picture as pixels.
     ///
     /// # Errors
     /// As [`Cutaway::png`].
@@ -157,11 +172,11 @@ impl Cutaway {
         for surface in self.panels.iter().flat_map(|p| &p.surfaces) {
             surface.check()?;
         }
-        let spanned = self.spanned()?;
+        let range = self.colour_range()?;
         let [right, up, toward] = View::axes(self.toward);
         let (left, width) = self.extent(self.panels.iter(), right)?;
         let per_unit = self.points_per_unit()?;
-        // A short tube stands in the middle.
+        // A short tube is centred.
         let inset = 0.5 * (self.width_pt - width * per_unit);
 
         let mut tops = Vec::new();
@@ -174,12 +189,12 @@ impl Cutaway {
         }
         let mut canvas = Canvas::new(self.width_pt, bottom + 44.0, width_px)?;
         if !self.title.is_empty() {
-            let title = fitting(&self.title, TITLE, self.width_pt - 2.0 * SIDE);
-            canvas.text((SIDE, 13.0), &title, TITLE, Anchor::Start, INK);
+            let title = truncated(&self.title, TITLE_SIZE, self.width_pt - 2.0 * SIDE);
+            canvas.text((SIDE, 13.0), &title, TITLE_SIZE, Anchor::Start, INK);
         }
-        let margin = 2.0; // points around a tube, for the line at its edge
+        let margin = 2.0; // points around a tube, for the line along its edge
         let pixels = canvas.pixels_per_point();
-        let range = (spanned.low, spanned.high);
+        let ends = (range.low, range.high);
         let tube = |(panel, &(_, high, height)): (&Panel, &(f64, f64, f64))| {
             let view = View {
                 right,
@@ -187,76 +202,90 @@ impl Cutaway {
                 toward,
                 corner: (left - margin / per_unit, high + margin / per_unit),
                 scale: per_unit * pixels,
-                // A long thin tube is a line.
+                // The minimum applies to a long thin tube.
                 size: (
                     (((width * per_unit + 2.0 * margin) * pixels).ceil() as usize).max(MIN_SIDE),
                     (((height + 2.0 * margin) * pixels).ceil() as usize).max(MIN_SIDE),
                 ),
             };
-            panel.seen(&view, range, self.map, self.samples)
+            panel.image(&view, ends, self.map, self.samples)
         };
         let tubes: Result<Vec<Image>, DrawError> =
             self.panels.iter().zip(&tops).map(tube).collect();
         for ((panel, (top, _, height)), tube) in self.panels.iter().zip(tops).zip(tubes?) {
             let mut top = top;
             if !panel.label.is_empty() {
-                canvas.text((SIDE, top + 8.0), &panel.label, TEXT, Anchor::Start, INK);
+                canvas.text(
+                    (SIDE, top + 8.0),
+                    &panel.label,
+                    TEXT_SIZE,
+                    Anchor::Start,
+                    INK,
+                );
                 top += 13.0;
             }
-            canvas.stamp(tube, (inset - margin, top - margin));
-            let middle = top + height / 2.0 + TEXT * CAPITAL / 2.0;
-            canvas.text((inset - 7.0, middle), "colon", TEXT, Anchor::End, INK);
+            canvas.overlay(tube, (inset - margin, top - margin));
+            let middle = top + height / 2.0 + TEXT_SIZE * CAP_HEIGHT / 2.0;
+            canvas.text((inset - 7.0, middle), "colon", TEXT_SIZE, Anchor::End, INK);
             canvas.text(
                 (self.width_pt - inset + 7.0, middle),
                 "ileum",
-                TEXT,
+                TEXT_SIZE,
                 Anchor::Start,
                 INK,
             );
         }
-        let (bar, name) = &self.bar;
-        let diameter = bar * per_unit * right[2];
+        let (length, name) = &self.scale_bar;
+        let length = length * per_unit * right[2];
         let (end, base) = (self.width_pt - SIDE, bottom + 13.0);
-        canvas.line((end - diameter, base), (end, base), Pen::new(INK, 1.2));
+        canvas.line((end - length, base), (end, base), Pen::new(INK, 1.2));
         canvas.text(
-            (end - diameter / 2.0, base + 10.5),
-            // Across the tube, and up, lengths come out otherwise where it is seen from an end.
-            &if right[2] > UPRIGHT {
+            (end - length / 2.0, base + 10.5),
+            // In an oblique view the bar applies only to lengths along the tube.
+            &if right[2] > MIN_PROJECTION {
                 name.clone()
             } else {
                 format!("{name}, along")
             },
-            TEXT,
+            TEXT_SIZE,
             Anchor::Middle,
             INK,
         );
-        self.draw_colour_bar(&mut canvas, bottom + 6.0, end - diameter - 12.0, spanned);
-        canvas.finish()
+        let (corner, limit) = ((SIDE + 8.0, bottom + 6.0), end - length - 12.0);
+        draw_colour_bar(
+            &mut canvas,
+            corner,
+            limit,
+            range,
+            self.map,
+            &self.value_label,
+        );
+        canvas.rasterise()
     }
 
-    /// Start and length of what the panels cover along a direction.
+    /// Returns the start and the length of the interval that panels cover along a direction.
     pub(super) fn extent<'a>(
         &self,
         panels: impl Iterator<Item = &'a Panel>,
         direction: [f64; 3],
     ) -> Result<(f64, f64), DrawError> {
-        let surfaces = panels.flat_map(|p| p.surfaces.iter().chain(&p.glass));
+        let surfaces = panels.flat_map(|p| p.surfaces.iter().chain(&p.translucent));
         let points = surfaces.flat_map(|s| &s.points);
-        let (low, high) = if self.room.is_empty() {
+        let (low, high) = if self.bounds.is_empty() {
             ends(points.map(|&p| dot(p, direction)))
         } else {
-            ends(self.room.iter().map(|&p| dot(p, direction)))
+            ends(self.bounds.iter().map(|&p| dot(p, direction)))
         };
         if high > low {
             Ok((low, high - low))
         } else {
-            Err(DrawError::Empty { what: "cut-away" })
+            Err(DrawError::Empty { what: "cutaway" })
         }
     }
 }
 
-/// Least and largest of the finite values.
-pub(super) fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+/// Returns the smallest and the largest finite value.
+fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let finite = values.filter(|v| v.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
         (a.min(v), b.max(v))
@@ -266,10 +295,10 @@ pub(super) fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::draw::{HALF, Opening};
+    use crate::draw::{Opening, REAR_HALF};
 
     pub(in crate::draw) fn straight(values: impl Fn(f64) -> f64) -> Cutaway {
-        let opening = Opening::evenly(HALF, [60, 30, 3]);
+        let opening = Opening::uniform(REAR_HALF, [60, 30, 3]);
         let surfaces = opening.surfaces(|zeta, eta, xi| {
             let r = 0.44 + 0.06 * xi;
             ([r * eta.cos(), r * eta.sin(), 3.0 * zeta], values(zeta))
@@ -285,7 +314,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_tube_is_drawn_at_the_size_asked_for() {
+    fn png_has_the_requested_width_and_shows_the_tube() {
         let image = Image::from_png(&straight(|z| z).png(600).unwrap()).unwrap();
         assert_eq!(image.width, 600);
         let inked = image.pixels.iter().filter(|&&p| p != [255; 3]).count();
@@ -297,22 +326,22 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn pictures_that_share_room_and_colours_are_of_one_size() {
+    fn pictures_with_common_bounds_have_the_same_size() {
         let mut picture = straight(|z| z);
-        let room = picture.room().unwrap().to_vec();
-        let found = picture.spanned().unwrap();
+        let bounds = picture.bounding_box().unwrap().to_vec();
+        let range = picture.colour_range().unwrap();
         assert_eq!(picture.image(600).unwrap().height, {
-            picture.room = room.clone();
+            picture.bounds = bounds.clone();
             picture.image(600).unwrap().height
         });
-        // A tube that outgrows its room is cut off, and its values change no bar.
+        // A tube beyond the bounds is cut off, and its values do not change the colour bar.
         let mut larger = straight(|z| 2.0 * z);
         for point in &mut larger.panels[0].surfaces[0].points {
             point[0] *= 1.1;
         }
         let alone = larger.image(600).unwrap().height;
-        (larger.room, larger.range) = (room, Range::Found(found));
-        assert_eq!(larger.spanned().unwrap(), found);
+        (larger.bounds, larger.range) = (bounds, Range::Resolved(range));
+        assert_eq!(larger.colour_range().unwrap(), range);
         let image = larger.image(600).unwrap();
         assert_eq!(image.height, picture.image(600).unwrap().height);
         assert_ne!(image.height, alone);
@@ -323,26 +352,26 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn glass_before_a_tube_tints_it_and_behind_it_is_not_seen() {
+    fn translucent_surfaces_show_only_in_front_of_the_tube() {
         let pixels =
             |picture: &Cutaway| Image::from_png(&picture.png(600).unwrap()).unwrap().pixels;
         let mut picture = straight(|z| z);
         picture.toward = [0.0, 1.0, 0.0];
-        let opening = |kept| Opening::evenly(kept, [60, 30, 3]);
+        let opening = |kept| Opening::uniform(kept, [60, 30, 3]);
         let wall = |zeta: f64, eta: f64, xi: f64| {
             let r = 0.44 + 0.06 * xi;
             ([r * eta.cos(), r * eta.sin(), 3.0 * zeta], zeta)
         };
         let plain = pixels(&picture);
-        picture.panels[0].glass = opening((0.0, std::f64::consts::PI)).surfaces(wall);
+        picture.panels[0].translucent = opening((0.0, std::f64::consts::PI)).surfaces(wall);
         let before = pixels(&picture);
         assert_eq!(before.len(), plain.len());
         let changed = before.iter().zip(&plain).filter(|(a, b)| a != b).count();
         assert!(changed * 4 > plain.len(), "{changed} of {}", plain.len());
-        // From behind the glass is hidden by the tube, but for its rim.
+        // Seen from the other side, the tube hides the translucent surfaces except for their rim.
         picture.toward = [0.0, -1.0, 0.0];
         let behind = pixels(&picture);
-        picture.panels[0].glass.clear();
+        picture.panels[0].translucent.clear();
         let changed = behind
             .iter()
             .zip(pixels(&picture))
@@ -352,7 +381,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn bad_fields_are_errors() {
+    fn invalid_fields_and_ranges_are_errors() {
         assert!(matches!(
             straight(|_| f64::NAN).png(600),
             Err(DrawError::Empty { .. })

@@ -1,40 +1,40 @@
-//! Pixels, and PNG in and out.
+//! Images of 8-bit pixels, and PNG encoding.
 
 use super::DrawError;
 
-/// The shortest side a picture may have, in pixels.
-pub const MIN_SIDE: usize = 16;
+/// Smallest width or height of an image in pixels.
+pub(super) const MIN_SIDE: usize = 16;
 
-/// The longest side a picture may have, in pixels.
-pub const MAX_SIDE: usize = 8_000;
+/// Largest width or height of an image in pixels.
+pub(super) const MAX_SIDE: usize = 8_000;
 
-/// How a file is packed.
+/// Compression of a PNG file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Packing {
-    /// Shades, to a small file: harder, a tenth smaller would take two and a half times as long.
+pub enum Compression {
+    /// Shaded images, small files. A stronger level saves a tenth of the size and takes 2.5 times as long.
     Small,
-    /// Shades in a third of that time: files are a sixth larger, and three times as large where little is shaded.
+    /// Shaded images in a third of that time: files are a sixth larger, or three times as large if little is shaded.
     Fast,
-    /// Lines and letters: rows of few colours, which filters would break.
-    Plain,
+    /// Line art with few colours, compressed without filters.
+    LineArt,
 }
 
-/// A picture of 8-bit sRGB pixels, row by row from the top left.
+/// An image of 8-bit sRGB pixels, row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     /// Width in pixels.
     pub width: usize,
     /// Height in pixels.
     pub height: usize,
-    /// `width * height` colours.
+    /// `width * height` pixels.
     pub pixels: Vec<[u8; 3]>,
 }
 
 impl Image {
-    /// A white picture.
+    /// Creates a white image.
     ///
     /// # Errors
-    /// As [`Image::size`].
+    /// [`DrawError::Size`] unless both sides are between 16 and 8000 pixels.
     pub fn white(width: f64, height: f64) -> Result<Self, DrawError> {
         let [width, height] = Self::size(width, height)?;
         Ok(Self {
@@ -44,11 +44,11 @@ impl Image {
         })
     }
 
-    /// The sides of a picture in whole pixels.
+    /// Rounds a width and a height to whole pixels.
     ///
     /// # Errors
-    /// [`DrawError::Size`] unless both lie between [`MIN_SIDE`] and [`MAX_SIDE`] pixels.
-    pub fn size(width: f64, height: f64) -> Result<[usize; 2], DrawError> {
+    /// [`DrawError::Size`] unless both are between [`MIN_SIDE`] and [`MAX_SIDE`].
+    pub(super) fn size(width: f64, height: f64) -> Result<[usize; 2], DrawError> {
         let allowed = MIN_SIDE as f64..=MAX_SIDE as f64;
         if !allowed.contains(&width) || !allowed.contains(&height) {
             return Err(DrawError::Size { width, height });
@@ -56,25 +56,25 @@ impl Image {
         Ok([width, height].map(|side| side.round() as usize))
     }
 
-    /// Pictures one below the other, flush left, on white.
+    /// Stacks images vertically, aligned left, on white.
     ///
     /// # Errors
-    /// [`DrawError::Size`] if they are too tall together, or none.
+    /// [`DrawError::Size`] if there are none or if they are too tall together.
     pub fn stacked(images: &[Self]) -> Result<Self, DrawError> {
         let width = images.iter().map(|image| image.width).max().unwrap_or(0);
         let height: usize = images.iter().map(|image| image.height).sum();
         let mut page = Self::white(width as f64, height as f64)?;
         let mut below = 0;
         for image in images {
-            page.stamp(image, 0, below);
+            page.multiply(image, 0, below);
             below += image.height as i64;
         }
         Ok(page)
     }
 
-    /// Multiplies `stamp` into the picture with its top left corner at (x, y): white leaves the ground as it is.
-    pub fn stamp(&mut self, stamp: &Image, x: i64, y: i64) {
-        for (row, line) in stamp.pixels.chunks_exact(stamp.width.max(1)).enumerate() {
+    /// Multiplies another image into this one with its top left corner at (x, y), so that its white is transparent.
+    pub(super) fn multiply(&mut self, other: &Image, x: i64, y: i64) {
+        for (row, line) in other.pixels.chunks_exact(other.width.max(1)).enumerate() {
             let below = y + row as i64;
             if below < 0 || below >= self.height as i64 {
                 continue;
@@ -87,36 +87,36 @@ impl Image {
                 if across < 0 || across >= self.width as i64 {
                     continue;
                 }
-                let ground = &mut self.pixels[below as usize * self.width + across as usize];
-                if *ground == [255; 3] {
-                    *ground = *ink;
+                let pixel = &mut self.pixels[below as usize * self.width + across as usize];
+                if *pixel == [255; 3] {
+                    *pixel = *ink;
                     continue;
                 }
-                for (g, &i) in ground.iter_mut().zip(ink) {
-                    *g = ((u16::from(*g) * u16::from(i) + 127) / 255) as u8;
+                for (p, &i) in pixel.iter_mut().zip(ink) {
+                    *p = ((u16::from(*p) * u16::from(i) + 127) / 255) as u8;
                 }
             }
         }
     }
 
-    /// The picture as the bytes of a PNG file; `width_mm` sets the size it prints at.
+    /// Encodes the image as a PNG file; `width_mm` is its printed width.
     ///
     /// # Errors
-    /// [`DrawError::Backend`] if the encoder refuses.
-    pub fn to_png(&self, width_mm: f64, packing: Packing) -> Result<Vec<u8>, DrawError> {
+    /// [`DrawError::Backend`] if the encoder fails.
+    pub fn to_png(&self, width_mm: f64, compression: Compression) -> Result<Vec<u8>, DrawError> {
         let backend = |e: png::EncodingError| DrawError::Backend(e.to_string());
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         let level = png::DeflateCompression::Level(3);
-        let (compression, filter) = match packing {
-            Packing::Small => (level, png::Filter::Adaptive),
-            Packing::Fast => (
+        let (compression, filter) = match compression {
+            Compression::Small => (level, png::Filter::Adaptive),
+            Compression::Fast => (
                 png::DeflateCompression::FdeflateUltraFast,
                 png::Filter::Paeth,
             ),
-            Packing::Plain => (level, png::Filter::NoFilter),
+            Compression::LineArt => (level, png::Filter::NoFilter),
         };
         encoder.set_deflate_compression(compression);
         encoder.set_filter(filter);
@@ -137,10 +137,10 @@ impl Image {
         Ok(bytes)
     }
 
-    /// Reads an 8-bit RGB or RGBA file; transparency is ignored.
+    /// Decodes an 8-bit RGB or RGBA PNG file; transparency is ignored.
     ///
     /// # Errors
-    /// [`DrawError::Backend`] for anything else.
+    /// [`DrawError::Backend`] for any other file.
     pub fn from_png(bytes: &[u8]) -> Result<Self, DrawError> {
         let backend = |e: png::DecodingError| DrawError::Backend(e.to_string());
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
@@ -148,13 +148,17 @@ impl Image {
             .map_err(backend)?;
         let size = reader
             .output_buffer_size()
-            .ok_or_else(|| DrawError::Backend("PNG too large".into()))?;
+            .ok_or_else(|| DrawError::Backend("PNG file is too large".into()))?;
         let mut buffer = vec![0; size];
         let frame = reader.next_frame(&mut buffer).map_err(backend)?;
         let channels = match (frame.color_type, frame.bit_depth) {
             (png::ColorType::Rgb, png::BitDepth::Eight) => 3,
             (png::ColorType::Rgba, png::BitDepth::Eight) => 4,
-            other => return Err(DrawError::Backend(format!("PNG of kind {other:?}"))),
+            other => {
+                return Err(DrawError::Backend(format!(
+                    "unsupported PNG format {other:?}"
+                )));
+            }
         };
         let pixels = buffer[..frame.buffer_size()]
             .chunks_exact(channels)
@@ -176,14 +180,14 @@ mod tests {
     fn png_round_trip() {
         let mut image = Image::white(20.0, 30.0).unwrap();
         image.pixels[19] = [10, 20, 30]; // top right
-        for packing in [Packing::Small, Packing::Fast, Packing::Plain] {
-            let back = Image::from_png(&image.to_png(100.0, packing).unwrap()).unwrap();
+        for compression in [Compression::Small, Compression::Fast, Compression::LineArt] {
+            let back = Image::from_png(&image.to_png(100.0, compression).unwrap()).unwrap();
             assert_eq!(back, image);
         }
     }
 
     #[test]
-    fn pictures_are_stacked_in_their_order() {
+    fn images_are_stacked_in_order() {
         let dark = |width| {
             let mut image = Image::white(width, 20.0).unwrap();
             image.pixels[0] = [1, 2, 3];
@@ -199,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn absurd_sizes_are_refused() {
+    fn invalid_sizes_are_errors() {
         for (width, height) in [(0.0, 100.0), (f64::NAN, 100.0), (1e9, 100.0)] {
             assert!(matches!(
                 Image::white(width, height),

@@ -1,93 +1,100 @@
-//! Small tubes inside a chart, each with a line to the point of the curve that it belongs to.
+//! Small tubes inside a chart, each connected by a line to a point of a curve.
 
 use super::canvas::{Canvas, Pen};
-use super::chart::Chart;
 use super::cutaway::{Cutaway, Panel};
 use super::frame::Frame;
-use super::raster::{View, render};
+use super::render::render;
+use super::view::View;
 use super::{DrawError, Surface};
 
-/// A small tube inside a chart, coloured as those of a [`Cutaway`]; all of a chart share their colours.
+/// A small tube inside a chart, coloured like those of a [`Cutaway`]. All insets of a chart share one colour range.
 #[derive(Clone, Debug, Default)]
 pub struct Inset {
-    /// The tube, in units of D; see [`super::Opening::surfaces`].
+    /// Surfaces of the tube in units of D, see [`super::Opening::surfaces`].
     pub surfaces: Vec<Surface>,
-    /// The point it belongs to, in data units.
+    /// Point that the tube belongs to, in data units.
     pub at: (f64, f64),
-    /// Where its middle is shown: parts of the frame, from its left and from its bottom.
-    pub shown: (f64, f64),
-    /// Its width, as a part of the frame's.
+    /// Centre of the tube as fractions of the frame, from the left and from the bottom.
+    pub centre: (f64, f64),
+    /// Width of the tube as a fraction of that of the frame.
     pub width: f64,
 }
 
-/// Samples per pixel, in a row.
+/// Samples along each side of a pixel.
 const SAMPLES: usize = 3;
 
-impl Chart {
-    pub(super) fn draw_insets(&self, canvas: &mut Canvas, frame: &Frame) -> Result<(), DrawError> {
-        if self.insets.is_empty() {
-            return Ok(());
-        }
-        let panel = |inset: &Inset| Panel {
-            surfaces: inset.surfaces.clone(),
-            ..Panel::default()
-        };
-        let all = Cutaway {
-            panels: self.insets.iter().map(panel).collect(),
-            ..Cutaway::default()
-        };
-        let spanned = all.spanned()?;
-        let [right, up, toward] = View::axes(all.toward);
-        let pixels = canvas.pixels_per_point();
-        for (inset, panel) in self.insets.iter().zip(&all.panels) {
-            let (left, width) = all.extent([panel].into_iter(), right)?;
-            let (low, height) = all.extent([panel].into_iter(), up)?;
-            let per_unit = inset.width * frame.width / width;
-            let size = (width * per_unit, height * per_unit);
-            let middle = (
-                frame.left + inset.shown.0 * frame.width,
-                frame.bottom() - inset.shown.1 * frame.height,
-            );
-            // From the point to the nearest place on the edge of the tube's box.
-            let from = frame.place(inset.at);
-            let near =
-                |x: f64, middle: f64, size: f64| x.clamp(middle - 0.5 * size, middle + 0.5 * size);
-            let to = (
-                near(from.0, middle.0, size.0),
-                near(from.1, middle.1, size.1),
-            );
-            let pen = Pen {
-                colour: [150; 3],
-                width: 0.5,
-                dash: (0.0, 0.0),
-            };
-            canvas.line(from, to, pen);
-            let view = View {
-                right,
-                up,
-                toward,
-                corner: (left, low + height),
-                scale: per_unit * pixels,
-                size: [size.0, size.1]
-                    .map(|s| (s * pixels).ceil().max(1.0) as usize)
-                    .into(),
-            };
-            let range = (spanned.low, spanned.high);
-            let tube = render(&panel.surfaces, &view, range, all.map, SAMPLES)?;
-            canvas.stamp(tube, (middle.0 - 0.5 * size.0, middle.1 - 0.5 * size.1));
-        }
-        Ok(())
+pub(super) fn draw_insets(
+    insets: &[Inset],
+    canvas: &mut Canvas,
+    frame: &Frame,
+) -> Result<(), DrawError> {
+    if insets.is_empty() {
+        return Ok(());
     }
+    let panel = |inset: &Inset| Panel {
+        surfaces: inset.surfaces.clone(),
+        ..Panel::default()
+    };
+    let all = Cutaway {
+        panels: insets.iter().map(panel).collect(),
+        ..Cutaway::default()
+    };
+    let range = all.colour_range()?;
+    let [right, up, toward] = View::axes(all.toward);
+    let pixels = canvas.pixels_per_point();
+    for (inset, panel) in insets.iter().zip(&all.panels) {
+        let (left, width) = all.extent([panel].into_iter(), right)?;
+        let (low, height) = all.extent([panel].into_iter(), up)?;
+        let per_unit = inset.width * frame.width / width;
+        let size = (width * per_unit, height * per_unit);
+        let middle = (
+            frame.left + inset.centre.0 * frame.width,
+            frame.bottom() - inset.centre.1 * frame.height,
+        );
+        // From the point to the nearest position on the edge of the bounding box of the tube.
+        let from = frame.position(inset.at);
+        let nearest =
+            |x: f64, middle: f64, size: f64| x.clamp(middle - 0.5 * size, middle + 0.5 * size);
+        let to = (
+            nearest(from.0, middle.0, size.0),
+            nearest(from.1, middle.1, size.1),
+        );
+        let pen = Pen {
+            colour: [150; 3],
+            width: 0.5,
+            dash: (0.0, 0.0),
+        };
+        canvas.line(from, to, pen);
+        let view = View {
+            right,
+            up,
+            toward,
+            corner: (left, low + height),
+            scale: per_unit * pixels,
+            size: [size.0, size.1]
+                .map(|s| (s * pixels).ceil().max(1.0) as usize)
+                .into(),
+        };
+        let tube = render(
+            &panel.surfaces,
+            &view,
+            (range.low, range.high),
+            all.map,
+            SAMPLES,
+        )?;
+        canvas.overlay(tube, (middle.0 - 0.5 * size.0, middle.1 - 0.5 * size.1));
+    }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::draw::cutaway::tests::straight;
-    use crate::draw::{Curve, Image};
+    use crate::draw::{Chart, Curve, Image};
 
     #[test]
-    fn a_small_tube_stands_where_it_is_to() {
+    fn an_inset_changes_pixels_only_around_its_centre() {
         let chart = |insets: Vec<Inset>| Chart {
             curves: vec![Curve {
                 points: vec![(0.0, 0.0), (1.0, 1.0)],
@@ -99,7 +106,7 @@ mod tests {
         let inset = Inset {
             surfaces: straight(|z| z).panels.remove(0).surfaces,
             at: (0.5, 0.5),
-            shown: (0.25, 0.8),
+            centre: (0.25, 0.8),
             width: 0.3,
         };
         let image = |insets| Image::from_png(&chart(insets).png(600).unwrap()).unwrap();

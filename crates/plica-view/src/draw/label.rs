@@ -1,92 +1,92 @@
-//! Labels with a little markup: `*z*/*D*` slants, `*L*_{max}` lowers, `10^{−3}` raises.
+//! Label markup: italics (`*z*/*D*`), subscripts (`*L*_{max}`) and superscripts (`10^{−3}`).
 
-/// A run of letters of one kind.
+/// Part of a label in one style.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Piece {
+pub(super) struct Fragment {
     pub text: String,
     pub italic: bool,
     pub level: Level,
 }
 
-/// Where a run stands on its line.
+/// Vertical position of a fragment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Level {
-    Line,
-    Lower,
-    Upper,
+    Baseline,
+    Subscript,
+    Superscript,
 }
 
 impl Level {
-    /// Size against that of the line.
+    /// Returns the font size relative to that of the label.
     pub fn size(self) -> f64 {
-        if self == Level::Line { 1.0 } else { 0.72 }
+        if self == Level::Baseline { 1.0 } else { 0.72 }
     }
 
-    /// Fall below the baseline, in the line's size.
-    pub fn drop(self) -> f64 {
+    /// Returns the downward offset from the baseline, relative to the font size of the label.
+    pub fn offset(self) -> f64 {
         match self {
-            Level::Line => 0.0,
-            Level::Lower => 0.2,
-            Level::Upper => -0.36,
+            Level::Baseline => 0.0,
+            Level::Subscript => 0.2,
+            Level::Superscript => -0.36,
         }
     }
 }
 
-/// The runs of a label. Unmatched marks are harmless: the last run just ends with the text.
-pub(super) fn pieces(text: &str) -> Vec<Piece> {
-    let mut pieces = Vec::new();
-    let mut run = Piece {
+/// Splits a label into fragments. An unmatched mark extends to the end of the text.
+pub(super) fn parse(text: &str) -> Vec<Fragment> {
+    let mut fragments = Vec::new();
+    let mut run = Fragment {
         text: String::new(),
         italic: false,
-        level: Level::Line,
+        level: Level::Baseline,
     };
     let mut letters = text.chars().peekable();
     while let Some(letter) = letters.next() {
         let (italic, level) = match letter {
             '*' => (!run.italic, run.level),
-            '_' if letters.next_if_eq(&'{').is_some() => (run.italic, Level::Lower),
-            '^' if letters.next_if_eq(&'{').is_some() => (run.italic, Level::Upper),
-            '}' if run.level != Level::Line => (run.italic, Level::Line),
+            '_' if letters.next_if_eq(&'{').is_some() => (run.italic, Level::Subscript),
+            '^' if letters.next_if_eq(&'{').is_some() => (run.italic, Level::Superscript),
+            '}' if run.level != Level::Baseline => (run.italic, Level::Baseline),
             _ => {
-                // A line is a line, and XML has no place for these.
-                let is_letter = !letter.is_control() && !matches!(letter, '\u{fffe}' | '\u{ffff}');
-                run.text.push(if is_letter { letter } else { ' ' });
+                // A label is one line, and XML forbids these characters.
+                let is_allowed = !letter.is_control() && !matches!(letter, '\u{fffe}' | '\u{ffff}');
+                run.text.push(if is_allowed { letter } else { ' ' });
                 continue;
             }
         };
-        let next = Piece {
+        let next = Fragment {
             text: String::new(),
             italic,
             level,
         };
-        pieces.push(std::mem::replace(&mut run, next));
+        fragments.push(std::mem::replace(&mut run, next));
     }
-    pieces.push(run);
-    pieces.retain(|p| !p.text.is_empty());
-    pieces
+    fragments.push(run);
+    fragments.retain(|p| !p.text.is_empty());
+    fragments
 }
 
-/// A label as HTML.
+/// Returns a label as HTML.
 pub fn html(label: &str) -> String {
-    let piece = |piece: Piece| {
-        let escaped = piece.text.replace('&', "&amp;").replace('<', "&lt;");
-        let text = if piece.italic {
+    let fragment = |fragment: Fragment| {
+        let escaped = fragment.text.replace('&', "&amp;").replace('<', "&lt;");
+        let text = if fragment.italic {
             format!("<i>{escaped}</i>")
         } else {
             escaped
         };
-        match piece.level {
-            Level::Line => text,
-            Level::Lower => format!("<sub>{text}</sub>"),
-            Level::Upper => format!("<sup>{text}</sup>"),
+        match fragment.level {
+            Level::Baseline => text,
+            Level::Subscript => format!("<sub>{text}</sub>"),
+            Level::Superscript => format!("<sup>{text}</sup>"),
         }
     };
-    pieces(label).into_iter().map(piece).collect()
+    parse(label).into_iter().map(fragment).collect()
 }
 
-/// A label in letters alone: *L*_{max} is Lmax, *D*^{3} is D³.
+/// Returns a label as plain text: *L*_{max} becomes Lmax and *D*^{3} becomes D³.
 pub fn plain(label: &str) -> String {
-    let raised = |letter: char| match letter {
+    let superscript = |letter: char| match letter {
         '0' => '⁰',
         '1' => '¹',
         '2' => '²',
@@ -95,11 +95,11 @@ pub fn plain(label: &str) -> String {
         '-' | '−' => '⁻',
         other => other,
     };
-    let piece = |piece: Piece| match piece.level {
-        Level::Upper => piece.text.chars().map(raised).collect(),
-        _ => piece.text,
+    let fragment = |fragment: Fragment| match fragment.level {
+        Level::Superscript => fragment.text.chars().map(superscript).collect(),
+        _ => fragment.text,
     };
-    pieces(label).into_iter().map(piece).collect()
+    parse(label).into_iter().map(fragment).collect()
 }
 
 #[cfg(test)]
@@ -107,8 +107,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn marks_split_a_label() {
-        let got = pieces("*L*_{max}/*L* = 10^{−3}");
+    fn markup_splits_a_label() {
+        let got = parse("*L*_{max}/*L* = 10^{−3}");
         let texts: Vec<_> = got
             .iter()
             .map(|p| (p.text.as_str(), p.italic, p.level))
@@ -116,20 +116,20 @@ mod tests {
         assert_eq!(
             texts,
             [
-                ("L", true, Level::Line),
-                ("max", false, Level::Lower),
-                ("/", false, Level::Line),
-                ("L", true, Level::Line),
-                (" = 10", false, Level::Line),
-                ("−3", false, Level::Upper),
+                ("L", true, Level::Baseline),
+                ("max", false, Level::Subscript),
+                ("/", false, Level::Baseline),
+                ("L", true, Level::Baseline),
+                (" = 10", false, Level::Baseline),
+                ("−3", false, Level::Superscript),
             ]
         );
-        assert_eq!(pieces("plain_text }")[0].text, "plain_text }");
-        assert_eq!(pieces("a\u{1}b\nc\u{ffff}$")[0].text, "a b c $");
+        assert_eq!(parse("plain_text }")[0].text, "plain_text }");
+        assert_eq!(parse("a\u{1}b\nc\u{ffff}$")[0].text, "a b c $");
     }
 
     #[test]
-    fn a_label_elsewhere_than_in_a_picture() {
+    fn labels_convert_to_html_and_plain_text() {
         let label = "*L*_{max}/*L* < 10^{−34}";
         assert_eq!(
             html(label),

@@ -1,11 +1,12 @@
-//! The light that leaves a point of a surface, and the little vector algebra that needs.
+//! Illumination and colour of surface points.
 
-use super::colour::{MISSING, Map, to_byte, to_light};
+use super::colour::{ColourMap, MISSING, to_linear, to_srgb};
+use super::vec3::{dot, unit};
 
-/// A lamp above the viewer's left shoulder.
+/// A light source above the left shoulder of the viewer.
 pub(super) struct Lamp {
     direction: [f64; 3],
-    /// Between it and the viewer: what gloss is seen by.
+    /// Direction halfway between the lamp and the viewer, for the specular part.
     halfway: [f64; 3],
 }
 
@@ -18,23 +19,23 @@ impl Default for Lamp {
 }
 
 impl Lamp {
-    /// How much of its colour, and of white, a surface throws back that has this unit normal in page axes: Lambert's law with an
-    /// ambient part, and a weak gloss.
-    pub fn on(&self, normal: [f64; 3]) -> [f32; 2] {
+    /// Returns the diffuse and the specular intensity of a surface with a unit normal in page axes: Lambert's law with an
+    /// ambient part, and a weak specular reflection.
+    pub fn intensity(&self, normal: [f64; 3]) -> [f32; 2] {
         let diffuse = dot(normal, self.direction).max(0.0);
-        let gloss = dot(normal, self.halfway).max(0.0).powi(40);
-        [(0.5 + 0.58 * diffuse) as f32, (0.05 * gloss) as f32]
+        let specular = dot(normal, self.halfway).max(0.0).powi(40);
+        [(0.5 + 0.58 * diffuse) as f32, (0.05 * specular) as f32]
     }
 }
 
-/// Colours of a field as light.
+/// Colours of a field in linear light.
 pub(super) struct Shader {
     low: f64,
     per_value: f64,
-    /// The colour map as light.
+    /// The colour map in linear light.
     map: Vec<[f32; 3]>,
     missing: [f32; 3],
-    /// Bytes of light from 0 to 1, in even steps.
+    /// sRGB bytes of linear light from 0 to 1, in equal steps.
     bytes: Vec<u8>,
 }
 
@@ -42,70 +43,47 @@ impl Shader {
     const SHADES: usize = 1024;
     const BYTES: usize = 4096;
 
-    pub fn new((low, high): (f64, f64), map: Map) -> Self {
-        let light = |c: [u8; 3]| c.map(|byte| to_light(byte) as f32);
+    pub fn new((low, high): (f64, f64), map: ColourMap) -> Self {
+        let linear = |c: [u8; 3]| c.map(|byte| to_linear(byte) as f32);
         let map = (0..=Self::SHADES)
-            .map(|i| light(map.colour(i as f64 / Self::SHADES as f64)))
+            .map(|i| linear(map.colour(i as f64 / Self::SHADES as f64)))
             .collect();
         Self {
             low,
             per_value: Self::SHADES as f64 / (high - low),
             map,
-            missing: light(MISSING),
+            missing: linear(MISSING),
             bytes: (0..Self::BYTES)
-                .map(|i| to_byte(i as f64 / (Self::BYTES - 1) as f64))
+                .map(|i| to_srgb(i as f64 / (Self::BYTES - 1) as f64))
                 .collect(),
         }
     }
 
-    /// Which shade a value has: a place along the map, NaN for none.
+    /// Returns the shade of a value: an index into the map, or NaN for a missing value.
     pub fn shade(&self, value: f64) -> f32 {
         ((value - self.low) * self.per_value) as f32
     }
 
-    /// The light that leaves a point of such a shade that throws back so much of its colour and of white.
+    /// Returns the light reflected by a point with a shade and the two intensities of [`Lamp::intensity`].
     #[inline(always)]
-    pub fn light(&self, shade: f32, body: f32, gloss: f32) -> [f32; 3] {
+    pub fn light(&self, shade: f32, diffuse: f32, specular: f32) -> [f32; 3] {
         let [r, g, b] = if shade.is_nan() {
             self.missing
         } else {
             self.map[(shade.max(0.0) as usize).min(Self::SHADES)]
         };
-        [r * body + gloss, g * body + gloss, b * body + gloss]
+        [
+            r * diffuse + specular,
+            g * diffuse + specular,
+            b * diffuse + specular,
+        ]
     }
 
-    /// Light as an sRGB pixel.
+    /// Converts light to an sRGB pixel.
     #[inline(always)]
     pub fn pixel(&self, [r, g, b]: [f32; 3]) -> [u8; 3] {
         let byte =
             |light: f32| self.bytes[(light.clamp(0.0, 1.0) * (Self::BYTES - 1) as f32) as usize];
         [byte(r), byte(g), byte(b)]
-    }
-}
-
-pub(super) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-#[inline]
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline]
-pub(super) fn unit(a: [f64; 3]) -> [f64; 3] {
-    let length = dot(a, a).sqrt();
-    if length > 0.0 {
-        a.map(|c| c / length)
-    } else {
-        a
     }
 }

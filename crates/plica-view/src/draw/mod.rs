@@ -1,33 +1,24 @@
-//! Pictures of tubes for print: charts, wall profiles and shaded cut-aways, as PNG bytes.
+//! Pictures of tubes for print: charts and shaded cutaways, as PNG or SVG.
 //!
-//! | file | what it draws |
+//! A [`Chart`] shows curves against axes, a [`Cutaway`] shows tubes cut open and coloured by a field, and [`animation`]
+//! turns images into an animated PNG. All of them are plain data; nothing here reads files or depends on a model.
+//! Lengths on a page are points (1/72 inch), and text is 8 and 9 points in size.
+//!
+//! | files | content |
 //! |---|---|
-//! | [`chart`] | curves against axes: energy paths, wall profiles |
-//! | [`cutaway`] | opened tubes, coloured by a field, over one colour bar |
-//! | `frame`, `notes` | a chart's frame; its legend, rules and markers |
-//! | [`inset`] | small tubes inside a chart |
-//! | [`Range`] | which values the colours of a field span |
-//! | `colour_bar` | the bar beneath the cut-aways |
-//! | [`section`] | the surfaces of a tube cut open along its axis, from any wall mapping |
-//! | [`Surface`] | a grid of points that carries a field |
-//! | [`raster`] | shaded surfaces on a page, strip by strip |
-//! | `scene`, `samples` | their triangles; which of them lies before the others, sample by sample |
-//! | `pixels` | the pixels that samples make, and the line at edges |
-//! | `light`, `lit` | how bright a point of a surface is; how bright a sample |
-//! | [`colour`] | two even maps for fields, Okabe and Ito's palette for lines |
-//! | `ticks` | round numbers for axes |
-//! | [`label`] | `*z*/*D*`, `*L*_{max}`, `10^{−3}`; the same as HTML and as plain text |
-//! | `canvas` | a page measured in points, and the marks on it |
-//! | `text`, `letters` | a label set in runs; their glyphs, from the fonts that come along |
-//! | `paint`, `vector` | a page as pixels, and as SVG |
-//! | [`image`] | pixels, and PNG in and out |
-//! | `animation` | pictures that follow each other |
-//!
-//! Every picture is plain data with a `png(width_px)` method; nothing here reads a file, prints, or knows a model.
-//! Lengths on a page are points (1/72 inch), so that texts of 8 and 9 points come out as such in a journal's column.
+//! | `chart`, `curve`, `frame`, `annotations`, `inset` | charts: data, axes, legend and markers, small tubes |
+//! | `cutaway`, `colour_bar` | tubes above a colour bar |
+//! | `opening`, `surface` | surfaces of a tube cut open along its axis |
+//! | `range`, `colour`, `ticks` | colour ranges, colour maps, round numbers |
+//! | `view`, `render` | projection; rendering of surfaces in strips |
+//! | `scene`, `depth_buffer`, `resolve` | triangles; nearest triangle per sample; samples to pixels |
+//! | `light`, `interpolate`, `vec3` | illumination; its interpolation over triangles; vectors |
+//! | `label`, `text`, `glyphs` | markup of labels; their layout; glyphs of the fonts |
+//! | `canvas`, `rasterise`, `svg` | a page of primitives; its pixels; its SVG file |
+//! | `image`, `animation` | pixels and PNG files; animated PNG files |
 //!
 //! ```
-//! # use plica::draw::{Chart, Curve};
+//! # use plica_view::draw::{Chart, Curve};
 //! let chart = Chart {
 //!     x_label: "*L*_{max}/*L*".into(),
 //!     y_label: "*W*/(*E* *D*^{3})".into(),
@@ -38,66 +29,73 @@
 //! ```
 
 mod animation;
+mod annotations;
 mod canvas;
-pub mod chart;
-pub mod colour;
+mod chart;
+mod colour;
 mod colour_bar;
-pub mod cutaway;
+mod curve;
+mod cutaway;
+mod depth_buffer;
 mod frame;
-pub mod image;
-pub mod inset;
-pub mod label;
-mod letters;
+mod glyphs;
+mod image;
+mod inset;
+mod interpolate;
+pub(crate) mod label;
 mod light;
-mod lit;
-mod notes;
-mod paint;
-mod pixels;
+mod opening;
 mod range;
-pub mod raster;
-mod samples;
+mod rasterise;
+mod render;
+mod resolve;
 mod scene;
-pub mod section;
 mod surface;
+mod svg;
 mod text;
 mod ticks;
-mod vector;
+pub(crate) mod vec3;
+mod view;
 
-pub use animation::{REST, animation};
-pub use chart::{Chart, Curve, Marker, Rule, Stroke};
-pub use colour::Map;
+pub use animation::{LAST_FRAME_FACTOR, animation};
+pub use chart::Chart;
+pub use colour::{ColourMap, line_colour};
+pub use curve::{Curve, Marker, Stroke, VerticalLine};
 pub use cutaway::{Cutaway, Panel};
-pub use image::{Image, Packing};
+pub use glyphs::missing_glyphs;
+pub use image::{Compression, Image};
 pub use inset::Inset;
-pub use letters::boxes;
-pub use range::{Range, Spanned};
-pub use section::{HALF, Opening, evenly};
+pub(crate) use opening::linspace;
+pub use opening::{Opening, REAR_HALF};
+pub use range::{Range, ResolvedRange};
 pub use surface::{Sides, Surface};
-pub use ticks::short;
+pub(crate) use ticks::format_number;
 
-/// Why a picture could not be drawn.
+/// Errors of drawing.
 #[derive(Debug, thiserror::Error)]
 pub enum DrawError {
-    /// There is no finite number to draw.
-    #[error("nothing to draw: {what} holds no finite value")]
+    /// A picture without a finite number.
+    #[error("nothing to draw: the {what} has no finite value")]
     Empty {
-        /// The part of the picture that is empty.
+        /// Kind of the picture.
         what: &'static str,
     },
-    /// A surface's lists do not fill its grid.
-    #[error("surface of {columns} x {rows} needs {} points and values: got {points} and {values}", columns * rows)]
+    /// A surface with lists that do not match its grid.
+    #[error("a surface of {columns} x {rows} needs {} points and values, not {points} and {values}", columns * rows)]
     Grid {
         /// Points along a row.
         columns: usize,
         /// Number of rows.
         rows: usize,
-        /// Points given.
+        /// Length of the list of points.
         points: usize,
-        /// Values given.
+        /// Length of the list of values.
         values: usize,
     },
     /// A range that is empty, reversed or not finite.
-    #[error("range {low} to {high}: both ends must be finite, the first below the second")]
+    #[error(
+        "range {low} to {high}: both ends must be finite and the first smaller than the second"
+    )]
     Range {
         /// Lower end.
         low: f64,
@@ -106,7 +104,7 @@ pub enum DrawError {
     },
     /// A picture too small or too large to draw.
     #[error(
-        "picture of {width:.0} x {height:.0} pixels: both sides must lie between {} and {}",
+        "picture of {width:.0} x {height:.0} pixels: width and height must be between {} and {}",
         image::MIN_SIDE,
         image::MAX_SIDE
     )]
@@ -116,13 +114,13 @@ pub enum DrawError {
         /// Height in pixels.
         height: f64,
     },
-    /// More triangles than can be told apart.
-    #[error("surfaces of {triangles} triangles, more than can be told apart")]
+    /// More triangles than the renderer supports.
+    #[error("surfaces of {triangles} triangles: too many to render")]
     Triangles {
-        /// How many there are.
+        /// Number of triangles.
         triangles: usize,
     },
-    /// The drawing library refused.
+    /// An error of a drawing library.
     #[error("drawing failed: {0}")]
     Backend(String),
 }

@@ -1,60 +1,60 @@
-//! Which values the colours of a field span.
+//! Colour ranges of fields.
 
 use super::DrawError;
-use super::ticks::step;
+use super::ticks::round_step;
 
-/// Most intervals between the ticks of a colour bar.
-pub(super) const INTERVALS: usize = 6;
-/// One value in so many is left out at an end that peaks.
-const RARE: usize = 200;
-/// Values that differ by less, in themselves, are one value and rounding.
-const ALIKE: f64 = 1e-9;
+/// Maximum number of intervals between the ticks of a colour bar.
+pub(super) const MAX_INTERVALS: usize = 6;
+/// An automatic range leaves out one value in this many at an end with a peak.
+const OUTLIER_RATIO: usize = 200;
+/// Relative difference below which two values are equal up to rounding.
+const ROUNDING: f64 = 1e-9;
 
-/// Values at the two ends of the colour bar.
+/// Rule for the values at the two ends of the colour bar.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Range {
-    /// From one round number to another, leaving out half a per cent of the values at the upper end, and at the lower one of a
-    /// field that goes below zero: fields peak at folds, and one peak must not darken all the rest. From zero where that is near.
+    /// Round numbers that leave out the largest 0.5 % of the values, and the smallest 0.5 % of a field with negative values.
+    /// A local peak at a fold therefore does not determine the colours everywhere else. The range starts at zero if that is near.
     #[default]
     Automatic,
-    /// The same on both sides of zero, for fields of two signs.
-    Balanced,
-    /// From the least to the largest value.
+    /// Round numbers, symmetric about zero, for fields of two signs.
+    Symmetric,
+    /// The smallest and the largest value.
     Full,
-    /// These two.
+    /// The two given values.
     Given(f64, f64),
-    /// What was found otherwise, the field's own ends with it: of several pictures that tell the same.
-    Found(Spanned),
+    /// A range resolved before, so that several pictures share it.
+    Resolved(ResolvedRange),
 }
 
-/// What the colours of a field span, and the field's own ends.
+/// Values at the ends of the colour bar, and the extreme values of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spanned {
+pub struct ResolvedRange {
     /// Value at the lower end of the colours.
     pub low: f64,
-    /// At the upper end; above `low`.
+    /// Value at the upper end; larger than `low`.
     pub high: f64,
-    /// Least value.
-    pub least: f64,
-    /// Largest.
-    pub largest: f64,
+    /// Smallest value of the field.
+    pub min: f64,
+    /// Largest value of the field.
+    pub max: f64,
 }
 
 impl Range {
-    /// What it comes to over some values; those that are not finite count for nothing.
+    /// Applies the rule to the values of a field; values that are not finite are ignored.
     ///
     /// # Errors
-    /// [`DrawError::Empty`] without a finite value, [`DrawError::Range`] for a given range that is none.
-    pub fn of(self, values: impl Iterator<Item = f64>) -> Result<Spanned, DrawError> {
-        if let Self::Found(found) = self {
-            return Ok(found);
+    /// [`DrawError::Empty`] without a finite value, [`DrawError::Range`] for an invalid given range.
+    pub fn resolve(self, values: impl Iterator<Item = f64>) -> Result<ResolvedRange, DrawError> {
+        if let Self::Resolved(resolved) = self {
+            return Ok(resolved);
         }
         let mut finite: Vec<f64> = values.filter(|v| v.is_finite()).collect();
         let Some(last) = finite.len().checked_sub(1) else {
             return Err(DrawError::Empty { what: "field" });
         };
-        let mut at = |place: usize| *finite.select_nth_unstable_by(place, f64::total_cmp).1;
-        let (least, largest) = (at(0), at(last));
+        let mut at = |rank: usize| *finite.select_nth_unstable_by(rank, f64::total_cmp).1;
+        let (min, max) = (at(0), at(last));
         let (low, high) = match self {
             Self::Given(low, high) => {
                 if !(low.is_finite() && high.is_finite() && low < high) {
@@ -62,46 +62,50 @@ impl Range {
                 }
                 (low, high)
             }
-            Self::Full | Self::Found(_) => (least, largest),
-            Self::Balanced => {
-                let most = at(last - last / RARE).max(-at(last / RARE));
-                rounded(-most, most)
+            Self::Full | Self::Resolved(_) => (min, max),
+            Self::Symmetric => {
+                let bound = at(last - last / OUTLIER_RATIO).max(-at(last / OUTLIER_RATIO));
+                rounded(-bound, bound)
             }
             Self::Automatic => {
-                let high = at(last - last / RARE);
-                let low = if least < 0.0 { at(last / RARE) } else { least };
+                let high = at(last - last / OUTLIER_RATIO);
+                let low = if min < 0.0 {
+                    at(last / OUTLIER_RATIO)
+                } else {
+                    min
+                };
                 let near = (0.0..0.25 * high).contains(&low);
                 rounded(if near { 0.0 } else { low }, high)
             }
         };
-        // A field of one value still needs a bar, and has its lowest colour.
-        let (low, high) = if high - low > ALIKE * low.abs().max(high.abs()) {
+        // A constant field still needs a bar; it is drawn in the lowest colour.
+        let (low, high) = if high - low > ROUNDING * low.abs().max(high.abs()) {
             (low, high)
         } else {
             match low.abs() {
                 0.0 => (0.0, 1.0),
-                size => (low, low + 0.1 * size),
+                magnitude => (low, low + 0.1 * magnitude),
             }
         };
-        Ok(Spanned {
+        Ok(ResolvedRange {
             low,
             high,
-            least,
-            largest,
+            min,
+            max,
         })
     }
 }
 
-/// A range widened to whole ticks; one without length stays as it is.
+/// Widens a range to whole ticks; an empty range stays as it is.
 fn rounded(low: f64, high: f64) -> (f64, f64) {
     if high <= low {
         return (low, high);
     }
-    let round = step(low, high, INTERVALS);
-    // An end within a hair of a tick is that tick.
+    let step = round_step(low, high, MAX_INTERVALS);
+    // An end that equals a tick up to rounding stays there.
     (
-        (low / round + 1e-9).floor() * round,
-        (high / round - 1e-9).ceil() * round,
+        (low / step + 1e-9).floor() * step,
+        (high / step - 1e-9).ceil() * step,
     )
 }
 
@@ -110,7 +114,7 @@ mod tests {
     use super::*;
 
     fn automatic(values: &[f64]) -> [f64; 2] {
-        let spanned = Range::Automatic.of(values.iter().copied()).unwrap();
+        let spanned = Range::Automatic.resolve(values.iter().copied()).unwrap();
         [spanned.low, spanned.high]
     }
 
@@ -121,12 +125,12 @@ mod tests {
         assert_eq!(automatic(&values), [0.0, 1.0]);
         values.push(-100.0);
         assert_eq!(automatic(&values), [0.0, 1.0]);
-        let spanned = Range::Automatic.of(values.into_iter()).unwrap();
-        assert_eq!([spanned.least, spanned.largest], [-100.0, 100.0]);
+        let spanned = Range::Automatic.resolve(values.into_iter()).unwrap();
+        assert_eq!([spanned.min, spanned.max], [-100.0, 100.0]);
     }
 
     #[test]
-    fn what_is_never_near_zero_does_not_begin_there() {
+    fn an_automatic_range_starts_at_zero_only_if_near() {
         let [low, high] = automatic(&[0.92, 0.95, 0.992]);
         assert!((low - 0.92).abs() < 1e-12 && (high - 1.0).abs() < 1e-12);
         assert_eq!(automatic(&[0.1, 0.7, 1.0]), [0.0, 1.0]);
@@ -134,17 +138,19 @@ mod tests {
     }
 
     #[test]
-    fn a_field_of_two_signs_has_zero_in_the_middle() {
-        let spanned = Range::Balanced.of([-0.3, 0.1, 1.0].into_iter()).unwrap();
+    fn a_symmetric_range_has_zero_in_the_middle() {
+        let spanned = Range::Symmetric
+            .resolve([-0.3, 0.1, 1.0].into_iter())
+            .unwrap();
         assert_eq!([spanned.low, spanned.high], [-1.0, 1.0]);
     }
 
     #[test]
-    fn one_value_has_colours_beside_it_and_none_has_none() {
+    fn a_constant_field_has_a_range_and_an_empty_one_has_none() {
         let [low, high] = automatic(&[3.0, 3.0 + 1e-15, f64::NAN]);
         assert!(low == 3.0 && high > 3.0);
         assert_eq!(automatic(&[0.0; 4]), [0.0, 1.0]);
-        assert!(Range::Full.of([f64::NAN].into_iter()).is_err());
-        assert!(Range::Given(1.0, 0.0).of([0.5].into_iter()).is_err());
+        assert!(Range::Full.resolve([f64::NAN].into_iter()).is_err());
+        assert!(Range::Given(1.0, 0.0).resolve([0.5].into_iter()).is_err());
     }
 }

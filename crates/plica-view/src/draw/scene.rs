@@ -1,48 +1,51 @@
-//! Surfaces as a page shows them: triangles, and how their corners are lit.
+//! Projection of surfaces onto the page: triangles and the illumination of their corners.
 
-use super::light::{Lamp, Shader, dot};
-use super::raster::View;
+use super::light::{Lamp, Shader};
+use super::vec3::dot;
+use super::view::View;
 use super::{DrawError, Sides, Surface};
 
-/// All triangles by their corners.
+/// All triangles of a picture.
 #[derive(Default)]
 pub(super) struct Scene {
     pub corners: Vec<Corner>,
     pub triangles: Vec<Triangle>,
-    /// Of the name of a triangle, the bits that count triangles.
-    bits: u32,
+    /// Number of low bits of an identifier that hold the index of the triangle.
+    index_bits: u32,
 }
 
 /// A triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Triangle {
     pub corners: [u32; 3],
-    /// Which surface it is of, counted from one.
+    /// Number of the surface, starting from one.
     surface: u32,
 }
 
 /// A corner of a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
-    /// Place on the page and depth towards the viewer, in samples.
-    pub place: [f64; 3],
-    /// Which shade it has.
+    /// Position on the page and depth towards the viewer, in samples.
+    pub position: [f64; 3],
+    /// Shade of the field value.
     pub shade: f32,
-    /// How it is lit where the viewer sees the side that its normal points to, and where the other.
-    pub lit: [[f32; 2]; 2],
+    /// Diffuse and specular intensity of the front side and of the back side.
+    pub intensity: [[f32; 2]; 2],
 }
 
 impl Scene {
+    /// Projects surfaces onto the page; `samples` is the number of samples along each side of a pixel.
+    ///
     /// # Errors
-    /// [`DrawError::Grid`] for a surface whose lists do not fill its grid, [`DrawError::Triangles`] for more than can be told apart.
-    pub fn of(
+    /// [`DrawError::Grid`] for lists that do not match the grid, [`DrawError::Triangles`] for more triangles than identifiers.
+    pub fn new(
         surfaces: &[Surface],
         view: &View,
         samples: usize,
         shader: &Shader,
     ) -> Result<Self, DrawError> {
         let mut scene = Self {
-            bits: u32::BITS - (surfaces.len() + 1).ilog2() - 1,
+            index_bits: u32::BITS - (surfaces.len() + 1).ilog2() - 1,
             ..Self::default()
         };
         let mut triangles = 0usize;
@@ -50,7 +53,7 @@ impl Scene {
             surface.check()?;
             triangles = triangles.saturating_add(surface.points.len().saturating_mul(2));
         }
-        if triangles >> scene.bits != 0 {
+        if triangles >> scene.index_bits != 0 {
             return Err(DrawError::Triangles { triangles });
         }
         let scale = view.scale * samples as f64;
@@ -66,9 +69,9 @@ impl Scene {
                 let down = (view.corner.1 - dot(p, view.up)) * scale;
                 let normal = [view.right, view.up, view.toward].map(|axis| dot(n, axis));
                 Corner {
-                    place: [across, down, dot(p, view.toward) * scale],
+                    position: [across, down, dot(p, view.toward) * scale],
                     shade: shader.shade(value),
-                    lit: [lamp.on(normal), lamp.on(normal.map(|c| -c))],
+                    intensity: [lamp.intensity(normal), lamp.intensity(normal.map(|c| -c))],
                 }
             });
             scene.corners.extend(corners);
@@ -78,10 +81,10 @@ impl Scene {
                     let (a, b, c) = (d - surface.columns - 1, d - surface.columns, d - 1);
                     for corners in [[a, b, d], [a, d, c]] {
                         let corners = corners.map(|corner| corner as u32);
-                        let area = double_area(scene.places(corners));
+                        let area = double_area(scene.positions(corners));
                         let is_hidden = match surface.sides {
                             Sides::Both => false,
-                            // Corners go around the normal; on the page, whose rows run down, against the clock.
+                            // Seen against the normal, the corners are in counter-clockwise order; the rows of the page run downwards.
                             Sides::Front => area > 0.0,
                             Sides::Back => area < 0.0,
                         };
@@ -96,33 +99,33 @@ impl Scene {
         Ok(scene)
     }
 
-    /// The name of a triangle by its number, from which that and its surface can be read; never 0, which is for none.
+    /// Returns the identifier of a triangle, which contains its index and its surface. It is never 0.
     #[inline(always)]
-    pub fn name(&self, number: u32) -> u32 {
-        self.triangles[number as usize].surface << self.bits | number
+    pub fn id(&self, index: u32) -> u32 {
+        self.triangles[index as usize].surface << self.index_bits | index
     }
 
-    /// Which surface a triangle is of by its name, counted from one; 0 for none.
+    /// Returns the number of the surface of a triangle, starting from one; 0 for id 0.
     #[inline(always)]
-    pub fn surface(&self, name: u32) -> u32 {
-        name >> self.bits
+    pub fn surface(&self, id: u32) -> u32 {
+        id >> self.index_bits
     }
 
-    /// The corners of a triangle by its name.
+    /// Returns the corners of a triangle.
     #[inline(always)]
-    pub fn corners(&self, name: u32) -> [&Corner; 3] {
-        let number = name & ((1 << self.bits) - 1);
-        let Triangle { corners, .. } = self.triangles[number as usize];
+    pub fn corners(&self, id: u32) -> [&Corner; 3] {
+        let index = id & ((1 << self.index_bits) - 1);
+        let Triangle { corners, .. } = self.triangles[index as usize];
         corners.map(|corner| &self.corners[corner as usize])
     }
 
-    /// Where corners lie.
-    pub fn places(&self, corners: [u32; 3]) -> [[f64; 3]; 3] {
-        corners.map(|corner| self.corners[corner as usize].place)
+    /// Returns the positions of corners.
+    pub fn positions(&self, corners: [u32; 3]) -> [[f64; 3]; 3] {
+        corners.map(|corner| self.corners[corner as usize].position)
     }
 }
 
-/// Twice the area of a triangle on the page, positive if its corners go around clockwise as the viewer sees it.
+/// Returns twice the area of a triangle on the page, positive if the viewer sees its corners in clockwise order.
 #[inline]
 pub(super) fn double_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
@@ -131,10 +134,10 @@ pub(super) fn double_area([a, b, c]: [[f64; 3]; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::Map;
+    use crate::draw::ColourMap;
 
     #[test]
-    fn names_tell_triangles_and_surfaces_apart() {
+    fn identifiers_contain_triangle_and_surface() {
         let square = Surface {
             columns: 2,
             rows: 2,
@@ -150,24 +153,24 @@ mod tests {
             scale: 1.0,
             size: (16, 16),
         };
-        let shader = Shader::new((0.0, 1.0), Map::Viridis);
+        let shader = Shader::new((0.0, 1.0), ColourMap::Viridis);
         for count in [0, 1, 3, 6, 7, 8, 12] {
-            let scene = Scene::of(&vec![square.clone(); count], &view, 2, &shader).unwrap();
+            let scene = Scene::new(&vec![square.clone(); count], &view, 2, &shader).unwrap();
             assert_eq!(scene.triangles.len(), 2 * count);
             assert_eq!(scene.surface(0), 0);
             for number in 0..2 * count as u32 {
-                let name = scene.name(number);
-                assert_eq!(scene.surface(name), number / 2 + 1);
-                let places = scene.corners(name).map(|corner| corner.place);
+                let id = scene.id(number);
+                assert_eq!(scene.surface(id), number / 2 + 1);
+                let positions = scene.corners(id).map(|corner| corner.position);
                 let own = scene.triangles[number as usize].corners;
-                assert_eq!(places, scene.places(own));
+                assert_eq!(positions, scene.positions(own));
             }
         }
-        let nothing = Surface {
+        let empty = Surface {
             rows: usize::MAX,
             ..Surface::default()
         };
-        let scene = Scene::of(&[nothing], &view, 2, &shader).unwrap();
+        let scene = Scene::new(&[empty], &view, 2, &shader).unwrap();
         assert!(scene.triangles.is_empty());
     }
 }

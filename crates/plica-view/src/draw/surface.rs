@@ -1,50 +1,49 @@
-//! Surfaces that carry a field.
+//! Surfaces with a field.
 
 use super::DrawError;
-use super::light::{cross, minus, unit};
+use super::vec3::{cross, minus, unit};
 
-/// A structured grid of quadrilaterals that carries a field.
+/// A structured grid of quadrilaterals with the values of a field.
 #[derive(Clone, Debug, Default)]
 pub struct Surface {
     /// Points along a row.
     pub columns: usize,
     /// Number of rows.
     pub rows: usize,
-    /// `rows * columns` points, row after row, in units of D; a triangle with a point that is
-    /// not finite is left out.
+    /// `rows * columns` points, row by row, in units of D. Triangles with a point that is not finite are left out.
     pub points: Vec<[f64; 3]>,
-    /// The field at the points; NaN is drawn grey.
+    /// Field values at the points; NaN is drawn grey.
     pub values: Vec<f64>,
-    /// What of it can be seen.
+    /// Visible sides.
     pub sides: Sides,
 }
 
-/// The sides of a surface that can be seen; its normal points along its rows × from row to row.
+/// Visible sides of a surface. The normal is the cross product of the direction along a row and that from row to row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sides {
-    /// Either.
+    /// Both sides.
     #[default]
     Both,
-    /// The one that the normal points to: the other is turned into a body.
+    /// The side that the normal points to; the other one is inside a body.
     Front,
-    /// The other one.
+    /// The side opposite to the normal.
     Back,
 }
 
 impl Surface {
-    /// Whether the lists fill the grid.
+    /// Checks the lengths of the lists.
     ///
     /// # Errors
-    /// [`DrawError::Grid`] if they do not.
-    pub fn check(&self) -> Result<(), DrawError> {
+    /// [`DrawError::Grid`] if they do not match the grid.
+    pub(super) fn check(&self) -> Result<(), DrawError> {
         let Surface { columns, rows, .. } = *self;
         let (points, values) = (self.points.len(), self.values.len());
-        let wanted = columns.checked_mul(rows);
-        if wanted == Some(points) && wanted == Some(values) {
+        let expected = columns.checked_mul(rows);
+        if expected == Some(points) && expected == Some(values) {
             return Ok(());
         }
-        // A product past usize fits no list: report it as the grid it is, without overflowing the message.
-        let (columns, rows) = if wanted.is_some() {
+        // Report zero if the product overflows, because the message multiplies again.
+        let (columns, rows) = if expected.is_some() {
             (columns, rows)
         } else {
             (0, 0)
@@ -57,7 +56,7 @@ impl Surface {
         })
     }
 
-    /// Unit normals at the points from differences along the grid; zero where the grid is degenerate.
+    /// Returns unit normals at the points, computed by differences along the grid; zero where the grid is degenerate.
     pub(super) fn normals(&self) -> Vec<[f64; 3]> {
         let (m, n) = (self.columns, self.rows);
         let at = |row: usize, column: usize| self.points[row * m + column];

@@ -1,62 +1,68 @@
-//! Lines of text: a label's runs set after each other.
+//! Layout of a label on one line.
 
-use super::label::{Piece, pieces};
-use super::letters::Letters;
+use super::glyphs::GlyphRun;
+use super::label::{Fragment, parse};
 
-/// Height of a capital letter, in text sizes.
-pub(super) const CAPITAL: f64 = 0.73;
+/// Font size of titles, in points.
+pub(super) const TITLE_SIZE: f64 = 9.0;
+/// Font size of all other text, in points.
+pub(super) const TEXT_SIZE: f64 = 8.0;
+/// Height of a row of text, in points.
+pub(super) const ROW_HEIGHT: f64 = 12.0;
+/// Height of a capital letter divided by the font size.
+pub(super) const CAP_HEIGHT: f64 = 0.73;
 
-/// A run of a line; lengths in points.
+/// Part of a line in one style; lengths in points.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     pub text: String,
     pub italic: bool,
-    pub letters: Letters,
-    /// Size of its letters.
+    pub glyphs: GlyphRun,
+    /// Font size.
     pub size: f64,
-    /// How far it starts from the start of the line, and below its baseline.
+    /// Offset from the start of the line, to the right and downwards.
     pub at: (f64, f64),
 }
 
 impl Run {
     pub fn width(&self) -> f64 {
-        self.letters.width * self.size
+        self.glyphs.width * self.size
     }
 }
 
-/// A label set in a size in points: its runs, and its width.
-pub(super) fn line(label: &str, size: f64) -> (Vec<Run>, f64) {
+/// Lays out a label in a font size; returns its runs and its width in points.
+pub(super) fn layout(label: &str, size: f64) -> (Vec<Run>, f64) {
     let mut width = 0.0;
-    let mut run = |piece: Piece| {
-        let letters = Letters::set(&piece.text, piece.italic);
+    let mut run = |fragment: Fragment| {
+        let glyphs = GlyphRun::shape(&fragment.text, fragment.italic);
         let run = Run {
-            letters,
-            size: size * piece.level.size(),
-            at: (width, size * piece.level.drop()),
-            text: piece.text,
-            italic: piece.italic,
+            glyphs,
+            size: size * fragment.level.size(),
+            at: (width, size * fragment.level.offset()),
+            text: fragment.text,
+            italic: fragment.italic,
         };
         width += run.width();
         run
     };
-    let runs = pieces(label).into_iter().map(&mut run).collect();
+    let runs = parse(label).into_iter().map(&mut run).collect();
     (runs, width)
 }
 
-/// Width of a label in points.
+/// Returns the width of a label in points.
 pub(super) fn text_width(label: &str, size: f64) -> f64 {
-    line(label, size).1
+    layout(label, size).1
 }
 
-/// A label, or as much of its beginning as fits into a width, in points.
-pub(super) fn fitting(label: &str, size: f64, width: f64) -> String {
+/// Returns a label, shortened with an ellipsis if it is wider than `width` points.
+pub(super) fn truncated(label: &str, size: f64, width: f64) -> String {
     if text_width(label, size) <= width {
         return label.to_owned();
     }
-    let letters: Vec<char> = label.chars().collect();
-    let cut = |count: usize| letters[..count].iter().collect::<String>() + "…";
+    let characters: Vec<char> = label.chars().collect();
+    let cut = |count: usize| characters[..count].iter().collect::<String>() + "…";
     let fits = |count: &usize| text_width(&cut(*count), size) <= width;
-    let counts: Vec<usize> = (0..letters.len()).collect();
+    let counts: Vec<usize> = (0..characters.len()).collect();
     cut(counts.partition_point(fits).saturating_sub(1))
 }
 
@@ -65,14 +71,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_label_is_cut_where_it_fits() {
-        assert_eq!(fitting("short", 10.0, 90.0), "short");
+    fn a_long_label_is_truncated_to_the_width() {
+        assert_eq!(truncated("short", 10.0, 90.0), "short");
         let long = "a title that goes on and on, and on";
-        let cut = fitting(long, 10.0, 90.0);
+        let cut = truncated(long, 10.0, 90.0);
         assert!(cut.ends_with('…') && long.starts_with(cut.trim_end_matches('…')));
         let width = text_width(&cut, 10.0);
         assert!((75.0..=90.0).contains(&width), "{width}");
-        assert_eq!(fitting(long, 10.0, 0.0), "…");
+        assert_eq!(truncated(long, 10.0, 0.0), "…");
     }
 
     #[test]
@@ -80,7 +86,7 @@ mod tests {
         let width = |label| text_width(label, 10.0);
         assert!((width("a b") - width("a") - width("b") - width(" ")).abs() < 0.5);
         assert!(width("x_{max}") < width("xmax"));
-        let (runs, width) = line("*L*_{max}/*L*", 10.0);
+        let (runs, width) = layout("*L*_{max}/*L*", 10.0);
         assert_eq!(runs.len(), 4);
         for pair in runs.windows(2) {
             assert!((pair[0].at.0 + pair[0].width() - pair[1].at.0).abs() < 1e-12);

@@ -1,18 +1,18 @@
 //! Round numbers for axes.
 
-/// Ticks at whole multiples of 1, 2, 2.5 or 5 times a power of ten.
+/// Ticks at integer multiples of 1, 2, 2.5 or 5 times a power of ten.
 #[derive(Clone, Debug)]
 pub(super) struct Ticks {
-    /// Where the ticks stand, in data units.
+    /// Positions of the ticks in data units.
     pub at: Vec<f64>,
-    /// What they say, in units of 10^`exponent`.
+    /// Labels in units of 10^`exponent`.
     pub labels: Vec<String>,
-    /// The common power of ten; 0 for numbers that read well as they are.
+    /// Common power of ten of the labels; 0 for numbers of ordinary size.
     pub exponent: i32,
 }
 
-/// The smallest round step that puts at most `most` intervals between `low` and `high`.
-pub(super) fn step(low: f64, high: f64, most: usize) -> f64 {
+/// Returns the smallest round step that gives at most `most` intervals between `low` and `high`.
+pub(super) fn round_step(low: f64, high: f64, most: usize) -> f64 {
     let raw = (high - low) / most.max(1) as f64;
     let ten = 10f64.powf(raw.log10().floor());
     let round = [1.0, 2.0, 2.5, 5.0, 10.0];
@@ -22,9 +22,9 @@ pub(super) fn step(low: f64, high: f64, most: usize) -> f64 {
         .unwrap_or(10.0)
 }
 
-/// Ticks for a finite range with `low < high`.
+/// Returns the ticks of a finite range with `low < high`, with at most `most` intervals.
 pub(super) fn ticks(low: f64, high: f64, most: usize) -> Ticks {
-    let step = step(low, high, most);
+    let step = round_step(low, high, most);
     let first = (low / step - 1e-6).ceil() as i64;
     let last = (high / step + 1e-6).floor() as i64;
     let at: Vec<f64> = (first..=last).map(|i| i as f64 * step).collect();
@@ -44,7 +44,7 @@ pub(super) fn ticks(low: f64, high: f64, most: usize) -> Ticks {
     }
 }
 
-/// `value` with a true minus sign.
+/// Formats a value with a typographic minus sign.
 fn number(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.abs());
     let is_zero = text.chars().all(|c| c == '0' || c == '.');
@@ -55,8 +55,8 @@ fn number(value: f64, decimals: usize) -> String {
     }
 }
 
-/// `value` with about `digits` digits, as `0.031` or `3.1×10^{−5}`.
-pub fn short(value: f64, digits: usize) -> String {
+/// Formats a value with about `digits` significant digits, as `0.031` or `3.1×10^{−5}`.
+pub(crate) fn format_number(value: f64, digits: usize) -> String {
     let power = if value == 0.0 {
         0
     } else {
@@ -69,7 +69,7 @@ pub fn short(value: f64, digits: usize) -> String {
     format!("{mantissa}×{}", power_of_ten(power))
 }
 
-/// `10^{−3}` in the markup of [`super::label`].
+/// Returns a power of ten in label markup, such as `10^{−3}`.
 pub(super) fn power_of_ten(exponent: i32) -> String {
     format!("10^{{{}}}", number(f64::from(exponent), 0))
 }
@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_are_round_and_inside() {
+    fn ticks_are_round_and_within_the_range() {
         let energy = ticks(0.0, 3.1e-3, 7);
         assert_eq!(energy.exponent, -3);
         assert_eq!(
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn ticks_that_differ_little_do_not_look_alike() {
+    fn close_ticks_have_different_labels() {
         let near_one = ticks(1.0 - 1e-7, 1.0, 5);
         let mut labels = near_one.labels.clone();
         labels.dedup();
@@ -108,9 +108,9 @@ mod tests {
     }
 
     #[test]
-    fn short_numbers() {
-        assert_eq!(short(0.0312, 2), "0.031");
-        assert_eq!(short(-3.14e-5, 2), "−3.1×10^{−5}");
-        assert_eq!(short(0.0, 2), "0.0");
+    fn numbers_are_formatted_with_few_digits() {
+        assert_eq!(format_number(0.0312, 2), "0.031");
+        assert_eq!(format_number(-3.14e-5, 2), "−3.1×10^{−5}");
+        assert_eq!(format_number(0.0, 2), "0.0");
     }
 }

@@ -23,8 +23,8 @@ mod stability;
 mod stops;
 mod words;
 
-use crate::draw::Map;
-use crate::draw::colour::line_colour;
+use crate::draw::ColourMap;
+use crate::draw::line_colour;
 use crate::report::{Column, upright};
 use known::Known;
 use minijinja::value::{Serde, Value};
@@ -130,7 +130,7 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
     }
     let loads: Vec<Vec<Parts>> = runs.iter().map(Run::loads).collect();
     let (leader, stops) = stops::stops(&loads);
-    let colours = |map: Map| {
+    let colours = |map: ColourMap| {
         let colour = |i: usize| map.colour(i as f64 / (COLOURS - 1) as f64);
         (0..COLOURS).map(colour).collect::<Vec<_>>()
     };
@@ -140,8 +140,8 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
         "leader": leader,
         "stops": stops,
         "steps": scene::STEPS,
-        "colours": colours(Map::default()),
-        "signed": colours(Map::Signed),
+        "colours": colours(ColourMap::default()),
+        "signed": colours(ColourMap::Diverging),
         "lines": lines,
     });
     let mut templates = Environment::new();

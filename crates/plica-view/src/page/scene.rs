@@ -1,6 +1,6 @@
 //! The walls of a path as numbers that a browser draws: sampled, quantised, packed.
 
-use crate::draw::Map;
+use crate::draw::ColourMap;
 use crate::report::Field;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -149,14 +149,14 @@ impl Scene {
         let fields = Field::ALL.iter().zip(labels).enumerate();
         let colouring = fields.map(|(i, (field, (label, _)))| {
             let values = walls.iter().flat_map(|wall| &wall.values[i]).copied();
-            let spanned = field.range().of(values).ok();
+            let spanned = field.range().resolve(values).ok();
             Colouring {
                 name: field.name(),
                 label: crate::draw::label::plain(&label),
-                signed: field.map() == Map::Signed,
+                signed: field.map() == ColourMap::Diverging,
                 range: spanned.map_or([0.0, 1.0], |field| [field.low, field.high]),
-                least: spanned.map_or(0.0, |field| field.least),
-                largest: spanned.map_or(1.0, |field| field.largest),
+                least: spanned.map_or(0.0, |field| field.min),
+                largest: spanned.map_or(1.0, |field| field.max),
                 ends: walls
                     .iter()
                     .map(|wall| ends(wall.values[i].iter()))

@@ -1,6 +1,6 @@
 //! Fields that a picture may be coloured by.
 
-use crate::draw::{Map, Range};
+use crate::draw::{ColourMap, Range};
 use plica::assembly::Sample;
 use plica::study::{Plan, Scale};
 
@@ -63,17 +63,17 @@ impl Field {
     }
 
     /// Its colours: those of two signs where the sign says what it is.
-    pub fn map(self) -> Map {
+    pub fn map(self) -> ColourMap {
         match self {
-            Self::Pressure => Map::Signed,
-            _ => Map::default(),
+            Self::Pressure => ColourMap::Diverging,
+            _ => ColourMap::default(),
         }
     }
 
     /// What its colours span where nothing else is asked for.
     pub fn range(self) -> Range {
         match self.map() {
-            Map::Signed => Range::Balanced,
+            ColourMap::Diverging => Range::Symmetric,
             _ => Range::Automatic,
         }
     }

@@ -1,7 +1,7 @@
 //! The pictures of the lowest modes of a three-dimensional run.
 
 use crate::draw::{
-    Chart, Curve, Cutaway, DrawError, HALF, Map, Opening, Panel, Range, Stroke, Surface,
+    Chart, ColourMap, Curve, Cutaway, DrawError, Opening, Panel, REAR_HALF, Range, Stroke, Surface,
 };
 use plica::assembly::{Point, SplineTube};
 use plica::stability::{Eigenvalue, Shown, Spectra, Spectrum};
@@ -41,7 +41,7 @@ fn eigenvalues(states: &[Spectrum]) -> Chart {
     let (first, last) = (x(&states[0]), x(&states[states.len() - 1]));
     let mut curves = vec![Curve {
         points: vec![(first, 0.0), (last, 0.0)],
-        stroke: Stroke::Fine,
+        stroke: Stroke::Thin,
         ..Curve::default()
     }];
     let count = states.iter().map(|state| state.lowest.len()).max();
@@ -94,7 +94,7 @@ fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
             .collect(),
         value_label: "radial displacement of the mode".into(),
         range: Range::Given(-1.0, 1.0),
-        map: Map::Signed,
+        map: ColourMap::Diverging,
         ..Cutaway::default()
     }
 }
@@ -103,7 +103,7 @@ fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
 /// radial displacement in units of its largest displacement.
 fn surfaces(tube: &SplineTube, shown: &Shown, shape: Option<&Vec<f64>>) -> Vec<Surface> {
     let along = tube.axial.elements();
-    let opening = Opening::evenly(HALF, [2 * along + 1, 97, 9]);
+    let opening = Opening::uniform(REAR_HALF, [2 * along + 1, 97, 9]);
     let moved = |u: &[f64], at: Point| {
         let sample = tube.sample(&shown.state.load, u, at);
         let displacement = [0, 1, 2].map(|i| sample.position[i] - sample.reference[i]);

@@ -2,7 +2,7 @@
 
 use super::Field;
 use super::tolerance::{Meshed, Seen, Tolerance};
-use crate::draw::{Cutaway, DrawError, HALF, Opening, Range, Surface};
+use crate::draw::{Cutaway, DrawError, Opening, REAR_HALF, Range, Surface};
 use plica::assembly::{Point, SplineTube};
 use plica::tube::Load;
 use std::cell::RefCell;
@@ -46,7 +46,7 @@ impl Look {
         let elements = tube.axial.elements();
         let along = elements * ALONG.div_ceil(elements.max(1)).max(2);
         Self {
-            kept: HALF,
+            kept: REAR_HALF,
             points: Points::Evenly([along + 1, 97, 13]),
             field: Field::EnergyDensity,
             factor: 1.0,
@@ -78,13 +78,13 @@ impl Look {
     /// # Errors
     /// As [`Cutaway::png`].
     pub fn fine(mut self, coarse: &Cutaway, width: usize) -> Result<(Self, Range), DrawError> {
-        let spanned = coarse.spanned()?;
+        let spanned = coarse.colour_range()?;
         self.points = Points::Within(Tolerance {
             place: PIXELS / coarse.pixels_per_unit(width)?,
             value: COLOURS,
             colours: (spanned.low, spanned.high),
         });
-        Ok((self, Range::Found(spanned)))
+        Ok((self, Range::Resolved(spanned)))
     }
 
     /// What [`Look::cut`] takes away; none if that is nothing.
@@ -135,7 +135,7 @@ pub fn looked_at(
         ([x * cos - y * sin, x * sin + y * cos, z], value)
     };
     let opening = match look.points {
-        Points::Evenly(points) => Opening::evenly(look.kept, points),
+        Points::Evenly(points) => Opening::uniform(look.kept, points),
         Points::Within(tolerance) => {
             let meshed = Meshed {
                 elements: [elements, tube.wall.elements()],

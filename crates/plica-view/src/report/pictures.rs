@@ -5,7 +5,7 @@ use super::opened::{Look, looked_at};
 use super::upright::upright;
 use super::walls::{Wall, walls};
 use super::{Field, Story};
-use crate::draw::{Chart, Curve, Cutaway, DrawError, Marker, Packing, Panel, Rule};
+use crate::draw::{Chart, Compression, Curve, Cutaway, DrawError, Marker, Panel, VerticalLine};
 use plica::assembly::SplineTube;
 use plica::study::{Plan, Row, Scale, Snapshot, Summary};
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     }
     // The tube takes longest: whoever is done with the plots helps.
     let (tube, plots) = rayon::join(
-        || cutaway(plan, &tube, &chosen, upwards)?.packed(WIDTH, Packing::Fast),
+        || cutaway(plan, &tube, &chosen, upwards)?.png_with(WIDTH, Compression::Fast),
         || Ok([energy()?, walls(plan, &tube, &chosen).png(WIDTH)?]),
     );
     let [energy, walls] = plots?;
@@ -68,7 +68,7 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
     let minimum = summary.findings().energy_minimum().filter(within);
     let rule = |shape: &str, label: &str| {
         let row = story.rows.iter().find(|row| row.shape == shape)?;
-        Some(Rule {
+        Some(VerticalLine {
             at: x(row),
             label: label.to_owned(),
         })
@@ -90,7 +90,7 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
             })
             .into_iter()
             .collect(),
-        rules: rule("square", "square")
+        vertical_lines: rule("square", "square")
             .into_iter()
             .chain(rule("invaginated", "overhang"))
             .collect(),
@@ -118,7 +118,7 @@ fn cutaway(
     let picture = Cutaway {
         title: plan.title.clone(),
         value_label,
-        bar: bar(&Scale::of(plan.units.as_ref())),
+        scale_bar: bar(&Scale::of(plan.units.as_ref())),
         ..Cutaway::default()
     };
     let seen = |look: &Look| Cutaway {

@@ -2,7 +2,7 @@
 
 use super::walls::{Wall, walls};
 use super::{Column, Shown};
-use crate::draw::{Chart, Curve, Rule};
+use crate::draw::{Chart, Curve, VerticalLine};
 use plica::assembly::SplineTube;
 use plica::study::{Plan, Row, Scale};
 
@@ -25,7 +25,7 @@ pub fn plot(plan: &Plan, rows: &[Row], name: &str, along: Option<&str>) -> Optio
     let stages = rows
         .windows(2)
         .filter(|pair| pair[0].stage != pair[1].stage && pair[0].step > 0);
-    let rules = stages.map(|pair| Rule {
+    let vertical_lines = stages.map(|pair| VerticalLine {
         at: pair[0].step as f64,
         label: pair[1].stage.clone(),
     });
@@ -40,7 +40,7 @@ pub fn plot(plan: &Plan, rows: &[Row], name: &str, along: Option<&str>) -> Optio
             colour: 1,
             ..Curve::default()
         }],
-        rules: rules
+        vertical_lines: vertical_lines
             .take(if along.is_none() { usize::MAX } else { 0 })
             .collect(),
         ..Chart::default()

@@ -1,8 +1,8 @@
 //! The pictures of a test of stability.
 
 use crate::draw::{
-    Chart, Curve, Cutaway, DrawError, HALF, Image, Map, Marker, Opening, Packing, Panel, Range,
-    Rule, Stroke, Surface,
+    Chart, ColourMap, Compression, Curve, Cutaway, DrawError, Image, Marker, Opening, Panel,
+    REAR_HALF, Range, Stroke, Surface, VerticalLine,
 };
 use plica::assembly::{Point, SplineTube};
 use plica::stability::{Change, How, Mode, Quantity, Stability, Station};
@@ -59,7 +59,7 @@ fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
         .into_iter()
         .map(image)
         .collect::<Result<Vec<_>, _>>()?;
-    Image::stacked(&images)?.to_png(COLUMN * 25.4 / 72.0, Packing::Plain)
+    Image::stacked(&images)?.to_png(COLUMN * 25.4 / 72.0, Compression::LineArt)
 }
 
 /// The lowest eigenvalue of each harmonic along a stage.
@@ -80,7 +80,7 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
     let ends = [x(begin).min(x(end)), x(begin).max(x(end))];
     let mut curves = vec![Curve {
         points: ends.map(|x| (x, 0.0)).to_vec(),
-        stroke: Stroke::Fine,
+        stroke: Stroke::Thin,
         ..Curve::default()
     }];
     let (mut low, mut high) = (0.0_f64, 1.0_f64);
@@ -128,9 +128,9 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
                 colour: change.harmonic + 1,
             })
             .collect(),
-        rules: marked
+        vertical_lines: marked
             .iter()
-            .map(|change| Rule {
+            .map(|change| VerticalLine {
                 at: change.critical,
                 label: change.quantity.written(change.critical, 4),
             })
@@ -187,8 +187,8 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
     };
     let along = 2 * tube.axial.elements() + 1;
     let (half, closed) = (
-        Opening::evenly(HALF, [along, 121, 9]),
-        Opening::evenly((0.0, std::f64::consts::TAU), [along, 241, 5]),
+        Opening::uniform(REAR_HALF, [along, 121, 9]),
+        Opening::uniform((0.0, std::f64::consts::TAU), [along, 241, 5]),
     );
     let cutaway = Cutaway {
         title: plan.title.clone(),
@@ -203,12 +203,12 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
         ],
         value_label: "radial displacement of the mode".into(),
         range: Range::Given(-1.0, 1.0),
-        map: Map::Signed,
+        map: ColourMap::Diverging,
         width_pt: PAGE,
         ..Cutaway::default()
     };
     let images = [cutaway.image(WIDTH)?, meridian.amplitudes().image(WIDTH)?];
-    Image::stacked(&images)?.to_png(PAGE * 25.4 / 72.0, Packing::Small)
+    Image::stacked(&images)?.to_png(PAGE * 25.4 / 72.0, Compression::Small)
 }
 
 /// A state and its mode along one meridian, from which the others follow.

@@ -6,7 +6,7 @@ use super::opened::{ALONG, Look, looked_at};
 use super::pictures::energy_label;
 use super::upright::upright;
 use crate::draw::{
-    Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Rule, Surface, animation,
+    Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Surface, VerticalLine, animation,
 };
 use plica::assembly::SplineTube;
 use plica::study::{Plan, Row, SavedState, Scale};
@@ -93,7 +93,7 @@ pub fn animate(
         let state = coarse(&tube, plan, std::slice::from_ref(shown), upwards, look);
         let surfaces = state.panels.iter().flat_map(|panel| &panel.surfaces);
         let values: Vec<f64> = surfaces.flat_map(|s| &s.values).copied().collect();
-        Ok((state.room()?, values))
+        Ok((state.bounding_box()?, values))
     });
     let looked: Result<Vec<_>, DrawError> = looked.collect();
     let (rooms, values): (Vec<_>, Vec<_>) = looked?.into_iter().unzip();
@@ -106,7 +106,7 @@ pub fn animate(
         ..Panel::default()
     };
     let coarse = Cutaway {
-        room: rooms.concat(),
+        bounds: rooms.concat(),
         ..picture(plan, vec![seen], look)
     };
     let (finest, range) = look_of(&tube, plan, look).fine(&coarse, look.width)?;
@@ -117,7 +117,7 @@ pub fn animate(
         }
         let panel = panel(&tube, shown, upwards, &finest, look);
         let tube = Cutaway {
-            room: coarse.room.clone(),
+            bounds: coarse.bounds.clone(),
             range,
             ..picture(plan, vec![panel], look)
         };
@@ -178,7 +178,7 @@ fn panel(
     Panel {
         label: label(row),
         surfaces: surfaces(look),
-        glass: glass.map(|look| surfaces(&look)).unwrap_or_default(),
+        translucent: glass.map(|look| surfaces(&look)).unwrap_or_default(),
     }
 }
 
@@ -187,7 +187,7 @@ fn picture(plan: &Plan, panels: Vec<Panel>, look: &Appearance) -> Cutaway {
         title: plan.title.clone(),
         panels,
         value_label: look.field.label(plan).0,
-        bar: bar(&scale(plan)),
+        scale_bar: bar(&scale(plan)),
         toward: look.toward,
         range: range(look),
         map: look.field.map(),
@@ -216,7 +216,7 @@ fn energy(plan: &Plan, rows: &[Row], at: &Row) -> Chart {
     let begin = rows
         .windows(2)
         .filter(|pair| pair[0].stage != pair[1].stage);
-    let rules = begin.map(|pair| Rule {
+    let vertical_lines = begin.map(|pair| VerticalLine {
         at: pair[0].step as f64,
         label: pair[1].stage.clone(),
     });
@@ -234,7 +234,7 @@ fn energy(plan: &Plan, rows: &[Row], at: &Row) -> Chart {
             label: String::new(),
             colour: 2,
         }],
-        rules: rules.collect(),
+        vertical_lines: vertical_lines.collect(),
         y_range: (highest > 0.0).then_some((0.0, 1.1 * highest)),
         proportion: 0.3,
         width_pt: Cutaway::default().width_pt,

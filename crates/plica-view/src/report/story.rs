@@ -1,7 +1,7 @@
 //! Which states tell the story of a path, and against what it is plotted.
 
 use super::columns::unit;
-use crate::draw::short;
+use crate::draw::format_number;
 use plica::study::{Row, Scale, Summary};
 
 /// What changes along a path: the abscissa of its charts.
@@ -55,7 +55,7 @@ impl Abscissa {
             Self::LengthRatio | Self::DiameterRatio => format!("{value:.2}"),
             Self::Step => row.step.to_string(),
             _ if value == 0.0 => "0".into(),
-            _ => short(value, 3),
+            _ => format_number(value, 3),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! How finely a wall is looked at: as finely as its picture shows, and no more.
 
-use crate::draw::{Opening, evenly};
+use crate::draw::{Opening, linspace};
 use std::f64::consts::TAU;
 
 /// Position (x, y, z) in D, and the value of a field.
@@ -105,10 +105,10 @@ impl Tolerance {
         let through = layers as f64 * largest(pieces).clamp(1.0, MOST).ceil();
         Opening {
             kept,
-            places: [
+            parameters: [
                 along.collect(),
-                evenly(around.ceil() as usize + 1),
-                evenly(through as usize + 1),
+                linspace(around.ceil() as usize + 1),
+                linspace(through as usize + 1),
             ],
         }
     }
@@ -190,7 +190,7 @@ fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::HALF;
+    use crate::draw::REAR_HALF;
 
     const FINE: Tolerance = Tolerance {
         place: 3e-3,
@@ -230,8 +230,8 @@ mod tests {
 
     #[test]
     fn a_cylinder_is_cut_around_alone() {
-        let opening = FINE.opening(HALF, ROUND, turned(|_, _| 0.5));
-        let [along, around, through] = &opening.places;
+        let opening = FINE.opening(REAR_HALF, ROUND, turned(|_, _| 0.5));
+        let [along, around, through] = &opening.parameters;
         // Joined, 32 pieces at a time.
         assert_eq!(along, &[0.0, 0.4, 0.8, 1.0]);
         // r (1 − cos(step / 2)) is what an arc is off its chord.
@@ -246,8 +246,8 @@ mod tests {
     fn folds_are_cut_and_what_is_straight_is_not() {
         let radius = |zeta: f64| 0.5 - 0.3 * (-((zeta - 40.0) / 4.0).powi(2)).exp();
         let of = |tolerance: Tolerance| {
-            let opening = tolerance.opening(HALF, ROUND, turned(|zeta, _| radius(zeta)));
-            let [along, ..] = opening.places;
+            let opening = tolerance.opening(REAR_HALF, ROUND, turned(|zeta, _| radius(zeta)));
+            let [along, ..] = opening.parameters;
             assert!(along.windows(2).all(|pair| pair[0] < pair[1]));
             assert_eq!((along[0], along[along.len() - 1]), (0.0, 1.0));
             let off = off(&along, radius);
@@ -276,11 +276,11 @@ mod tests {
             ..ROUND
         };
         let on = |zeta: f64| radius(zeta * 80.0 / 3.0 / 3.0);
-        let opening = FINE.opening(HALF, long, |zeta, eta, xi| {
+        let opening = FINE.opening(REAR_HALF, long, |zeta, eta, xi| {
             let ([x, y, _], value) = turned(|zeta, _| on(zeta))(zeta, eta, xi);
             ([x, y, 8.0 * zeta / 3.0], value)
         });
-        let off = off(&opening.places[0], |zeta| radius(zeta / 9.0));
+        let off = off(&opening.parameters[0], |zeta| radius(zeta / 9.0));
         assert!(off < FINE.place, "{off}");
     }
 
@@ -296,7 +296,7 @@ mod tests {
                 place,
                 ..FINE
             };
-            tolerance.opening(HALF, ROUND, rough).places[0].len()
+            tolerance.opening(REAR_HALF, ROUND, rough).parameters[0].len()
         };
         assert!(along((2.0, 3.0), 1e-3) < 5);
         // Pieces of 1.25e-2 and more, of a tube of 8.
@@ -307,7 +307,7 @@ mod tests {
     #[test]
     fn lobes_are_seen_where_meridians_differ() {
         let around = |radius: fn(f64, f64) -> f64| {
-            let [_, around, _] = FINE.opening((0.0, TAU), LOBED, turned(radius)).places;
+            let [_, around, _] = FINE.opening((0.0, TAU), LOBED, turned(radius)).parameters;
             around.len() as f64
         };
         let (lobed, round) = (
@@ -320,7 +320,7 @@ mod tests {
             let radius = |zeta: f64, eta: f64| {
                 0.5 + 0.05 * (-((zeta - 40.0) / 4.0).powi(2)).exp() * (f64::from(n) * eta).cos()
             };
-            let [along, ..] = FINE.opening((0.0, TAU), LOBED, turned(radius)).places;
+            let [along, ..] = FINE.opening((0.0, TAU), LOBED, turned(radius)).parameters;
             let off = off(&along, |zeta| radius(zeta, 0.0));
             assert!(off < FINE.place, "{n} {off}");
         }
@@ -329,14 +329,14 @@ mod tests {
     #[test]
     fn nothing_to_see_is_cut_no_more_than_it_is_probed() {
         let nothing = |_: f64, _: f64, _: f64| ([f64::NAN; 3], f64::NAN);
-        let opening = FINE.opening(HALF, ROUND, nothing);
-        assert_eq!(opening.places.map(|p| p.len()), [4, 13, 4]);
+        let opening = FINE.opening(REAR_HALF, ROUND, nothing);
+        assert_eq!(opening.parameters.map(|p| p.len()), [4, 13, 4]);
         let none = Tolerance {
             place: 0.0,
             value: f64::NAN,
             colours: (1.0, 1.0),
         };
-        let opening = none.opening(HALF, ROUND, turned(|_, _| 0.5));
-        assert!(opening.places[0].len() <= 80 * 64 + 1);
+        let opening = none.opening(REAR_HALF, ROUND, turned(|_, _| 0.5));
+        assert!(opening.parameters[0].len() <= 80 * 64 + 1);
     }
 }

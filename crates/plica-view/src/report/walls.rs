@@ -45,7 +45,7 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
     let mut curves = vec![];
     for (colour, state) in states.iter().enumerate() {
         let meridians = Meridians::of(tube, state.load, state.u);
-        for (face, stroke) in [(Face::Outer, Stroke::Solid), (Face::Inner, Stroke::Fine)] {
+        for (face, stroke) in [(Face::Outer, Stroke::Solid), (Face::Inner, Stroke::Thin)] {
             let label = if face == Face::Outer {
                 state.label.clone()
             } else {
@@ -71,7 +71,7 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
     }
     curves.push(Curve {
         label: "inner wall".into(),
-        stroke: Stroke::Fine,
+        stroke: Stroke::Thin,
         ..Curve::default()
     });
     let finite = |p: &&(f64, f64)| p.0.is_finite();

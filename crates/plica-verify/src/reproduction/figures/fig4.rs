@@ -8,7 +8,7 @@ use super::super::{Figure, Fineness, Trouble};
 use super::{COARSE, axisymmetric, first, is_folded, minimum, ratio, side, unstable};
 use plica::measure::{Face, Flank, Rotation, Side, Wall};
 use plica::study::Row;
-use plica_view::draw::{Curve, Rule, Stroke};
+use plica_view::draw::{Curve, Stroke, VerticalLine};
 
 pub(super) const FIGURE: Figure = Figure {
     name: "fig4",
@@ -61,7 +61,7 @@ fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
     let overhang = first(rows, "invaginated");
     let mut rules = vec![];
     for (row, label) in [(squares, "square"), (overhang, "overhang")] {
-        rules.extend(row.map(|row| Rule {
+        rules.extend(row.map(|row| VerticalLine {
             at: row.length_ratio,
             label: label.into(),
         }));

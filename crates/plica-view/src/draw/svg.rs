@@ -1,7 +1,7 @@
-//! A page as SVG: lines that are lines, texts that are texts; the one file that names the svg crate.
+//! SVG output of a page, in which text stays text. This is the only file that uses the svg crate.
 
 use super::DrawError;
-use super::canvas::{Area, Canvas, Mark, Pen, Place, Rectangle, Stamp};
+use super::canvas::{Area, Canvas, Overlay, Pen, Position, Primitive, Rectangle};
 use super::text::Run;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -9,13 +9,13 @@ use svg::node::Text;
 use svg::node::element::{self, ClipPath, Element, Group};
 use svg::{Document, Node};
 
-/// Fonts of texts: they are placed as in the first, and fitted to its widths where it is not there.
+/// Font families. Text is laid out for the first one and stretched to its widths where another one is used.
 const FONTS: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
 
 impl Canvas {
-    /// The page as lines and texts, in points; pictures laid over it multiply with what is beneath, so that their white is
-    /// transparent here too.
-    pub fn finish_svg(self) -> Result<String, DrawError> {
+    /// Returns the page as an SVG file with lengths in points. Overlays are multiplied with the primitives below, which makes
+    /// their white transparent as in the rasterised page.
+    pub fn to_svg(self) -> Result<String, DrawError> {
         let (width, height) = self.size;
         let mut page = Document::new()
             .set("width", format!("{width:.2}pt"))
@@ -26,26 +26,26 @@ impl Canvas {
             .set("style", "white-space:pre");
         let paper = element::Rectangle::new().set("fill", "#ffffff");
         page.append(paper.set("width", "100%").set("height", "100%"));
-        // What is drawn between two clips is a group.
+        // The primitives between two clips form a group.
         let mut group = Group::new();
-        for mark in &self.marks {
-            match mark {
-                Mark::Line { places, pen } => group.append(line(places, *pen)),
-                Mark::Area { area, colour } => {
+        for primitive in &self.primitives {
+            match primitive {
+                Primitive::Line { points, pen } => group.append(line(points, *pen)),
+                Primitive::Area { area, colour } => {
                     let mut area = filled(area);
                     area.assign("fill", ink(*colour));
                     group.append(area);
                 }
-                Mark::Text {
+                Primitive::Text {
                     runs,
                     start,
                     upward,
                     colour,
                 } => group.append(text(runs, *start, *upward).set("fill", ink(*colour))),
-                Mark::Clip(within) => {
+                Primitive::Clip(within) => {
                     page.append(std::mem::replace(&mut group, Group::new()));
                     if let Some(within) = within {
-                        // Of several charts in one document, equal names are equal rectangles.
+                        // The name contains the rectangle, so it is unique even with several charts in one document.
                         let (x, y) = within.corner;
                         let id = [x, y, within.width, within.height].map(length).join("-");
                         let id = format!("clip-{id}");
@@ -56,14 +56,14 @@ impl Canvas {
             }
         }
         page.append(group);
-        for stamp in &self.stamps {
-            page.append(picture(stamp, self.pixels_per_point())?);
+        for overlay in &self.overlays {
+            page.append(embedded(overlay, self.pixels_per_point())?);
         }
         Ok(format!("{page}\n"))
     }
 }
 
-/// A length to a hundredth of a point: finer than any printer.
+/// Formats a length to a hundredth of a point.
 fn length(points: f64) -> String {
     let text = format!("{points:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -73,19 +73,19 @@ fn ink([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// A path through places.
-fn through(places: &[Place]) -> String {
+/// Returns the path data of a polyline.
+fn path_data(points: &[Position]) -> String {
     let mut path = String::new();
-    for (i, (x, y)) in places.iter().enumerate() {
-        let word = if i == 0 { "M" } else { " L" };
-        path += &format!("{word}{} {}", length(*x), length(*y));
+    for (i, (x, y)) in points.iter().enumerate() {
+        let command = if i == 0 { "M" } else { " L" };
+        path += &format!("{command}{} {}", length(*x), length(*y));
     }
     path
 }
 
-fn line(places: &[Place], pen: Pen) -> Element {
+fn line(points: &[Position], pen: Pen) -> Element {
     let mut line = Element::new("path");
-    line.assign("d", through(places));
+    line.assign("d", path_data(points));
     line.assign("fill", "none");
     line.assign("stroke", ink(pen.colour));
     line.assign("stroke-width", length(pen.width));
@@ -109,7 +109,9 @@ fn filled(area: &Area) -> Element {
             disc.set("cx", length(*x)).set("cy", length(*y)).into()
         }
         Area::Rectangle(area) => rectangle(area).into(),
-        Area::Polygon(corners) => element::Path::new().set("d", through(corners) + "Z").into(),
+        Area::Polygon(corners) => element::Path::new()
+            .set("d", path_data(corners) + "Z")
+            .into(),
     }
 }
 
@@ -122,8 +124,8 @@ fn rectangle(area: &Rectangle) -> element::Rectangle {
         .set("height", length(area.height))
 }
 
-/// A label's runs, each at its own place and as wide as it is set.
-fn text(runs: &[Run], (x, y): Place, upward: bool) -> Group {
+/// Returns the runs of a label, each at its own position and with its own width.
+fn text(runs: &[Run], (x, y): Position, upward: bool) -> Group {
     let turn = if upward { " rotate(-90)" } else { "" };
     let mut label = Group::new().set(
         "transform",
@@ -141,14 +143,14 @@ fn text(runs: &[Run], (x, y): Place, upward: bool) -> Group {
         if run.italic {
             text.assign("font-style", "italic");
         }
-        text.append(Text::new(kept(&run.text)));
+        text.append(Text::new(hard_spaces(&run.text)));
         label.append(text);
     }
     label
 }
 
-/// A text whose spaces at its ends count everywhere: as such that do not break.
-fn kept(text: &str) -> String {
+/// Replaces leading and trailing spaces by non-breaking ones, which every viewer preserves.
+fn hard_spaces(text: &str) -> String {
     let inner = text.trim_matches(' ');
     let before = text.len() - text.trim_start_matches(' ').len();
     let after = text.len() - before - inner.len();
@@ -156,27 +158,27 @@ fn kept(text: &str) -> String {
     hard(before) + inner + &hard(after)
 }
 
-fn picture(stamp: &Stamp, per_point: f64) -> Result<element::Image, DrawError> {
+fn embedded(overlay: &Overlay, per_point: f64) -> Result<element::Image, DrawError> {
     let points = |pixels: f64| format!("{:.4}", pixels / per_point);
-    let [x, y] = stamp.at.map(|v| points(v as f64));
-    let png = STANDARD.encode(stamp.picture.to_png(1.0, super::Packing::Small)?);
+    let [x, y] = overlay.at.map(|v| points(v as f64));
+    let png = STANDARD.encode(overlay.image.to_png(1.0, super::Compression::Small)?);
     Ok(element::Image::new()
         .set("x", x)
         .set("y", y)
-        .set("width", points(stamp.picture.width as f64))
-        .set("height", points(stamp.picture.height as f64))
+        .set("width", points(overlay.image.width as f64))
+        .set("height", points(overlay.image.height as f64))
         .set("style", "mix-blend-mode:multiply")
         .set("href", format!("data:image/png;base64,{png}")))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::kept;
+    use super::hard_spaces;
 
     #[test]
-    fn spaces_at_the_ends_are_kept() {
-        assert_eq!(kept(" a b  "), "\u{a0}a b\u{a0}\u{a0}");
-        assert_eq!(kept("  "), "\u{a0}\u{a0}");
-        assert_eq!(kept(""), "");
+    fn leading_and_trailing_spaces_become_non_breaking() {
+        assert_eq!(hard_spaces(" a b  "), "\u{a0}a b\u{a0}\u{a0}");
+        assert_eq!(hard_spaces("  "), "\u{a0}\u{a0}");
+        assert_eq!(hard_spaces(""), "");
     }
 }

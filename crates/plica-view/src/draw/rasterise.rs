@@ -1,7 +1,7 @@
-//! A page as pixels; the one file that names tiny-skia.
+//! Rasterisation of a page. This is the only file that uses tiny-skia.
 
-use super::canvas::{Area, Canvas, Mark, Place, Rectangle};
-use super::letters::Edge;
+use super::canvas::{Area, Canvas, Position, Primitive, Rectangle};
+use super::glyphs::Segment;
 use super::{DrawError, Image};
 use tiny_skia::{
     Color, FillRule, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash,
@@ -9,8 +9,8 @@ use tiny_skia::{
 };
 
 impl Canvas {
-    /// The page as pixels.
-    pub fn finish(self) -> Result<Image, DrawError> {
+    /// Returns the page as pixels.
+    pub fn rasterise(self) -> Result<Image, DrawError> {
         let [width, height] = self.pixels.map(|side| side as u32);
         let too_large = || DrawError::Backend(format!("no page of {width} x {height} pixels"));
         let mut page = Pixmap::new(width, height).ok_or_else(too_large)?;
@@ -18,27 +18,27 @@ impl Canvas {
         let zoom = self.pixels_per_point() as f32;
         let on_page = Transform::from_scale(zoom, zoom);
         let mut clip: Option<Mask> = None;
-        for mark in &self.marks {
-            match mark {
-                Mark::Line { places, pen } => {
+        for primitive in &self.primitives {
+            match primitive {
+                Primitive::Line { points, pen } => {
                     let stroke = Stroke {
                         width: pen.width as f32,
                         line_join: LineJoin::Round,
                         dash: StrokeDash::new(vec![pen.dash.0 as f32, pen.dash.1 as f32], 0.0),
                         ..Stroke::default()
                     };
-                    if let Some(path) = joined(places, false) {
+                    if let Some(path) = path_through(points, false) {
                         page.stroke_path(&path, &ink(pen.colour), &stroke, on_page, clip.as_ref());
                     }
                 }
-                Mark::Area { area, colour } => {
+                Primitive::Area { area, colour } => {
                     let path = match area {
                         Area::Disc {
                             middle: (x, y),
                             radius,
                         } => PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32),
                         Area::Rectangle(rectangle) => path_of(rectangle),
-                        Area::Polygon(corners) => joined(corners, true),
+                        Area::Polygon(corners) => path_through(corners, true),
                     };
                     if let Some(path) = path {
                         page.fill_path(
@@ -50,7 +50,7 @@ impl Canvas {
                         );
                     }
                 }
-                Mark::Text {
+                Primitive::Text {
                     runs,
                     start,
                     upward,
@@ -64,7 +64,7 @@ impl Canvas {
                                 (run.at.1 - y * run.size) as f32,
                             )
                         };
-                        trace(&mut path, &run.letters.edges(), at);
+                        add_outlines(&mut path, &run.glyphs.outlines(), at);
                     }
                     let (x, y) = (start.0 as f32, start.1 as f32);
                     let turn = if *upward { -90.0 } else { 0.0 };
@@ -79,10 +79,10 @@ impl Canvas {
                         );
                     }
                 }
-                Mark::Clip(within) => {
+                Primitive::Clip(within) => {
                     clip = None;
                     if let Some(within) = within {
-                        // Of a rectangle that is none, nothing shows.
+                        // An invalid rectangle clips everything.
                         let mut mask = Mask::new(width, height).ok_or_else(too_large)?;
                         if let Some(path) = path_of(within) {
                             mask.fill_path(&path, FillRule::Winding, true, on_page);
@@ -98,8 +98,8 @@ impl Canvas {
             height: self.pixels[1],
             pixels: pixels.map(|p| [p[0], p[1], p[2]]).collect(),
         };
-        for stamp in &self.stamps {
-            image.stamp(&stamp.picture, stamp.at[0], stamp.at[1]);
+        for overlay in &self.overlays {
+            image.multiply(&overlay.image, overlay.at[0], overlay.at[1]);
         }
         Ok(image)
     }
@@ -111,10 +111,10 @@ fn ink([r, g, b]: [u8; 3]) -> Paint<'static> {
     paint
 }
 
-/// Places joined in their order; nothing of fewer than two.
-fn joined(places: &[Place], close: bool) -> Option<Path> {
-    let mut path = PathBuilder::with_capacity(places.len() + 1, places.len());
-    for (i, (x, y)) in places.iter().enumerate() {
+/// Returns the path through the given positions, or `None` for fewer than two.
+fn path_through(points: &[Position], close: bool) -> Option<Path> {
+    let mut path = PathBuilder::with_capacity(points.len() + 1, points.len());
+    for (i, (x, y)) in points.iter().enumerate() {
         let (x, y) = (*x as f32, *y as f32);
         if i == 0 {
             path.move_to(x, y);
@@ -134,27 +134,27 @@ fn path_of(rectangle: &Rectangle) -> Option<Path> {
     Rect::from_xywh(x, y, width, height).map(PathBuilder::from_rect)
 }
 
-/// Goes along the edges of letters.
-fn trace(path: &mut PathBuilder, edges: &[Edge], at: impl Fn([f64; 2]) -> (f32, f32)) {
-    for edge in edges {
-        match *edge {
-            Edge::Start(p) => {
+/// Adds the outlines of glyphs to a path.
+fn add_outlines(path: &mut PathBuilder, outlines: &[Segment], at: impl Fn([f64; 2]) -> (f32, f32)) {
+    for segment in outlines {
+        match *segment {
+            Segment::Start(p) => {
                 let (x, y) = at(p);
                 path.move_to(x, y);
             }
-            Edge::Line(p) => {
+            Segment::Line(p) => {
                 let (x, y) = at(p);
                 path.line_to(x, y);
             }
-            Edge::Quadratic(points) => {
+            Segment::Quadratic(points) => {
                 let [(x1, y1), (x, y)] = points.map(&at);
                 path.quad_to(x1, y1, x, y);
             }
-            Edge::Cubic(points) => {
+            Segment::Cubic(points) => {
                 let [(x1, y1), (x2, y2), (x, y)] = points.map(&at);
                 path.cubic_to(x1, y1, x2, y2, x, y);
             }
-            Edge::Close => path.close(),
+            Segment::Close => path.close(),
         }
     }
 }

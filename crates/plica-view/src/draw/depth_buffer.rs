@@ -1,68 +1,68 @@
-//! The samples of a strip of a picture: which triangle lies before the others.
+//! Depth buffer of a strip of a picture: the nearest triangle of every sample.
 
 use super::scene::double_area;
 use std::ops::Range;
 
-/// What counts as on an edge, in samples.
-const NEAR: f64 = 1e-6;
-/// Samples that are covered at a time.
+/// Distance to an edge, in samples, below which a sample is on it.
+const EDGE_TOLERANCE: f64 = 1e-6;
+/// Samples processed at a time.
 const LANES: usize = 8;
 
-/// The nearest whole number to one from 0 to 2³¹, the even one of two: without the care of `as` for all others.
+/// Rounds a number from 0 to 2³¹ to the nearest integer, ties to even. It is faster than a cast because it does not treat other numbers.
 #[inline(always)]
-fn nearest_whole(x: f64) -> usize {
-    /// Beyond it, numbers are whole.
-    const WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
-    (x + WHOLE).to_bits() as u32 as usize
+fn round_fast(x: f64) -> usize {
+    /// Numbers of this size have no fractional bits.
+    const SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
+    (x + SHIFT).to_bits() as u32 as usize
 }
 
-/// The larger of two numbers, and the second if one is none.
+/// Returns the larger of two numbers, or the second one if either is NaN.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The smaller of two numbers, and the second if one is none.
+/// Returns the smaller of two numbers, or the second one if either is NaN.
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// Before which of so many samples a place lies: they sit in the middle of their squares.
+/// Returns the index of the first sample whose centre lies at or beyond a position.
 #[inline(always)]
-fn whole(place: f64, count: usize) -> usize {
-    nearest_whole(smaller(larger(place, 0.0), count as f64))
+fn first_sample(position: f64, count: usize) -> usize {
+    round_fast(smaller(larger(position, 0.0), count as f64))
 }
 
-/// The rows of samples that a triangle may cover in a picture so high; none if it has no area, or no place.
+/// Returns the rows of samples that a triangle may cover; `None` if it has no area or is not finite.
 pub(super) fn rows([a, b, c]: [[f64; 3]; 3], height: usize) -> Option<Range<usize>> {
     let double_area = double_area([a, b, c]);
-    // What is thinner than that shows nowhere.
+    // Thinner triangles cover no sample.
     if double_area.abs() < 1e-9 || !double_area.is_finite() || !(a[2] + b[2] + c[2]).is_finite() {
         return None;
     }
     let (top, bottom) = (a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
-    let (first, end) = (whole(top, height), whole(bottom, height));
+    let (first, end) = (first_sample(top, height), first_sample(bottom, height));
     (first < end).then_some(first..end)
 }
 
-/// What the samples of a strip hold. What is hidden gets no colour.
+/// Depth and triangle of every sample of a strip. Colours are computed later, for visible samples only.
 #[derive(Default)]
-pub(super) struct Samples {
-    /// How many lie side by side.
+pub(super) struct DepthBuffer {
+    /// Samples per row.
     pub width: usize,
-    /// Rows of the picture's samples.
+    /// Rows of samples of the picture that the strip covers.
     pub rows: Range<usize>,
-    /// Towards the viewer, row by row.
+    /// Depth towards the viewer, row by row.
     pub depth: Vec<f32>,
-    /// Name of the triangle, 0 for none.
+    /// Identifier of the nearest triangle, 0 for none.
     pub triangle: Vec<u32>,
 }
 
-impl Samples {
-    /// Empties it for a strip.
-    pub fn begin(&mut self, width: usize, rows: Range<usize>) {
-        // What is covered is looked at in whole vectors.
+impl DepthBuffer {
+    /// Clears the buffer for a strip.
+    pub fn reset(&mut self, width: usize, rows: Range<usize>) {
+        // The padding allows access in whole vectors.
         let count = width * rows.len() + LANES;
         (self.width, self.rows) = (width, rows);
         self.depth.clear();
@@ -71,9 +71,9 @@ impl Samples {
         self.triangle.resize(count, 0);
     }
 
-    /// Adds the triangle of a name.
+    /// Draws a triangle.
     #[inline(always)]
-    pub fn triangle(&mut self, corners: [[f64; 3]; 3], name: u32) {
+    pub fn draw(&mut self, corners: [[f64; 3]; 3], id: u32) {
         let Some(rows) = rows(corners, self.rows.end) else {
             return;
         };
@@ -88,23 +88,23 @@ impl Samples {
         let (left, right) = (larger(left, 0.0), smaller(right, self.width as f64));
         let [deepest, nearest] = [deepest, nearest].map(|depth| depth as f32);
         let [top, middle, bottom] = by_row(corners);
-        let long = Side::of(top, bottom);
-        // The rows that end on the upper of the two short sides, and those on the lower.
-        let turn = whole(middle[1], rows.end).max(rows.start);
+        let long = Side::new(top, bottom);
+        // Rows above the middle corner end on the upper short side, the others on the lower one.
+        let turn = first_sample(middle[1], rows.end).max(rows.start);
         let parts = [
-            (rows.start..turn, Side::of(top, middle)),
-            (turn..rows.end, Side::of(middle, bottom)),
+            (rows.start..turn, Side::new(top, middle)),
+            (turn..rows.end, Side::new(middle, bottom)),
         ];
         for (rows, short) in parts {
             for row in rows {
                 let y = row as f64 + 0.5;
                 let (one, other) = (long.at(y), short.at(y));
-                // A side that lies almost level may lead anywhere; a sample on a side belongs to both of its triangles,
+                // An almost horizontal side may extrapolate too far. A sample on a side belongs to both adjacent triangles,
                 // whatever the rounding.
-                let first = smaller(larger(smaller(one, other), left) - NEAR, right);
-                let end = larger(smaller(larger(one, other), right) + NEAR, left);
-                let first = nearest_whole(larger(first, 0.0));
-                let end = nearest_whole(smaller(end, self.width as f64));
+                let first = smaller(larger(smaller(one, other), left) - EDGE_TOLERANCE, right);
+                let end = larger(smaller(larger(one, other), right) + EDGE_TOLERANCE, left);
+                let first = round_fast(larger(first, 0.0));
+                let end = round_fast(smaller(end, self.width as f64));
                 if first >= end {
                     continue;
                 }
@@ -114,21 +114,21 @@ impl Samples {
                     start,
                     end - first,
                     [depth as f32, per_x as f32, deepest, nearest],
-                    name,
+                    id,
                 );
             }
         }
     }
 
-    /// Puts a triangle before what is deeper, from a sample on for so many in its row: depth of the first, what it grows by from
-    /// one to the next, and its least and largest.
+    /// Draws a triangle on `count` samples of a row from `start`, where it is the nearest. The array holds the depth of the
+    /// first sample, the increment per sample, and the smallest and largest depth.
     #[inline(always)]
     fn cover(
         &mut self,
         start: usize,
         count: usize,
         [first, per_x, deepest, nearest]: [f32; 4],
-        name: u32,
+        id: u32,
     ) {
         let end = start + count.next_multiple_of(LANES);
         let depth = self.depth[start..end].as_chunks_mut::<LANES>().0;
@@ -138,20 +138,20 @@ impl Samples {
         for (depth, triangle) in depth.iter_mut().zip(triangle) {
             for lane in 0..LANES {
                 let i = from + lane as f32;
-                // A triangle seen from its edge is steep: rounding must not take it out of itself.
+                // Rounding must not move the depth of a steep triangle beyond that of its corners.
                 let own = first + i * per_x;
                 let own = if own > deepest { own } else { deepest };
                 let own = if own < nearest { own } else { nearest };
-                let before = (own > depth[lane]) & (i < count);
-                depth[lane] = if before { own } else { depth[lane] };
-                triangle[lane] = if before { name } else { triangle[lane] };
+                let nearer = (own > depth[lane]) & (i < count);
+                depth[lane] = if nearer { own } else { depth[lane] };
+                triangle[lane] = if nearer { id } else { triangle[lane] };
             }
             from += LANES as f32;
         }
     }
 }
 
-/// A side of a triangle: where it begins, and how far it goes across from row to row.
+/// A side of a triangle: its start, and its horizontal increment per row.
 #[derive(Clone, Copy)]
 struct Side {
     from: [f64; 2],
@@ -160,21 +160,21 @@ struct Side {
 
 impl Side {
     #[inline(always)]
-    fn of(from: [f64; 3], to: [f64; 3]) -> Self {
+    fn new(from: [f64; 3], to: [f64; 3]) -> Self {
         Self {
             from: [from[0], from[1]],
             per_row: (to[0] - from[0]) / (to[1] - from[1]),
         }
     }
 
-    /// How far across it is at a height.
+    /// Returns the horizontal position at a height.
     #[inline(always)]
     fn at(&self, y: f64) -> f64 {
         self.from[0] + (y - self.from[1]) * self.per_row
     }
 }
 
-/// Corners from the top.
+/// Sorts corners from top to bottom.
 #[inline(always)]
 fn by_row([mut a, mut b, mut c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     if b[1] < a[1] {
