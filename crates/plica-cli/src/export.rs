@@ -7,7 +7,7 @@ use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{console, threads};
 use plica::study::RunDirectory;
-use plica_view::export::{Exporter, What};
+use plica_view::export::{Exporter, Geometry};
 use plica_view::vtk::collection;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -23,15 +23,15 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         (_, []) => state == last,
         (_, states) => states.contains(&state),
     };
-    let mut files: Vec<(What, usize)> = run
+    let mut files: Vec<(Geometry, usize)> = run
         .saved
         .keys()
-        .map(|&state| (What::Walls, state))
+        .map(|&state| (Geometry::Walls, state))
         .collect();
     for state in run.saved.keys().copied().filter(|&state| selected(state)) {
-        files.push((What::Volume, state));
+        files.push((Geometry::Volume, state));
         if arguments.linear {
-            files.push((What::Linear, state));
+            files.push((Geometry::Linear, state));
         }
     }
     let interrupt = Interrupt::listen()
@@ -118,7 +118,7 @@ fn write_series(
     exporter: &Exporter,
     ticker: &mut Ticker,
 ) -> Result<Option<(usize, usize)>, Failure> {
-    let mut movie = exporter.movie();
+    let mut movie = exporter.series();
     let mut states = 0;
     for (done, &state) in run.saved.keys().enumerate() {
         if ticker.stop() {
@@ -128,7 +128,7 @@ fn write_series(
         ticker.working(&format!("state {state}, in one file"), part);
         // The export of its own file reports an unreadable state.
         if let Ok((state, row)) = run.state(state) {
-            exporter.film(&mut movie, &state, &row);
+            exporter.append(&mut movie, &state, &row);
             states += 1;
         }
     }
@@ -148,15 +148,15 @@ struct Work<'a> {
     exporter: Exporter,
     run: &'a Finished,
     /// Numbers of files and bytes of each kind.
-    written: BTreeMap<What, (usize, usize)>,
+    written: BTreeMap<Geometry, (usize, usize)>,
 }
 
 impl Work<'_> {
     /// Writes one file.
-    fn write(&mut self, what: What, number: usize) -> Result<(), Failure> {
+    fn write(&mut self, what: Geometry, number: usize) -> Result<(), Failure> {
         let (state, row) = self.run.state(number)?;
-        let bytes = self.exporter.bytes(what, &state, &row);
-        let name = format!("{}/state-{number:04}.{}", folder(what), what.ending());
+        let bytes = self.exporter.file(what, &state, &row);
+        let name = format!("{}/state-{number:04}.{}", folder(what), what.extension());
         let written = self.run.directory.write(&name, &bytes);
         written.map_err(Failure::Study)?;
         let (files, size) = self.written.entry(what).or_default();
@@ -166,19 +166,19 @@ impl Work<'_> {
 }
 
 /// Returns the directory of the files of a kind, relative to the run.
-fn folder(what: What) -> String {
+fn folder(what: Geometry) -> String {
     format!("vtk/{}", what.name())
 }
 
 /// Returns the collection of the files of a kind, relative to the run.
-fn collection_of(what: What) -> String {
+fn collection_of(what: Geometry) -> String {
     format!("vtk/{}.pvd", what.name())
 }
 
 /// Writes the collection of all existing files of a kind.
-fn collect(directory: &RunDirectory, what: What) -> Result<(), Failure> {
+fn collect(directory: &RunDirectory, what: Geometry) -> Result<(), Failure> {
     let files = directory
-        .numbered(&folder(what), what.ending())
+        .numbered(&folder(what), what.extension())
         .map_err(Failure::Study)?;
     let name = |path: &Path| {
         let file = path.file_name().unwrap_or_default().to_string_lossy();

@@ -8,7 +8,7 @@ mod common;
 use common::Chance;
 use plica::case;
 use plica::study::{self, Ending, Observer, Plan, Row, RunDirectory, SavedState};
-use plica_view::export::{Exporter, What};
+use plica_view::export::{Exporter, Geometry};
 use std::fmt::Write;
 use std::io::Read;
 use std::path::Path;
@@ -231,11 +231,11 @@ fn run(plan: &Plan, text: &str, path: &Path) -> Ending {
         state.belongs_to(plan).unwrap();
         // The inside of a whole tube that is not round takes too long.
         let round = plan.mesh.rings(plan.symmetry) == 1;
-        for what in [What::Walls, What::Linear] {
-            if what == What::Linear && !round {
+        for what in [Geometry::Walls, Geometry::Linear] {
+            if what == Geometry::Linear && !round {
                 continue;
             }
-            let numbers = numbers(&Exporter::new(plan).bytes(what, &state, row));
+            let numbers = numbers(&Exporter::new(plan).file(what, &state, row));
             // Three coordinates and 32 fields of every point.
             assert!(numbers.len() > 1000, "{}", numbers.len());
             assert!(numbers.iter().all(|x| x.is_finite()));

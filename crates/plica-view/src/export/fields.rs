@@ -1,93 +1,105 @@
-//! The fields that points have.
+//! Fields at the points of a VTK file.
 
-use super::node::{Node, Turn};
-use super::nodes::Nodes;
+use super::point::{PointData, Rotation};
+use super::points::Points;
 use plica::study::Scale;
 
-/// A field: its name, the names of its components (none if it is a number), and its numbers.
-pub struct Field {
-    /// What it is called in a file.
+/// A field at the points.
+pub(super) struct Field {
+    /// Name in the file.
     pub name: &'static str,
-    /// What its components are called.
+    /// Names of the components; empty for a scalar field.
     pub components: &'static [&'static str],
-    /// Its numbers at all points.
-    pub numbers: fn(&Nodes, &Scale) -> Vec<f32>,
+    /// Returns the values at all points.
+    pub values: fn(&Points, &Scale) -> Vec<f32>,
 }
 
 const XYZ: &[&str] = &["x", "y", "z"];
 
 /// All fields.
-pub const FIELDS: &[Field] = &[
+pub(super) const FIELDS: &[Field] = &[
     Field {
         name: "displacement",
         components: XYZ,
-        numbers: |nodes, scale| {
+        values: |points, scale| {
             let length = scale.length as f32;
-            several(nodes, |node, turn| {
-                turn.of_short(node.displacement).map(|x| length * x)
+            components(points, |point, rotation| {
+                rotation.vector_f32(point.displacement).map(|x| length * x)
             })
         },
     },
     Field {
         name: "det_Fe",
         components: &[],
-        numbers: |nodes, _| single(nodes, |node| node.jacobian),
+        values: |points, _| scalar(points, |point| point.jacobian),
     },
     Field {
         name: "theta_zeta",
         components: &[],
-        numbers: |nodes, _| single(nodes, |node| node.grown[0]),
+        values: |points, _| scalar(points, |point| point.grown[0]),
     },
     Field {
         name: "theta_eta",
         components: &[],
-        numbers: |nodes, _| single(nodes, |node| node.grown[1]),
+        values: |points, _| scalar(points, |point| point.grown[1]),
     },
     Field {
         name: "strain_energy_density",
         components: &[],
-        numbers: |nodes, scale| {
+        values: |points, scale| {
             let stress = scale.stress as f32;
-            single(nodes, |node| stress * node.energy_density)
+            scalar(points, |point| stress * point.energy_density)
         },
     },
     Field {
         name: "cauchy_stress",
         components: &["xx", "yy", "zz", "xy", "yz", "xz"],
-        numbers: |nodes, scale| {
+        values: |points, scale| {
             let stress = scale.stress as f32;
-            several(nodes, |node, turn| {
-                turn.of_tensor(node.stress).map(|x| stress * x)
+            components(points, |point, rotation| {
+                rotation.tensor(point.stress).map(|x| stress * x)
             })
         },
     },
     Field {
         name: "von_mises_stress",
         components: &[],
-        numbers: |nodes, scale| {
+        values: |points, scale| {
             let stress = scale.stress as f32;
-            single(nodes, |node| stress * node.von_mises)
+            scalar(points, |point| stress * point.von_mises)
         },
     },
     Field {
         name: "elastic_stretch",
         components: &["1", "2", "3"],
-        numbers: |nodes, _| several(nodes, |node, _| node.stretches),
+        values: |points, _| components(points, |point, _| point.stretches),
     },
     Field {
         name: "elastic_direction_1",
         components: XYZ,
-        numbers: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[0])),
+        values: |points, _| {
+            components(points, |point, rotation| {
+                rotation.vector_f32(point.directions[0])
+            })
+        },
     },
     Field {
         name: "elastic_direction_2",
         components: XYZ,
-        numbers: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[1])),
+        values: |points, _| {
+            components(points, |point, rotation| {
+                rotation.vector_f32(point.directions[1])
+            })
+        },
     },
     Field {
         name: "elastic_direction_3",
         components: XYZ,
-        numbers: |nodes, _| several(nodes, |node, turn| turn.of_short(node.directions[2])),
+        values: |points, _| {
+            components(points, |point, rotation| {
+                rotation.vector_f32(point.directions[2])
+            })
+        },
     },
     Field {
         name: "green_lagrange_strain",
@@ -99,14 +111,17 @@ pub const FIELDS: &[Field] = &[
             "eta-xi",
             "zeta-xi",
         ],
-        numbers: |nodes, _| several(nodes, |node, _| node.strain),
+        values: |points, _| components(points, |point, _| point.strain),
     },
 ];
 
-fn single(nodes: &Nodes, of: impl Fn(&Node) -> f32) -> Vec<f32> {
-    nodes.all(|node, _| of(node)).collect()
+fn scalar(points: &Points, of: impl Fn(&PointData) -> f32) -> Vec<f32> {
+    points.map(|point, _| of(point)).collect()
 }
 
-fn several<const N: usize>(nodes: &Nodes, of: impl Fn(&Node, &Turn) -> [f32; N]) -> Vec<f32> {
-    nodes.all(of).flatten().collect()
+fn components<const N: usize>(
+    points: &Points,
+    of: impl Fn(&PointData, &Rotation) -> [f32; N],
+) -> Vec<f32> {
+    points.map(of).flatten().collect()
 }

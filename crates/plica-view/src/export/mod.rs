@@ -1,53 +1,53 @@
-//! States as files of VTK, for ParaView and PyVista.
+//! Export of states as VTK files for ParaView and PyVista.
 //!
-//! Coordinates are (x, y, z), the tube along z from the colon end on; lengths and stresses are in the units of the case. A
-//! spline of degree p is a polynomial of degree p on every element, so that Lagrange hexahedra of that degree are the
-//! wall itself, not near it.
+//! Coordinates are (x, y, z) with the axis of the tube along z, starting at the colon end. Lengths and stresses are in the
+//! units of the case. A spline of degree p is a polynomial of degree p on every element, so Lagrange hexahedra of degree p
+//! represent the wall exactly.
 //!
 //! | field | meaning |
 //! |---|---|
-//! | `displacement` | from where the point of the perfect tube was at rest |
-//! | `det_Fe` | elastic change of volume |
-//! | `theta_zeta`, `theta_eta` | grown over ungrown length, along and around |
-//! | `strain_energy_density` | w, per grown volume |
+//! | `displacement` | position relative to the stress-free tube without imperfections |
+//! | `det_Fe` | elastic volume ratio |
+//! | `theta_zeta`, `theta_eta` | longitudinal and circumferential growth stretch |
+//! | `strain_energy_density` | w, per volume after growth |
 //! | `cauchy_stress` | σ in (x, y, z): xx, yy, zz, xy, yz, xz |
-//! | `von_mises_stress` | √(3/2 s : s), s the deviator of σ |
+//! | `von_mises_stress` | √(3/2 s : s) with the deviator s of σ |
 //! | `elastic_stretch` | principal stretches of Fe, largest first |
-//! | `elastic_direction_1` to `_3` | their directions in the deformed wall, unit vectors |
-//! | `green_lagrange_strain` | ½ (FᵀF − 1) in the axes of the wall at rest, along ζ, around η, outwards ξ: ζζ, ηη, ξξ, ζη, ηξ, ζξ |
+//! | `elastic_direction_1` to `_3` | unit vectors of the principal directions in the deformed wall |
+//! | `green_lagrange_strain` | ½ (FᵀF − 1) in the axes ζ (along), η (around), ξ (outwards) of the undeformed wall: ζζ, ηη, ξξ, ζη, ηξ, ζξ |
 
 mod fields;
-mod node;
-mod nodes;
+mod point;
+mod points;
 
-use crate::vtk::{Column, Document, Movie};
+use crate::vtk::{Column, Document, Series};
 use fields::FIELDS;
-use nodes::Nodes;
 use plica::assembly::SplineTube;
 use plica::study::{Plan, Row, SavedState, Scale};
+use points::{Points, boundary_lattice, volume_lattice};
 
-/// Writes states of a run.
+/// Converts states of a run to VTK files.
 pub struct Exporter {
     tube: SplineTube,
     scale: Scale,
 }
 
-/// What is written of a state.
+/// Geometry written to a VTK file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum What {
-    /// The surface of the wall, as `.vtp`.
+pub enum Geometry {
+    /// Surface of the wall (`.vtp`).
     Walls,
-    /// The wall, as Lagrange hexahedra of the spline's degree, `.vtu`.
+    /// Wall as Lagrange hexahedra of the degree of the spline (`.vtu`).
     Volume,
-    /// The wall, as linear hexahedra between the same points, `.vtu`.
+    /// Wall as linear hexahedra between the same points (`.vtu`).
     Linear,
 }
 
-impl What {
-    /// Everything that can be written.
+impl Geometry {
+    /// All geometries.
     pub const ALL: [Self; 3] = [Self::Walls, Self::Volume, Self::Linear];
 
-    /// What its folder and its collection are called.
+    /// Returns the name of its folder and its collection.
     pub fn name(self) -> &'static str {
         match self {
             Self::Walls => "walls",
@@ -56,8 +56,8 @@ impl What {
         }
     }
 
-    /// The ending of its files.
-    pub fn ending(self) -> &'static str {
+    /// Returns the extension of its files.
+    pub fn extension(self) -> &'static str {
         match self {
             Self::Walls => "vtp",
             Self::Volume | Self::Linear => "vtu",
@@ -65,14 +65,14 @@ impl What {
     }
 }
 
-/// Facets of a surface, around and along, from which on elements are not cut into more than one each.
+/// Number of facets of a surface, around and along, that is sufficient without subdividing elements.
 const FACETS: [usize; 2] = [96, 240];
 
-/// The field of a surface's cells that tells which face of the wall they are of.
+/// Name of the field with the face of the wall that a cell of the surface belongs to.
 const FACE: &str = "face";
 
 impl Exporter {
-    /// Of a run.
+    /// Creates an exporter for the states of a run.
     pub fn new(plan: &Plan) -> Self {
         let rings = plan.mesh.rings(plan.symmetry);
         Self {
@@ -81,66 +81,66 @@ impl Exporter {
         }
     }
 
-    /// The bytes of a file.
-    pub fn bytes(&self, what: What, state: &SavedState, row: &Row) -> Vec<u8> {
+    /// Returns the bytes of the file of a state.
+    pub fn file(&self, geometry: Geometry, state: &SavedState, row: &Row) -> Vec<u8> {
         let (tube, length) = (&self.tube, self.scale.length);
-        let lattice = match what {
-            What::Walls => Nodes::lattice_of_walls(tube, FACETS),
-            What::Volume | What::Linear => Nodes::lattice(tube),
+        let lattice = match geometry {
+            Geometry::Walls => boundary_lattice(tube, FACETS),
+            Geometry::Volume | Geometry::Linear => volume_lattice(tube),
         };
-        let nodes = Nodes::of(tube, &state.load, &state.u, lattice);
-        let points: Vec<[f64; 3]> = nodes
-            .all(|node, turn| turn.of(node.position))
+        let points = Points::sample(tube, &state.load, &state.u, lattice);
+        let positions: Vec<[f64; 3]> = points
+            .map(|point, rotation| rotation.vector(point.position))
             .map(|x| x.map(|x| length * x))
             .collect();
-        let mut file = match what {
-            What::Volume => Document::grid(&points, &lattice.lagrange()),
-            What::Linear => Document::grid(&points, &lattice.linear()),
-            What::Walls => {
-                let (cells, faces) = lattice.skin();
-                let mut file = Document::surface(&points, &cells);
+        let mut file = match geometry {
+            Geometry::Volume => Document::grid(&positions, &lattice.lagrange()),
+            Geometry::Linear => Document::grid(&positions, &lattice.linear()),
+            Geometry::Walls => {
+                let (cells, faces) = lattice.boundary();
+                let mut file = Document::surface(&positions, &cells);
                 file.cell_data(FACE, faces.into_iter());
                 file
             }
         };
-        drop(points);
+        drop(positions);
         for (name, value) in values(row) {
-            file.value(name, value);
+            file.field_data(name, value);
         }
         for field in FIELDS {
             file.point_data(
                 field.name,
                 field.components,
-                Column::of((field.numbers)(&nodes, &self.scale).into_iter()),
+                Column::new((field.values)(&points, &self.scale).into_iter()),
             );
         }
         file.bytes()
     }
 
-    /// An empty film of the wall's surface.
-    pub fn movie(&self) -> Movie {
-        let lattice = Nodes::lattice_of_walls(&self.tube, FACETS);
+    /// Creates an empty time series of the surface of the wall.
+    pub fn series(&self) -> Series {
+        let lattice = boundary_lattice(&self.tube, FACETS);
         let [outwards, around, along] = lattice.points();
-        let (cells, faces) = lattice.skin();
-        Movie::new(cells, (FACE, faces), outwards * around * along)
+        let (cells, faces) = lattice.boundary();
+        Series::new(cells, (FACE, faces), outwards * around * along)
     }
 
-    /// Adds a state to it, its number as the time.
-    pub fn film(&self, movie: &mut Movie, state: &SavedState, row: &Row) {
-        let lattice = Nodes::lattice_of_walls(&self.tube, FACETS);
-        let nodes = Nodes::of(&self.tube, &state.load, &state.u, lattice);
+    /// Appends a state to a series, with the number of the state as the time.
+    pub fn append(&self, series: &mut Series, state: &SavedState, row: &Row) {
+        let lattice = boundary_lattice(&self.tube, FACETS);
+        let points = Points::sample(&self.tube, &state.load, &state.u, lattice);
         let length = self.scale.length;
-        let points = nodes.all(|node, turn| turn.of(node.position).map(|x| length * x));
+        let positions = points.map(|p, rotation| rotation.vector(p.position).map(|x| length * x));
         let field = |field: &fields::Field| {
-            let numbers = (field.numbers)(&nodes, &self.scale);
-            (field.name, field.components.len().max(1), numbers)
+            let values = (field.values)(&points, &self.scale);
+            (field.name, field.components.len().max(1), values)
         };
         let fields = FIELDS.iter().map(field).collect();
-        movie.step(state.row as f64, values(row), points, fields);
+        series.push(state.row as f64, values(row), positions, fields);
     }
 }
 
-/// What files name of a state.
+/// Returns the named values of a state.
 fn values(row: &Row) -> [(&'static str, f64); 4] {
     [
         ("state", row.step as f64),

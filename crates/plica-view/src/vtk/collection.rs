@@ -1,8 +1,8 @@
-//! A file that names others, one per step.
+//! Collections of files, one per step.
 
 use std::fmt::Write;
 
-/// A collection (`.pvd`): steps, and the path of the file of each from where the collection lies.
+/// Returns a collection file (`.pvd`) for pairs of a step and the path of its file, relative to the collection.
 pub fn collection<'a>(files: impl Iterator<Item = (usize, &'a str)>) -> String {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n <Collection>\n",

@@ -1,26 +1,26 @@
-//! An array of numbers as it stands in a file.
+//! Compressed arrays of numbers.
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 use std::io::Write;
 
-/// Bytes of a block before it is compressed: readers unpack one at a time.
+/// Uncompressed size of a block in bytes; readers decompress one block at a time.
 const BLOCK: usize = 1 << 20;
 
-/// A number as VTK stores it.
+/// Number types of VTK.
 pub trait Number: Copy + Send + Sync {
-    /// What VTK calls it.
+    /// Name of the type in VTK.
     const NAME: &'static str;
-    /// Its bytes, the lowest first, behind others.
-    fn store(self, bytes: &mut Vec<u8>);
+    /// Appends the bytes of the number in little-endian order.
+    fn append_to(self, bytes: &mut Vec<u8>);
 }
 
 macro_rules! number {
     ($number:ty, $name:literal) => {
         impl Number for $number {
             const NAME: &'static str = $name;
-            fn store(self, bytes: &mut Vec<u8>) {
+            fn append_to(self, bytes: &mut Vec<u8>) {
                 bytes.extend_from_slice(&self.to_le_bytes());
             }
         }
@@ -32,28 +32,28 @@ number!(f64, "Float64");
 number!(i64, "Int64");
 number!(u8, "UInt8");
 
-/// Numbers, compressed, with what a reader must know to unpack them.
+/// An array of numbers in the compressed form of VTK, including the header with the block sizes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// What VTK calls the numbers.
-    pub number: &'static str,
-    /// The bytes that stand in the file.
-    pub bytes: Vec<u8>,
+    /// Number type.
+    pub(super) number: &'static str,
+    /// Header and compressed blocks.
+    pub(super) bytes: Vec<u8>,
 }
 
 impl Column {
-    /// Packs numbers.
-    pub fn of<N: Number>(numbers: impl Iterator<Item = N>) -> Self {
+    /// Compresses numbers.
+    pub fn new<N: Number>(numbers: impl Iterator<Item = N>) -> Self {
         let mut plain = vec![];
         for number in numbers {
-            number.store(&mut plain);
+            number.append_to(&mut plain);
         }
         let blocks: Vec<&[u8]> = plain.chunks(BLOCK).collect();
-        let packed: Vec<Vec<u8>> = blocks.par_iter().map(|block| pack(block)).collect();
-        // How many blocks, how large, how large the last is if it is smaller, and how large each is packed.
+        let packed: Vec<Vec<u8>> = blocks.par_iter().map(|block| compress(block)).collect();
+        // Number of blocks, block size, size of the last block if it is smaller, and the compressed sizes.
         let last = plain.len() % BLOCK;
-        let head = [blocks.len(), BLOCK, last];
-        let sizes = head.into_iter().chain(packed.iter().map(Vec::len));
+        let header = [blocks.len(), BLOCK, last];
+        let sizes = header.into_iter().chain(packed.iter().map(Vec::len));
         let mut bytes: Vec<u8> = sizes.flat_map(|size| (size as u64).to_le_bytes()).collect();
         packed
             .iter()
@@ -65,9 +65,9 @@ impl Column {
     }
 }
 
-fn pack(block: &[u8]) -> Vec<u8> {
+fn compress(block: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(vec![], Compression::fast());
-    // What is written to grows in memory, which does not fail.
+    // Writing to memory does not fail.
     let _ = encoder.write_all(block);
     encoder.finish().unwrap_or_default()
 }
@@ -78,8 +78,8 @@ mod tests {
     use flate2::read::ZlibDecoder;
     use std::io::Read;
 
-    /// Unpacks as a reader would.
-    fn unpacked(column: &Column) -> Vec<u8> {
+    /// Decompresses like a reader of VTK files.
+    fn decompressed(column: &Column) -> Vec<u8> {
         let word = |at: usize| {
             let bytes = column.bytes[8 * at..8 * at + 8].try_into().unwrap();
             u64::from_le_bytes(bytes) as usize
@@ -102,13 +102,13 @@ mod tests {
     }
 
     #[test]
-    fn numbers_come_back() {
+    fn numbers_are_decompressed_unchanged() {
         for count in [0, 1, 5, BLOCK / 8, BLOCK / 8 + 1, BLOCK / 3] {
             let numbers = (0..count).map(|i| (i as f64 * 0.1).sin());
             let expected: Vec<u8> = numbers.clone().flat_map(f64::to_le_bytes).collect();
-            assert_eq!(unpacked(&Column::of(numbers)), expected, "{count}");
+            assert_eq!(decompressed(&Column::new(numbers)), expected, "{count}");
         }
-        assert_eq!(unpacked(&Column::of([7_u8, 9].into_iter())), [7, 9]);
-        assert_eq!(Column::of([0_i64; 0].into_iter()).number, "Int64");
+        assert_eq!(decompressed(&Column::new([7_u8, 9].into_iter())), [7, 9]);
+        assert_eq!(Column::new([0_i64; 0].into_iter()).number, "Int64");
     }
 }

@@ -1,36 +1,35 @@
-//! One VTKHDF file of a surface that moves (VTK file formats, VTKHDF 2.0, PolyData with steps); the one file that names
-//! hdf5-pure.
+//! Time series of a surface as a VTKHDF 2.0 file (PolyData with steps). This is the only file that uses hdf5-pure.
 //!
-//! Cells stand in it once; points and what they have follow each other, step after step.
+//! Cells are stored once; points and their fields are stored for every step.
 
 use super::Cells;
 use hdf5_pure::{AttrValue, FileBuilder, GroupBuilder};
 
-/// Rows of an array that are compressed together, at most.
+/// Maximum number of rows per compressed chunk.
 const CHUNK: usize = 1 << 14;
 
-/// A surface that moves.
+/// A surface that moves, as a time series.
 #[derive(Clone, Debug)]
-pub struct Movie {
+pub struct Series {
     cells: Cells,
-    /// A field that cells have, the same in every step: its name and its numbers.
-    of_cells: (String, Vec<u8>),
+    /// Name and values of a field of the cells, the same in every step.
+    cell_data: (String, Vec<u8>),
     points: Vec<f32>,
-    count: usize,
+    point_count: usize,
     times: Vec<f64>,
-    /// Name, components, and the numbers of all steps so far.
+    /// Name, number of components, and values at the points of all steps so far.
     fields: Vec<(String, usize, Vec<f32>)>,
-    /// Name, and one number of every step so far.
+    /// Name, and one value per step so far.
     values: Vec<(String, Vec<f64>)>,
 }
 
-impl Movie {
-    /// Of polygons, which have a field, over so many points.
-    pub fn new(cells: Cells, (name, numbers): (&str, Vec<u8>), count: usize) -> Self {
+impl Series {
+    /// Creates an empty series of polygons with a named field of the cells and `point_count` points.
+    pub fn new(cells: Cells, (name, values): (&str, Vec<u8>), point_count: usize) -> Self {
         Self {
             cells,
-            of_cells: (name.to_owned(), numbers),
-            count,
+            cell_data: (name.to_owned(), values),
+            point_count,
             points: vec![],
             times: vec![],
             fields: vec![],
@@ -38,8 +37,9 @@ impl Movie {
         }
     }
 
-    /// Adds a step: its time, single numbers of it, its points, and the fields that these have, each the same in every step.
-    pub fn step(
+    /// Adds a step: its time, named values of the step, its points, and fields at the points as (name, number of components,
+    /// values). Names and their order must be the same in every step.
+    pub fn push(
         &mut self,
         time: f64,
         values: impl IntoIterator<Item = (&'static str, f64)>,
@@ -62,21 +62,25 @@ impl Movie {
         }
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     ///
     /// # Errors
-    /// What hdf5-pure says, in its words.
+    /// The message of hdf5-pure.
     pub fn bytes(&self) -> Result<Vec<u8>, String> {
         let steps = self.times.len();
-        let cells = self.cells.points.len() / self.cells.each;
+        let cells = self.cells.points.len() / self.cells.points_per_cell;
         let mut file = FileBuilder::new();
         let mut root = file.create_group("VTKHDF");
         root.set_attr("Version", AttrValue::I64Array(vec![2, 0]));
         root.set_attr("Type", AttrValue::AsciiString("PolyData".into()));
-        integers(&mut root, "NumberOfPoints", &vec![self.count as i64; steps]);
+        integers(
+            &mut root,
+            "NumberOfPoints",
+            &vec![self.point_count as i64; steps],
+        );
         floats(&mut root, "Points", &self.points, 3);
         let offsets: Vec<i64> = (0..=cells)
-            .map(|cell| (cell * self.cells.each) as i64)
+            .map(|cell| (cell * self.cells.points_per_cell) as i64)
             .collect();
         for kind in ["Vertices", "Lines", "Polygons", "Strips"] {
             let mut group = root.create_group(kind);
@@ -85,7 +89,7 @@ impl Movie {
                 _ => (0, &[0][..], &[][..]),
             };
             integers(&mut group, "NumberOfCells", &vec![count as i64; steps]);
-            let ids = (count * self.cells.each) as i64;
+            let ids = (count * self.cells.points_per_cell) as i64;
             integers(&mut group, "NumberOfConnectivityIds", &vec![ids; steps]);
             integers(&mut group, "Offsets", offsets);
             integers(&mut group, "Connectivity", points);
@@ -96,7 +100,7 @@ impl Movie {
             floats(&mut data, name, numbers, *components);
         }
         root.add_group(data.finish());
-        let (name, numbers) = &self.of_cells;
+        let (name, numbers) = &self.cell_data;
         let mut data = root.create_group("CellData");
         data.create_dataset(name).with_u8_data(numbers);
         root.add_group(data.finish());
@@ -113,26 +117,26 @@ impl Movie {
         let first = |n: usize| -> Vec<i64> { (0..steps).map(|step| (step * n) as i64).collect() };
         integers(&mut group, "PartOffsets", &first(1));
         integers(&mut group, "NumberOfParts", &vec![1; steps]);
-        integers(&mut group, "PointOffsets", &first(self.count));
+        integers(&mut group, "PointOffsets", &first(self.point_count));
         for name in ["CellOffsets", "ConnectivityIdOffsets"] {
-            // Of vertices, lines, polygons and strips.
+            // For vertices, lines, polygons and strips.
             let zeros = vec![0; 4 * steps];
             let dataset = group.create_dataset(name);
             dataset.with_i64_data(&zeros).with_shape(&[steps as u64, 4]);
         }
         let mut offsets = group.create_group("PointDataOffsets");
         for (name, ..) in &self.fields {
-            integers(&mut offsets, name, &first(self.count));
+            integers(&mut offsets, name, &first(self.point_count));
         }
         group.add_group(offsets.finish());
         let mut offsets = group.create_group("CellDataOffsets");
-        integers(&mut offsets, &self.of_cells.0, &vec![0; steps]);
+        integers(&mut offsets, &self.cell_data.0, &vec![0; steps]);
         group.add_group(offsets.finish());
         let mut offsets = group.create_group("FieldDataOffsets");
         let mut sizes = group.create_group("FieldDataSizes");
         for (name, _) in &self.values {
             integers(&mut offsets, name, &first(1));
-            // One component of one tuple.
+            // One tuple with one component.
             let ones = vec![1; 2 * steps];
             let dataset = sizes.create_dataset(name);
             dataset.with_i64_data(&ones).with_shape(&[steps as u64, 2]);
@@ -152,7 +156,7 @@ fn integers(group: &mut GroupBuilder, name: &str, numbers: &[i64]) {
         .with_shape(&[numbers.len() as u64]);
 }
 
-/// Numbers in rows of so many, compressed.
+/// Writes numbers in rows of `columns` with compression.
 fn floats(group: &mut GroupBuilder, name: &str, numbers: &[f32], columns: usize) {
     let rows = numbers.len() / columns;
     let (mut shape, mut chunk) = (vec![rows as u64], vec![rows.clamp(1, CHUNK) as u64]);

@@ -1,6 +1,6 @@
-//! The order of the nodes of a cell of any degree.
+//! Node numbering of Lagrange hexahedra.
 
-/// Corners of a hexahedron: first those below, around, then those above.
+/// Corners of a hexahedron: around the lower face, then around the upper one.
 const CORNERS: [[usize; 3]; 8] = [
     [0, 0, 0],
     [1, 0, 0],
@@ -12,7 +12,7 @@ const CORNERS: [[usize; 3]; 8] = [
     [0, 1, 1],
 ];
 
-/// Edges, from a corner to a corner.
+/// Edges from corner to corner.
 const EDGES: [[usize; 2]; 12] = [
     [0, 1],
     [1, 2],
@@ -28,9 +28,9 @@ const EDGES: [[usize; 2]; 12] = [
     [3, 7],
 ];
 
-/// Nodes (i, j, k), each 0 to the degree, of a Lagrange hexahedron in the order of VTK: corners, then edges, then faces
-/// (those across i, across j, across k, the lower of each first), then the inside; the first index runs fastest.
-pub fn hexahedron(degree: usize) -> Vec<[usize; 3]> {
+/// Returns the nodes (i, j, k), each from 0 to `degree`, of a Lagrange hexahedron in the order of VTK: corners, edges,
+/// faces (normal to i, j, k, the lower one first), interior; the first index varies fastest.
+pub(super) fn lagrange_hexahedron(degree: usize) -> Vec<[usize; 3]> {
     let inner = 1..degree;
     let mut nodes: Vec<[usize; 3]> = CORNERS.map(|c| c.map(|x| x * degree)).to_vec();
     for [from, to] in EDGES.map(|edge| edge.map(|corner| CORNERS[corner])) {
@@ -38,8 +38,8 @@ pub fn hexahedron(degree: usize) -> Vec<[usize; 3]> {
             nodes.push([0, 1, 2].map(|i| from[i] * (degree - step) + to[i] * step));
         }
     }
-    for across in 0..3 {
-        let [first, second] = [[1, 2], [0, 2], [0, 1]][across];
+    for normal in 0..3 {
+        let [first, second] = [[1, 2], [0, 2], [0, 1]][normal];
         for side in [0, degree] {
             for b in inner.clone() {
                 for a in inner.clone() {
@@ -64,9 +64,9 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn every_node_stands_in_it_once() {
+    fn every_node_occurs_once() {
         for degree in 1..=5 {
-            let nodes = hexahedron(degree);
+            let nodes = lagrange_hexahedron(degree);
             assert_eq!(nodes.len(), (degree + 1).pow(3));
             let distinct: BTreeSet<_> = nodes.iter().collect();
             assert_eq!(distinct.len(), nodes.len());
@@ -75,9 +75,9 @@ mod tests {
     }
 
     #[test]
-    fn quadratic_nodes_stand_as_in_vtk() {
-        // Edge 9 goes up from corner 1, edge 11 from corner 3; face 0 is across i.
-        let nodes = hexahedron(2);
+    fn quadratic_nodes_have_the_order_of_vtk() {
+        // Edge 9 starts at corner 1, edge 11 at corner 3; face 0 is normal to i.
+        let nodes = lagrange_hexahedron(2);
         assert_eq!(nodes[8 + 9], [2, 0, 1]);
         assert_eq!(nodes[8 + 11], [0, 2, 1]);
         assert_eq!(nodes[20], [0, 1, 1]);

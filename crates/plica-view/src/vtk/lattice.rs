@@ -1,25 +1,25 @@
-//! Cells between points that lie in rows, rows in layers.
+//! Cells of a structured grid that is periodic in its second direction.
 
-use super::hexahedron;
+use super::lagrange::lagrange_hexahedron;
 
-/// Points (i, j, k), the first index fastest; the second closes on itself.
+/// A structured grid of points (i, j, k), the first index varying fastest. It is periodic in j.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lattice {
-    /// Spans between points, in each direction.
-    pub spans: [usize; 3],
-    /// Degree of the cells that it may be cut into: it divides the spans.
+    /// Intervals between points in each direction.
+    pub intervals: [usize; 3],
+    /// Polynomial degree of the Lagrange cells; the numbers of intervals are multiples of it.
     pub degree: usize,
 }
 
-/// Cells by the numbers of their points.
+/// Cells of one type, defined by the indices of their points.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cells {
-    /// Points of every cell, one after the other.
+    /// Points of all cells, cell by cell.
     pub points: Vec<i64>,
-    /// How many each has.
-    pub each: usize,
-    /// What VTK calls their kind by number.
-    pub kind: u8,
+    /// Number of points per cell.
+    pub points_per_cell: usize,
+    /// Number of the cell type in VTK.
+    pub cell_type: u8,
 }
 
 /// VTK_QUAD.
@@ -30,55 +30,55 @@ const HEXAHEDRON: u8 = 12;
 const LAGRANGE_HEXAHEDRON: u8 = 72;
 
 impl Lattice {
-    /// Points in each direction.
+    /// Returns the number of points in each direction.
     pub fn points(&self) -> [usize; 3] {
-        let [i, j, k] = self.spans;
+        let [i, j, k] = self.intervals;
         [i + 1, j, k + 1]
     }
 
-    /// The number of a point.
-    fn number(&self, [i, j, k]: [usize; 3]) -> i64 {
+    /// Returns the index of a point.
+    fn index(&self, [i, j, k]: [usize; 3]) -> i64 {
         let [across, around, _] = self.points();
         (i + across * (j % around + around * k)) as i64
     }
 
-    /// Lagrange hexahedra of the degree.
+    /// Returns Lagrange hexahedra of the degree.
     pub fn lagrange(&self) -> Cells {
-        self.cut(self.degree, LAGRANGE_HEXAHEDRON)
+        self.hexahedra(self.degree, LAGRANGE_HEXAHEDRON)
     }
 
-    /// Linear hexahedra, one per span.
+    /// Returns linear hexahedra between neighbouring points.
     pub fn linear(&self) -> Cells {
-        self.cut(1, HEXAHEDRON)
+        self.hexahedra(1, HEXAHEDRON)
     }
 
-    fn cut(&self, degree: usize, kind: u8) -> Cells {
-        let nodes = hexahedron(degree);
-        let [across, around, along] = self.spans.map(|spans| spans / degree);
+    fn hexahedra(&self, degree: usize, cell_type: u8) -> Cells {
+        let nodes = lagrange_hexahedron(degree);
+        let [across, around, along] = self.intervals.map(|n| n / degree);
         let mut points = Vec::with_capacity(across * around * along * nodes.len());
         for k in 0..along {
             for j in 0..around {
                 for i in 0..across {
                     let at =
                         |n: &[usize; 3]| [i * degree + n[0], j * degree + n[1], k * degree + n[2]];
-                    points.extend(nodes.iter().map(|n| self.number(at(n))));
+                    points.extend(nodes.iter().map(|n| self.index(at(n))));
                 }
             }
         }
         Cells {
             points,
-            each: nodes.len(),
-            kind,
+            points_per_cell: nodes.len(),
+            cell_type,
         }
     }
 
-    /// The quadrilaterals that bound it, seen from outside, and which face each is of: lower and upper end of the first
-    /// direction, then of the last.
-    pub fn skin(&self) -> (Cells, Vec<u8>) {
-        let [across, around, along] = self.spans;
+    /// Returns the boundary quadrilaterals with outward normals, and the number of the face of each: 0 and 1 for the lower and
+    /// upper end of the first direction, 2 and 3 for those of the last.
+    pub fn boundary(&self) -> (Cells, Vec<u8>) {
+        let [across, around, along] = self.intervals;
         let (mut points, mut faces) = (vec![], vec![]);
         let mut add = |face: u8, corners: [[usize; 3]; 4], outwards: bool| {
-            let mut corners = corners.map(|at| self.number(at));
+            let mut corners = corners.map(|at| self.index(at));
             if !outwards {
                 corners.reverse();
             }
@@ -103,8 +103,8 @@ impl Lattice {
         }
         let cells = Cells {
             points,
-            each: 4,
-            kind: QUADRILATERAL,
+            points_per_cell: 4,
+            cell_type: QUADRILATERAL,
         };
         (cells, faces)
     }
@@ -115,12 +115,12 @@ mod tests {
     use super::*;
 
     const LATTICE: Lattice = Lattice {
-        spans: [2, 12, 4],
+        intervals: [2, 12, 4],
         degree: 2,
     };
 
-    /// A thick ring.
-    fn place(number: i64) -> [f64; 3] {
+    /// Position of a point of a thick ring.
+    fn position(number: i64) -> [f64; 3] {
         let [across, around, _] = LATTICE.points();
         let number = number as usize;
         let (i, j, k) = (
@@ -133,9 +133,9 @@ mod tests {
         [radius * angle.cos(), radius * angle.sin(), 0.2 * k as f64]
     }
 
-    /// Six times the volume between a triangle and the origin.
-    fn cone([a, b, c]: [i64; 3]) -> f64 {
-        let [a, b, c] = [a, b, c].map(place);
+    /// Six times the volume of the tetrahedron between a triangle and the origin.
+    fn volume_to_origin([a, b, c]: [i64; 3]) -> f64 {
+        let [a, b, c] = [a, b, c].map(position);
         let across = [0, 1, 2].map(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             b[j] * c[k] - b[k] * c[j]
@@ -144,9 +144,9 @@ mod tests {
     }
 
     #[test]
-    fn the_skin_is_closed_and_looks_outwards() {
-        let (cells, faces) = LATTICE.skin();
-        assert_eq!(faces.len(), cells.points.len() / cells.each);
+    fn the_boundary_is_closed_with_outward_normals() {
+        let (cells, faces) = LATTICE.boundary();
+        assert_eq!(faces.len(), cells.points.len() / cells.points_per_cell);
         let mut edges = std::collections::BTreeMap::new();
         let mut volume = 0.0;
         for quad in cells.points.chunks(4) {
@@ -155,20 +155,22 @@ mod tests {
                 *edges.entry((from.min(to), from.max(to))).or_insert(0) +=
                     if from < to { 1 } else { -1 };
             }
-            volume += (cone([quad[0], quad[1], quad[2]]) + cone([quad[0], quad[2], quad[3]])) / 6.0;
+            volume += (volume_to_origin([quad[0], quad[1], quad[2]])
+                + volume_to_origin([quad[0], quad[2], quad[3]]))
+                / 6.0;
         }
         assert!(edges.values().all(|&sum| sum == 0));
-        // A polygon of twelve.
-        let sector = 12.0 * 0.5 * (std::f64::consts::TAU / 12.0).sin();
-        let expected = sector * (1.2_f64.powi(2) - 1.0) * 0.8;
+        // Area of a regular polygon with twelve corners.
+        let polygon = 12.0 * 0.5 * (std::f64::consts::TAU / 12.0).sin();
+        let expected = polygon * (1.2_f64.powi(2) - 1.0) * 0.8;
         assert!((volume - expected).abs() < 1e-12, "{volume} {expected}");
     }
 
     #[test]
-    fn cells_have_their_corners_in_a_right_handed_order() {
+    fn cells_have_positive_volume() {
         for cells in [LATTICE.lagrange(), LATTICE.linear()] {
-            for cell in cells.points.chunks(cells.each) {
-                let at = |i: usize| place(cell[i]);
+            for cell in cells.points.chunks(cells.points_per_cell) {
+                let at = |i: usize| position(cell[i]);
                 let [o, a, b, c] = [at(0), at(1), at(3), at(4)];
                 let edge = |p: [f64; 3]| [0, 1, 2].map(|i| p[i] - o[i]);
                 let [a, b, c] = [a, b, c].map(edge);

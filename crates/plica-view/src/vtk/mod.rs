@@ -1,16 +1,16 @@
-//! Files of VTK, as ParaView and PyVista read them: grids, surfaces, collections.
+//! VTK files for ParaView and PyVista: volume grids, surfaces, time series.
 //!
-//! | file | holds |
+//! | file | content |
 //! |---|---|
-//! | `column` | an array of numbers as it stands in a file: blocks, compressed one by one |
-//! | `lagrange` | the order of the nodes of a cell of any degree |
-//! | `lattice` | cells between points that lie in rows, rows in layers |
-//! | `document` | the file: a head in XML, then the columns as raw bytes |
-//! | `hdf` | one file of a surface that moves, as VTKHDF |
-//! | `collection` | a file that names others, one per step |
+//! | `column` | an array of numbers, compressed in blocks |
+//! | `lagrange` | node numbering of Lagrange hexahedra |
+//! | `lattice` | cells of a structured grid that is periodic in one direction |
+//! | `document` | an XML file with appended arrays (`.vtu`, `.vtp`) |
+//! | `hdf` | a time series of a surface in one VTKHDF file |
+//! | `collection` | a list of files, one per step (`.pvd`) |
 //!
-//! Format: VTK's XML files, version 2.2 (in which the nodes of a Lagrange hexahedron stand in the order that is
-//! used here), little-endian, appended raw data, zlib; and VTKHDF 2.0.
+//! The XML files have version 2.2 (which defines the numbering of Lagrange hexahedra), little-endian raw appended data and zlib
+//! compression; the VTKHDF files have version 2.0.
 
 mod collection;
 mod column;
@@ -22,6 +22,5 @@ mod lattice;
 pub use collection::collection;
 pub use column::{Column, Number};
 pub use document::Document;
-pub use hdf::Movie;
-pub use lagrange::hexahedron;
+pub use hdf::Series;
 pub use lattice::{Cells, Lattice};

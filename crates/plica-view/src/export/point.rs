@@ -1,61 +1,61 @@
-//! What is known of a point of the wall, in (x, y, z).
-#![allow(non_snake_case)] // the formulas keep the letters of their sources
+//! Position and fields of a point of the wall in (x, y, z) coordinates.
+#![allow(non_snake_case)] // the formulas use the letters of their sources
 
 use plica::assembly::Sample;
 use plica::tensor::Tensor2;
 
-/// A point, and the fields there.
+/// Position and field values of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Node {
-    /// Where it is, in D.
+pub(super) struct PointData {
+    /// Position in units of D.
     pub position: [f64; 3],
-    /// From where it was at rest, in D.
+    /// Displacement from the stress-free state in units of D.
     pub displacement: [f32; 3],
     /// det Fe.
     pub jacobian: f32,
-    /// θζ and θη.
+    /// Growth stretches θζ and θη.
     pub grown: [f32; 2],
-    /// w, in E.
+    /// Strain energy density w in units of E.
     pub energy_density: f32,
-    /// σ in E: xx, yy, zz, xy, yz, xz.
+    /// Cauchy stress σ in units of E: xx, yy, zz, xy, yz, xz.
     pub stress: [f32; 6],
-    /// Von Mises stress, in E.
+    /// Von Mises stress in units of E.
     pub von_mises: f32,
     /// Principal stretches of Fe, largest first.
     pub stretches: [f32; 3],
-    /// Their directions.
+    /// Principal directions.
     pub directions: [[f32; 3]; 3],
-    /// ½ (FᵀF − 1): ζζ, ηη, ξξ, ζη, ηξ, ζξ.
+    /// Green–Lagrange strain ½ (FᵀF − 1): ζζ, ηη, ξξ, ζη, ηξ, ζξ.
     pub strain: [f32; 6],
 }
 
-/// A turn about the axis.
+/// A rotation about the z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+pub(super) struct Rotation {
     sin: f64,
     cos: f64,
 }
 
-impl Turn {
-    /// By an angle, in radians.
+impl Rotation {
+    /// Creates the rotation by an angle in radians.
     pub fn by(angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         Self { sin, cos }
     }
 
-    /// A vector, turned.
-    pub fn of(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    /// Rotates a vector.
+    pub fn vector(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let Self { sin, cos } = self;
         [x * cos - y * sin, x * sin + y * cos, z]
     }
 
-    /// The same of one stored short.
-    pub fn of_short(&self, x: [f32; 3]) -> [f32; 3] {
-        self.of(x.map(f64::from)).map(|x| x as f32)
+    /// Rotates a vector in single precision.
+    pub fn vector_f32(&self, x: [f32; 3]) -> [f32; 3] {
+        self.vector(x.map(f64::from)).map(|x| x as f32)
     }
 
-    /// A symmetric tensor (xx, yy, zz, xy, yz, xz), turned.
-    pub fn of_tensor(&self, t: [f32; 6]) -> [f32; 6] {
+    /// Rotates a symmetric tensor (xx, yy, zz, xy, yz, xz).
+    pub fn tensor(&self, t: [f32; 6]) -> [f32; 6] {
         let [xx, yy, zz, xy, yz, xz] = t.map(f64::from);
         let Self { sin: s, cos: c } = *self;
         [
@@ -70,17 +70,16 @@ impl Turn {
     }
 }
 
-impl Node {
-    /// From what a tube says of a point.
-    pub fn of(sample: &Sample) -> Self {
-        let turn = Turn::by(sample.element_angle);
-        // From (z, outwards, around) to (x, y, z), and to the laboratory.
-        let out = |[z, x, y]: [f64; 3]| [x, y, z];
-        let vector = |v: [f64; 3]| turn.of(out(v));
+impl PointData {
+    /// Converts a sample of the tube from (z, outwards, around) to (x, y, z).
+    pub fn new(sample: &Sample) -> Self {
+        let rotation = Rotation::by(sample.element_angle);
+        let reorder = |[z, x, y]: [f64; 3]| [x, y, z];
+        let vector = |v: [f64; 3]| rotation.vector(reorder(v));
         let tensor = |t: &Tensor2| {
             let t = t.0;
             let [zz, xx, yy] = [0, 1, 2].map(|i| t[i][i]);
-            turn.of_tensor([xx, yy, zz, t[1][2], t[2][0], t[1][0]].map(|x| x as f32))
+            rotation.tensor([xx, yy, zz, t[1][2], t[2][0], t[1][0]].map(|x| x as f32))
         };
         let Fe = sample.elastic;
         let stretches = sample.stretches();
@@ -91,11 +90,11 @@ impl Node {
         }
         let C = F.transpose().times(F).0;
         let E = |i: usize, j: usize| 0.5 * (C[i][j] - f64::from(u8::from(i == j)));
-        let (position, reference) = (out(sample.position), out(sample.reference));
-        // Where nothing exists there is nothing, and det Fe tells why.
-        let turned = sample.is_turned_over();
-        let existing = |x: f64| if turned { 0.0 } else { x };
-        let jacobian = if turned {
+        let (position, reference) = (reorder(sample.position), reorder(sample.reference));
+        // Stress and energy do not exist in an inverted element and are set to zero; det Fe shows the reason.
+        let inverted = sample.is_turned_over();
+        let existing = |x: f64| if inverted { 0.0 } else { x };
+        let jacobian = if inverted {
             sample.jacobian.min(Fe.determinant())
         } else {
             sample.jacobian
@@ -109,14 +108,14 @@ impl Node {
             stress: tensor(&Tensor2(sample.stress.0.map(|row| row.map(existing)))),
             von_mises: existing(sample.von_mises()) as f32,
             stretches: stretches.map(|(stretch, _)| stretch as f32),
-            directions: stretches.map(|(_, v)| vector(pointed(v)).map(|x| x as f32)),
+            directions: stretches.map(|(_, v)| vector(oriented(v)).map(|x| x as f32)),
             strain: [(0, 0), (2, 2), (1, 1), (0, 2), (2, 1), (0, 1)].map(|(i, j)| E(i, j) as f32),
         }
     }
 }
 
-/// Of a direction and its opposite, the one whose largest component is positive: neighbours then point alike.
-fn pointed(v: [f64; 3]) -> [f64; 3] {
+/// Returns the direction or its opposite, such that the largest component is positive. Neighbours then point the same way.
+fn oriented(v: [f64; 3]) -> [f64; 3] {
     let largest = v
         .iter()
         .fold(0.0_f64, |m, x| if x.abs() > m.abs() { *x } else { m });
@@ -131,9 +130,9 @@ mod tests {
     use plica::material::{Material, NeoHookean, Volumetric};
     use plica::tube::{Integration, Mesh, Tube};
 
-    /// With both laws of volume, integrated with the rest and apart.
+    /// Both volumetric laws, with full and with reduced integration.
     #[test]
-    fn where_the_wall_is_turned_over_there_is_no_stress_and_no_nan() {
+    fn inverted_elements_have_zero_stress_and_no_nan() {
         for volumetric in [Volumetric::Logarithmic, Volumetric::Quadratic] {
             for integration in [Integration::Full, Integration::Reduced] {
                 let tube = Tube {
@@ -148,7 +147,7 @@ mod tests {
                     ..fixture::coarse()
                 };
                 let tube = SplineTube::new(&tube, &mesh, 1);
-                // In the middle of the tube the inside comes to lie outside.
+                // In the middle of the tube the inner face moves beyond the outer one.
                 let u = tube.control_values(|z, r, _| {
                     [
                         0.0,
@@ -157,10 +156,10 @@ mod tests {
                     ]
                 });
                 let load = tube.tube.rest();
-                let (mut turned, mut sound) = (0, 0);
+                let (mut inverted, mut valid) = (0, 0);
                 for k in 0..=60 {
-                    for depth in 0..=6 {
-                        let (z, radius) = (f64::from(k) / 60.0, 0.4 + 0.1 * f64::from(depth) / 6.0);
+                    for layer in 0..=6 {
+                        let (z, radius) = (f64::from(k) / 60.0, 0.4 + 0.1 * f64::from(layer) / 6.0);
                         let sample = tube.sample(
                             &load,
                             &u,
@@ -170,20 +169,24 @@ mod tests {
                                 angle: 0.0,
                             },
                         );
-                        let node = Node::of(&sample);
-                        let stresses = [node.stress, [node.von_mises; 6], [node.energy_density; 6]];
+                        let point = PointData::new(&sample);
+                        let stresses = [
+                            point.stress,
+                            [point.von_mises; 6],
+                            [point.energy_density; 6],
+                        ];
                         let all = stresses.as_flattened();
                         assert!(all.iter().all(|x| x.is_finite()));
                         if sample.is_turned_over() {
-                            turned += 1;
-                            assert!(node.jacobian <= 0.0);
+                            inverted += 1;
+                            assert!(point.jacobian <= 0.0);
                             assert!(all.iter().all(|x| *x == 0.0));
                         } else {
-                            sound += 1;
+                            valid += 1;
                         }
                     }
                 }
-                assert!(turned > 10 && sound > 100, "{turned}, {sound}");
+                assert!(inverted > 10 && valid > 100, "{inverted}, {valid}");
             }
         }
     }
