@@ -47,7 +47,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
                         volumetric: Volumetric::Quadratic,
                         ..
                     }) => ", quadratic volumetric law",
-                    Material::NeoHookean(_) => "",
+                    _ => "",
                 }
             ),
         ),

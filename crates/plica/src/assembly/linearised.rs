@@ -11,7 +11,7 @@ use super::spline_tube::{with_degree, with_law_and_degree};
 use super::stress_free::StressFree;
 use super::tables::{Around, Layer, Slab};
 use super::tangent::SlabTangent;
-use crate::material::Material;
+use crate::material::{Material, with_law};
 use crate::matrix::BlockBanded;
 use crate::rings::Circulant;
 use crate::tensor::{LANES, Lanes};
@@ -35,8 +35,8 @@ pub struct Linearised {
 
 impl SplineTube {
     /// The tangent stiffness ∂R/∂u_cp of the sector at a state, for products. The state must not
-    /// be inverted (see [`SplineTube::forces`]). Takes ten numbers of memory, in single
-    /// precision, for every quadrature point.
+    /// be inverted (see [`SplineTube::forces`]). Stores the law's
+    /// tangent data in single precision at every quadrature point.
     pub fn linearised(&self, load: &Load, u: &[f64]) -> Linearised {
         let mut at = Linearised::default();
         self.linearise(load, u, &mut at);
@@ -72,7 +72,8 @@ impl SplineTube {
             .into_par_iter()
             .enumerate()
             .map(|(number, (slab, kept))| {
-                let len = kept_len(functions, self.layers.len(), self.lanes.vectors());
+                let (layers, rings) = (self.layers.len(), self.lanes.vectors());
+                let len = with_law_and_degree!(self, self.law, kept_len, layers, rings);
                 kept.resize(len * slab.elements, [0.0; 16]);
                 let mut averaged = vec![0.0; element * slab.elements];
                 for lane in 0..slab.elements {

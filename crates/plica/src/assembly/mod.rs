@@ -31,9 +31,8 @@ mod kinematics;
 mod linearised;
 mod pencil;
 mod place;
-#[cfg(test)]
-mod plain;
 mod pressure;
+mod reference;
 mod ring_damping;
 mod sample;
 mod slab;
@@ -48,6 +47,7 @@ mod tests;
 pub use coupling::LowHarmonics;
 pub use linearised::Linearised;
 pub use place::Place;
+pub use reference::{ReferenceForces, ReferenceTube};
 pub use ring_damping::RingDamping;
 pub use sample::{Point, Sample};
 pub use spline_tube::{Forces, Inverted, SplineTube};

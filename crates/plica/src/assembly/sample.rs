@@ -4,7 +4,7 @@ use super::SplineTube;
 use super::kinematics::{Columns, Vector, turn};
 use super::stress_free::Departure;
 use super::tables::Around;
-use crate::material::{Law, Material};
+use crate::material::Law;
 use crate::spline::Values;
 use crate::tensor::Tensor2;
 use crate::tube::Load;
@@ -134,9 +134,7 @@ impl SplineTube {
         // From the element's frame to the laboratory.
         let (sin, cos) = (element * alpha).sin_cos();
         let turned = |x: [f64; 3]| [x[0], x[1] * cos - x[2] * sin, x[1] * sin + x[2] * cos];
-        let (energy_density, P) = match self.law {
-            Material::NeoHookean(law) => (law.energy(&Fe), law.stress(&Fe)),
-        };
+        let (energy_density, P) = (self.law.energy(&Fe), self.law.stress(&Fe));
         let jacobian = Fe.determinant();
         Sample {
             reference: turned(reference),

@@ -11,7 +11,7 @@ use super::stress_free::StressFree;
 use super::supports::{Supports, left_by, motions_in_harmonic};
 use super::tables::{Around, Layer, Slab, full_rules, reduced_rules};
 use super::tangent::{SlabTangent, slab_tangent};
-use crate::material::Material;
+use crate::material::{Material, with_law};
 use crate::matrix::BlockBanded;
 use crate::rings::{Sector, Turn};
 use crate::spline::{Basis, Circle, gauss_legendre, graded_breakpoints};
@@ -91,12 +91,10 @@ pub struct Inverted {
     pub jacobian: f64,
 }
 
-/// Calls a kernel for a law and the degree at hand. A new law adds one line.
+/// Calls a kernel that is compiled for the law and the degree.
 macro_rules! with_law_and_degree {
     ($self:ident, $law:expr, $kernel:ident, $($argument:expr),+) => {
-        match $law {
-            Material::NeoHookean(law) => with_degree!($self, law, $kernel, $($argument),+),
-        }
+        with_law!(&$law, law => with_degree!($self, law, $kernel, $($argument),+))
     };
 }
 
@@ -104,11 +102,11 @@ macro_rules! with_law_and_degree {
 macro_rules! with_degree {
     ($self:ident, $law:ident, $kernel:ident, $($argument:expr),+) => {
         match $self.degree() {
-            1 => $kernel::<_, 2>(&$law, $($argument),+),
-            2 => $kernel::<_, 3>(&$law, $($argument),+),
-            3 => $kernel::<_, 4>(&$law, $($argument),+),
-            4 => $kernel::<_, 5>(&$law, $($argument),+),
-            5 => $kernel::<_, 6>(&$law, $($argument),+),
+            1 => $kernel::<_, 2>($law, $($argument),+),
+            2 => $kernel::<_, 3>($law, $($argument),+),
+            3 => $kernel::<_, 4>($law, $($argument),+),
+            4 => $kernel::<_, 5>($law, $($argument),+),
+            5 => $kernel::<_, 6>($law, $($argument),+),
             degree => unreachable!("degree {degree} is refused by SplineTube::new"),
         }
     };
@@ -118,7 +116,7 @@ pub(super) use {with_degree, with_law_and_degree};
 
 impl SplineTube {
     /// Lays a mesh over a tube; `rings` of the mesh's rings are solved for and repeat. Panics unless the
-    /// degree is from 1 to 5, and 3 or 5 with reduced integration.
+    /// degree is from 1 to 5, and with reduced integration 3 or 5 and the law not a custom one.
     pub fn new(tube: &Tube, mesh: &Mesh, rings: usize) -> Self {
         let p = mesh.degree;
         assert!((1..=5).contains(&p), "degree {p} is not between 1 and 5");
@@ -151,7 +149,7 @@ impl SplineTube {
             supports,
             ring_supports,
             imperfect: None,
-            law: tube.material,
+            law: tube.material.clone(),
             volume: None,
         };
         let spline = match displacement {
@@ -167,7 +165,10 @@ impl SplineTube {
     /// The same with the part of the law that resists a change of volume integrated at fewer points through
     /// the wall.
     fn volume_apart(self) -> Self {
-        let [shape, volume] = self.law.parts();
+        let [shape, volume] = self
+            .law
+            .parts()
+            .expect("reduced integration needs a law with volumetric part");
         let apart = Self {
             layers: Layer::all(&self.wall, &reduced_rules(&self.wall)),
             law: volume,

@@ -4,12 +4,12 @@
 //!
 //! with U = λ/2 (ln J)², the paper's, or U = λ/4 (J² − 1 − 2 ln J) (Simo and Hughes 1998).
 //!
-//! Valid for J > 0. Stretched by s along a line, a wave along it that moves along it meets the stiffness
-//! μ (1 + s⁻²) + λ (1 − ln J) s⁻² of the first, which a nearly incompressible wall loses where
-//! ln J > 1 + (μ/λ)(1 + s²), at ν = 0.495 beyond J = 3, far from where it goes; the second, convex in J for
-//! every J as long as λ ≥ 0, has μ (1 + s⁻²) + λ/2 (1 + J²) s⁻², and keeps it.
+//! Valid for J > 0. At a stretch s in some direction, a longitudinal wave in that direction has the
+//! stiffness μ (1 + s⁻²) + λ (1 − ln J) s⁻² with the first U. It is negative where
+//! ln J > 1 + (μ/λ)(1 + s²): at ν = 0.495 beyond J = 3, which nearly incompressible walls do not reach.
+//! The second U is convex in J for λ ≥ 0; its stiffness μ (1 + s⁻²) + λ/2 (1 + J²) s⁻² is positive.
 
-use super::{Kept, Law, Moduli};
+use super::{Law, Moduli, TangentData};
 use crate::tensor::{Real, Tensor2};
 
 /// The compressible neo-Hookean law. Both constants have the unit of a stress.
@@ -19,11 +19,11 @@ pub struct NeoHookean {
     pub mu: f64,
     /// Lamé's first constant λ.
     pub lambda: f64,
-    /// U.
+    /// Volumetric energy U(J).
     pub volumetric: Volumetric,
 }
 
-/// How a law resists a change of volume.
+/// A volumetric energy U(J).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Volumetric {
     /// U = λ/2 (ln J)².
@@ -34,7 +34,7 @@ pub enum Volumetric {
 }
 
 impl NeoHookean {
-    /// From Young's modulus E and Poisson's ratio ν, −1 < ν < 0.5:
+    /// Creates the law from Young's modulus E and Poisson's ratio ν, −1 < ν < 0.5:
     /// μ = E / 2(1+ν), λ = Eν / (1+ν)(1−2ν).
     pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Self {
         let (E, nu) = (youngs_modulus, poisson_ratio);
@@ -45,7 +45,18 @@ impl NeoHookean {
         }
     }
 
-    /// J U′, a pressure times J.
+    /// Returns the isochoric and the volumetric part, with λ = 0 and with μ = 0.
+    pub(super) fn parts(self) -> [Self; 2] {
+        [
+            Self {
+                lambda: 0.0,
+                ..self
+            },
+            Self { mu: 0.0, ..self },
+        ]
+    }
+
+    /// Returns J U′, a pressure times J.
     #[inline(always)]
     fn pressure<S: Real>(&self, J: S) -> S {
         match self.volumetric {
@@ -54,7 +65,7 @@ impl NeoHookean {
         }
     }
 
-    /// J (J U′)′, from μ − J U′: λ, or λ J² = λ + 2 J U′.
+    /// Returns J (J U′)′ from μ − J U′: λ, or λ J² = λ + 2 J U′.
     #[inline(always)]
     fn bulk<S: Real>(&self, m: S) -> S {
         let doubled = match self.volumetric {
@@ -66,6 +77,8 @@ impl NeoHookean {
 }
 
 impl Law for NeoHookean {
+    type TangentData<S: Real> = [S; 10];
+
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {
         let (mu, lambda) = (self.mu, self.lambda);
@@ -121,24 +134,33 @@ impl Law for NeoHookean {
         }
         A
     }
+}
 
-    // F⁻ᵀ row by row, then μ − J U′.
+/// F⁻ᵀ row by row, then μ − J U′.
+impl<S: Real> TangentData<S, NeoHookean> for [S; 10] {
+    const LEN: usize = 10;
+
     #[inline(always)]
-    fn keep<S: Real>(&self, F: &Tensor2<S>) -> Kept<S> {
+    fn zeros(like: S) -> Self {
+        [like.like(0.0); 10]
+    }
+
+    #[inline(always)]
+    fn linearise(law: &NeoHookean, F: &Tensor2<S>) -> Self {
         let cofactor = F.cofactor();
         let J = F.determinant_with(cofactor);
-        let m = J.like(self.mu) - self.pressure(J);
+        let m = J.like(law.mu) - law.pressure(J);
         let [a, b, c] = cofactor.scaled(J.like(1.0) / J).0;
         [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], m]
     }
 
     // A : dF = μ dF + (μ − J U′) F⁻ᵀ dFᵀ F⁻ᵀ + J (J U′)′ (F⁻ᵀ : dF) F⁻ᵀ
     #[inline(always)]
-    fn change<S: Real>(&self, kept: &Kept<S>, dF: &Tensor2<S>) -> Tensor2<S> {
-        let [a0, a1, a2, b0, b1, b2, c0, c1, c2, m] = *kept;
+    fn tangent_product(&self, law: &NeoHookean, dF: &Tensor2<S>) -> Tensor2<S> {
+        let [a0, a1, a2, b0, b1, b2, c0, c1, c2, m] = *self;
         let G = Tensor2([[a0, a1, a2], [b0, b1, b2], [c0, c1, c2]]);
         let H = dF.transpose().times(G);
-        let trace = G.dot(*dF) * self.bulk(m);
+        let trace = G.dot(*dF) * law.bulk(m);
         let mut middle = H;
         for i in 0..3 {
             for j in 0..3 {
@@ -149,7 +171,7 @@ impl Law for NeoHookean {
         let mut P = G.times(middle);
         for i in 0..3 {
             for j in 0..3 {
-                P.0[i][j] += dF.0[i][j].times(self.mu);
+                P.0[i][j] += dF.0[i][j].times(law.mu);
             }
         }
         P

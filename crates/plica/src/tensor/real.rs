@@ -24,6 +24,10 @@ pub trait Real:
     fn ln(self) -> Self;
     /// `self` times a plain number.
     fn times(self, factor: f64) -> Self;
+    /// The numbers of the eight lanes; a single number fills them all.
+    fn to_lanes(self) -> Lanes;
+    /// A vector of `lanes` like this one; a single number is that of the first lane.
+    fn like_lanes(self, lanes: Lanes) -> Self;
 }
 
 impl Real for f64 {
@@ -42,6 +46,14 @@ impl Real for f64 {
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
         self * factor
+    }
+    #[inline(always)]
+    fn to_lanes(self) -> Lanes {
+        Lanes([self; LANES])
+    }
+    #[inline(always)]
+    fn like_lanes(self, lanes: Lanes) -> Self {
+        lanes.0[0]
     }
 }
 
@@ -101,6 +113,14 @@ impl<S: Simd> Real for f64x8<S> {
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
         self * factor
+    }
+    #[inline(always)]
+    fn to_lanes(self) -> Lanes {
+        Lanes::store(self)
+    }
+    #[inline(always)]
+    fn like_lanes(self, lanes: Lanes) -> Self {
+        lanes.load(self.simd)
     }
 }
 

@@ -2,18 +2,22 @@
 
 use super::super::kinematics::turn_back;
 use super::{AVERAGED, PencilInput, gradients, load, slots, store, sum_along, sum_through};
-use crate::material::{self, Law};
+use crate::material::{Law, TangentData};
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Level, Simd, SimdBase, SimdFrom, dispatch, f32x16, f64x8};
 
-/// What is kept of a state at the points of a pencil: two numbers of [`material::Kept`] to a
+/// What is kept of a state at the points of a pencil: two numbers of [`Law::TangentData`] to a
 /// vector of sixteen in single precision, in the order in which the product reads them. The product
 /// stays symmetric whatever they are, and its rounding (6e-8) is far below what a Newton step asks
 /// of it; it is half the memory, which is what the product waits for.
 pub type Kept = Vec<[f32; 16]>;
 
 /// Vectors of sixteen per point.
-const KEPT: usize = 5;
+const fn vectors<L: Law>() -> usize {
+    let numbers = <L::TangentData<f64> as TangentData<f64, L>>::LEN;
+    assert!(numbers.is_multiple_of(2));
+    numbers / 2
+}
 
 /// Keeps a state, and adds up its moduli around the tube: `averaged` holds, for every (point
 /// along, layer, point through, point around), the blocks of [`Columns::moduli`] with the weight of
@@ -43,7 +47,7 @@ fn keep<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     let (row, W) = (input.row(), input.rings.wide());
     let nil = f64x8::splat(simd, 0.0);
     let slots = slots::<N>(input.around);
-    let mut kept = kept.chunks_exact_mut(KEPT);
+    let mut kept = kept.chunks_exact_mut(vectors::<L>());
     let mut averaged = averaged.chunks_exact_mut(AVERAGED);
     let mut along = vec![0.0; 2 * row];
     let mut through = vec![0.0; 9 * W];
@@ -62,9 +66,9 @@ fn keep<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
                             input.columns::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
                         let Fe = columns.elastic(point, radius, g);
-                        let state = law.keep(&Fe);
+                        let data = L::TangentData::linearise(law, &Fe);
                         if let Some(to) = kept.next() {
-                            for (to, pair) in to.iter_mut().zip(state.chunks_exact(2)) {
+                            for (to, pair) in to.iter_mut().zip(data.as_ref().chunks_exact(2)) {
                                 *to = simd.narrow_f64x8(pair[0], pair[1]).into();
                             }
                         }
@@ -92,8 +96,8 @@ fn keep<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
 }
 
 /// Vectors of sixteen that a pencil keeps.
-pub fn kept_len(functions: usize, layers: usize, vectors: usize) -> usize {
-    functions.pow(3) * layers * vectors * KEPT
+pub fn kept_len<L: Law, const N: usize>(_: &L, layers: usize, rings: usize) -> usize {
+    N.pow(3) * layers * rings * vectors::<L>()
 }
 
 /// Adds the tangent of a pencil times `input.u` to `out`, p + 1 rows of (point, component) times R
@@ -128,7 +132,7 @@ fn product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     );
     let nil = f64x8::splat(simd, 0.0);
     let slots = slots::<N>(input.around);
-    let mut kept = kept.chunks_exact(KEPT);
+    let mut kept = kept.chunks_exact(vectors::<L>());
     let mut along = vec![0.0; 2 * row];
     let mut along_force = vec![0.0; 2 * row];
     let mut through = vec![0.0; 9 * W];
@@ -146,14 +150,14 @@ fn product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
                         let (columns, [_, grown]) =
                             input.columns::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
-                        let mut state: material::Kept<f64x8<S>> = [nil; 10];
+                        let mut data = L::TangentData::zeros(nil);
                         if let Some(from) = kept.next() {
-                            for (pair, from) in state.chunks_exact_mut(2).zip(from) {
+                            for (pair, from) in data.as_mut().chunks_exact_mut(2).zip(from) {
                                 let wide = simd.widen_f32x16(f32x16::simd_from(simd, *from));
                                 (pair[0], pair[1]) = wide;
                             }
                         }
-                        let dP = law.change(&state, &columns.linear(g));
+                        let dP = data.tangent_product(law, &columns.linear(g));
                         pulled[qs] = columns.pulled_back(&dP.scaled(grown));
                     }
                     for r in 0..N {

@@ -1,7 +1,7 @@
 //! What must hold of any tube: rest, rigid motions, forces as slopes of the energy.
 
 use super::{TubeAndLoad, direction, dot, largest, moved, tube_and_load, unknowns, wavy};
-use crate::assembly::plain::PlainTube;
+use crate::assembly::reference::ReferenceTube;
 use crate::assembly::{Point, SplineTube};
 use crate::material::{Material, NeoHookean};
 use crate::tube::{Load, Mesh, Support, Tube};
@@ -67,7 +67,7 @@ pub(super) fn carried(
     Q: [[f64; 3]; 3],
     t: [f64; 3],
 ) -> Vec<f64> {
-    let plain = PlainTube::new(tube, load);
+    let plain = ReferenceTube::new(tube, load);
     let mut vectors = plain.cartesian(u);
     for (node, u) in vectors.iter_mut().enumerate() {
         let X = plain.control_point(node);

@@ -2,7 +2,7 @@
 
 mod imperfection;
 mod mechanics;
-mod plain_twin;
+mod reference;
 mod slabs;
 mod stress_free;
 mod supports;

@@ -7,7 +7,7 @@ use super::{
     TubeAndLoad, assert_close, direction, dot, largest, moved, replicated, tube_and_load, unknowns,
     wavy,
 };
-use crate::assembly::plain::PlainTube;
+use crate::assembly::reference::ReferenceTube;
 use crate::assembly::{Point, SplineTube};
 use crate::tensor::Tensor2;
 use crate::tube::{Axial, Imperfection, Mesh, Mode, Part, Shape, Tube, Wave};
@@ -84,7 +84,7 @@ fn an_imperfect_tube_is_its_plain_twin() {
     for (degree, elements) in MESHES {
         let TubeAndLoad { tube, load } = imperfect(degree, elements, elements[2]);
         let u = wavy(&tube);
-        let plain = PlainTube::new(&tube, &load);
+        let plain = ReferenceTube::new(&tube, &load);
         let (fast, twin) = (tube.forces(&load, &u).unwrap(), plain.forces(&u));
         let name = format!("degree {degree}, {elements:?}");
         assert!((fast.energy / twin.energy - 1.0).abs() < 1e-12, "{name}");
@@ -108,7 +108,7 @@ fn an_imperfect_tube_is_its_plain_twin() {
 fn a_sample_of_an_imperfect_tube_is_that_of_its_plain_twin() {
     let elements = [9, 2, 6];
     let TubeAndLoad { tube, load } = imperfect(3, elements, 6);
-    let plain = PlainTube::new(&tube, &load);
+    let plain = ReferenceTube::new(&tube, &load);
     let u = wavy(&tube);
     let (z, radius, around) = (0.9, 0.44, 1.3_f64);
     let angle = around * TAU / 6.0;

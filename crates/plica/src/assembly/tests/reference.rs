@@ -2,7 +2,7 @@
 
 use super::{TubeAndLoad, assert_close, tube_and_load, wavy};
 use crate::assembly::Point;
-use crate::assembly::plain::PlainTube;
+use crate::assembly::reference::ReferenceTube;
 use crate::material::Law;
 use crate::tensor::Tensor2;
 use std::f64::consts::TAU;
@@ -26,7 +26,7 @@ fn the_kernel_has_the_energy_and_the_residual_of_its_plain_twin() {
         let u = wavy(&tube);
         let (fast, plain) = (
             tube.forces(&load, &u).unwrap(),
-            PlainTube::new(&tube, &load).forces(&u),
+            ReferenceTube::new(&tube, &load).forces(&u),
         );
         let name = format!("degree {degree}, {elements:?}");
         let numbers = [fast.energy, fast.energy_ungrown, fast.residual_scale];
@@ -48,7 +48,7 @@ fn the_kernel_has_the_tangent_of_its_plain_twin() {
         let u = wavy(&tube);
         let (fast, plain) = (
             tube.tangent(&load, &u),
-            PlainTube::new(&tube, &load).tangent(&u),
+            ReferenceTube::new(&tube, &load).tangent(&u),
         );
         let n = tube.unknowns();
         let entries = (0..n * n).map(|e| fast.entry(e / n, e % n));
@@ -60,7 +60,7 @@ fn the_kernel_has_the_tangent_of_its_plain_twin() {
 fn the_kernel_has_the_drag_of_its_plain_twin() {
     for (degree, elements) in MESHES {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, elements[2]);
-        let (fast, plain) = (tube.damping(), PlainTube::new(&tube, &load).damping());
+        let (fast, plain) = (tube.damping(), ReferenceTube::new(&tube, &load).damping());
         let n = tube.unknowns();
         let entries = (0..n * n).map(|e| fast.entry(e / n, e % n));
         assert_close(&format!("degree {degree}, {elements:?}"), entries, &plain);
@@ -71,7 +71,7 @@ fn the_kernel_has_the_drag_of_its_plain_twin() {
 fn samples_are_those_of_the_plain_twin() {
     for (degree, elements) in MESHES {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, elements[2]);
-        let plain = PlainTube::new(&tube, &load);
+        let plain = ReferenceTube::new(&tube, &load);
         let u = wavy(&tube);
         let moved = plain.cartesian(&u);
         let alpha = TAU / elements[2] as f64;

@@ -6,7 +6,7 @@
 //! row a along the tube, point c through the wall, ring j around it.
 
 use super::SplineTube;
-use crate::material::{Law, Material, NeoHookean};
+use crate::material::{Law, Material};
 use crate::spline::gauss_legendre;
 use crate::tensor::Tensor2;
 use crate::tube::Load;
@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 type Vector = [f64; 3];
 
 /// A whole tube under a load.
-pub struct PlainTube<'a> {
+pub struct ReferenceTube<'a> {
     spline: &'a SplineTube,
     load: &'a Load,
     /// δ of the control points of an imperfect geometry.
@@ -42,15 +42,18 @@ pub struct ElementPoint {
 }
 
 /// Energy and residual.
-pub struct PlainForces {
+pub struct ReferenceForces {
+    /// ∫ w det Fp dV₀, in E·D³.
     pub energy: f64,
+    /// ∫ w dV₀, in E·D³.
     pub energy_ungrown: f64,
+    /// R, numbered as the unknowns of the tube, in E·D².
     pub residual: Vec<f64>,
     /// Root of the sum of squares of what the elements add to the residual.
     pub residual_scale: f64,
 }
 
-impl<'a> PlainTube<'a> {
+impl<'a> ReferenceTube<'a> {
     /// The plain twin of a tube whose sector is the whole circumference.
     pub fn new(spline: &'a SplineTube, load: &'a Load) -> Self {
         assert_eq!(spline.sector.rings, spline.sector.around);
@@ -67,9 +70,8 @@ impl<'a> PlainTube<'a> {
     }
 
     /// The law of its wall.
-    pub fn law(&self) -> NeoHookean {
-        let Material::NeoHookean(law) = self.spline.tube.material;
-        law
+    pub(super) fn law(&self) -> &Material {
+        &self.spline.tube.material
     }
 
     /// Rings, and control points through the wall.
@@ -259,7 +261,7 @@ impl<'a> PlainTube<'a> {
     }
 
     /// W = ∫ w det Fp dV₀ and R = ∫ P Fp⁻ᵀ ∂N/∂X det Fp dV₀.
-    pub fn forces(&self, u: &[f64]) -> PlainForces {
+    pub fn forces(&self, u: &[f64]) -> ReferenceForces {
         let (law, u) = (self.law(), self.cartesian(u));
         let (mut energy, mut energy_ungrown, mut squares) = (0.0, 0.0, 0.0);
         let mut residual = vec![[0.0; 3]; self.nodes()];
@@ -286,7 +288,7 @@ impl<'a> PlainTube<'a> {
                 }
             }
         }
-        PlainForces {
+        ReferenceForces {
             energy,
             energy_ungrown,
             residual: self.cylindrical(&residual),
@@ -303,7 +305,7 @@ impl<'a> PlainTube<'a> {
             let n = nodes.len();
             let mut Ke = vec![[[0.0; 3]; 3]; n * n];
             for (at, volume) in self.quadrature(element) {
-                let A = full(&law, &self.elastic(&nodes, &at, &u));
+                let A = full(law, &self.elastic(&nodes, &at, &u));
                 let Fp_inverse_transposed = at.Fp_inverse.transpose();
                 let h: Vec<Vector> = at
                     .gradient
@@ -404,7 +406,7 @@ fn cardinal(p: usize, x: f64) -> f64 {
 }
 
 /// A_{ik jl} = ∂²w/∂F_{ik}∂F_{jl}, from the half that a law fills.
-fn full(law: &NeoHookean, Fe: &Tensor2) -> [[[[f64; 3]; 3]; 3]; 3] {
+fn full(law: &Material, Fe: &Tensor2) -> [[[[f64; 3]; 3]; 3]; 3] {
     let half = law.moduli(Fe);
     let mut A = [[[[0.0; 3]; 3]; 3]; 3];
     for i in 0..3 {
