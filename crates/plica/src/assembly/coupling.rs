@@ -16,7 +16,7 @@ use super::pencil::{AVERAGED, PencilInput, pencil_moduli};
 use super::ring_damping::RingDamping;
 use super::spline_tube::{with_degree, with_law_and_degree};
 use super::tables::{Around, Layer, Slab};
-use crate::material::{Material, with_law};
+use crate::material::Material;
 use crate::matrix::{BlockBanded, multiply};
 use crate::rings::Turn;
 use crate::spline::gauss_legendre;

@@ -11,7 +11,7 @@ use super::spline_tube::{with_degree, with_law_and_degree};
 use super::stress_free::StressFree;
 use super::tables::{Around, Layer, Slab};
 use super::tangent::SlabTangent;
-use crate::material::{Material, with_law};
+use crate::material::Material;
 use crate::matrix::BlockBanded;
 use crate::rings::Circulant;
 use crate::tensor::{LANES, Lanes};

@@ -11,7 +11,7 @@ use super::stress_free::StressFree;
 use super::supports::{Supports, left_by, motions_in_harmonic};
 use super::tables::{Around, Layer, Slab, full_rules, reduced_rules};
 use super::tangent::{SlabTangent, slab_tangent};
-use crate::material::{Material, with_law};
+use crate::material::Material;
 use crate::matrix::BlockBanded;
 use crate::rings::{Sector, Turn};
 use crate::spline::{Basis, Circle, gauss_legendre, graded_breakpoints};
@@ -91,10 +91,13 @@ pub struct Inverted {
     pub jacobian: f64,
 }
 
-/// Calls a kernel that is compiled for the law and the degree.
+/// Calls a kernel that is compiled for the degree and for the law: neo-Hookean, or any other.
 macro_rules! with_law_and_degree {
     ($self:ident, $law:expr, $kernel:ident, $($argument:expr),+) => {
-        with_law!(&$law, law => with_degree!($self, law, $kernel, $($argument),+))
+        match &$law {
+            Material::NeoHookean(law) => with_degree!($self, law, $kernel, $($argument),+),
+            law => with_degree!($self, law, $kernel, $($argument),+),
+        }
     };
 }
 

@@ -69,7 +69,6 @@ macro_rules! with_law {
         }
     };
 }
-pub(crate) use with_law;
 
 impl Material {
     /// Returns λ + 2μ at small strains: the stiffness under uniaxial strain.
