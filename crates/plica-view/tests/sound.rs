@@ -273,7 +273,7 @@ fn sound_cases_run_or_end_with_a_reason() {
         match std::panic::catch_unwind(running) {
             Ok(Ending::Complete) => ended[0] += 1,
             Ok(Ending::Lost { error, .. }) => {
-                assert!(!error.tried.is_empty());
+                assert!(!error.attempts.is_empty());
                 ended[1] += 1;
             }
             Ok(Ending::Stopped) => ended[2] += 1,

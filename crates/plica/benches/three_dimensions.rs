@@ -85,8 +85,8 @@ fn far_from_round() {
             let solver = at.shifted(damping).expect("not singular");
             let mut iterations = String::new();
             let solve = median(|| {
-                iterations = match solver.solve(&mut b.clone(), 1e-3, &mut ()) {
-                    Ok(solved) if solved.reached => solved.iterations.to_string(),
+                iterations = match solver.solve(&mut b.clone(), 1e-3, &()) {
+                    Ok(solved) if solved.converged => solved.iterations.to_string(),
                     Ok(solved) => format!(">{}", solved.iterations),
                     Err(down) => format!("indefinite after {}", down.iterations),
                 };
@@ -133,7 +133,7 @@ fn main() {
         let product = median(|| at.multiply_add(1.0, &u, &mut b));
         let mut iterations = 0;
         let solve = median(|| {
-            let solved = solver.solve(&mut b.clone(), 1e-3, &mut ());
+            let solved = solver.solve(&mut b.clone(), 1e-3, &());
             iterations = solved.map_or(0, |solved| solved.iterations);
         });
         let step = residual + tangent + factor + solve;

@@ -6,12 +6,12 @@ use plica::activation::{Direction, Muscle, Profile};
 use plica::assembly::{Point, SplineTube};
 use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
-use plica::solve::{
-    Equilibrium, Integrator, Method, Monitor, Path, PseudoTime, Scheme, Settings, State,
-};
+use plica::monitor::Monitor;
+use plica::solve::{Equilibrium, Integrator, Path, PseudoTime, Scheme, Settings, State};
 use plica::spline::Refinement;
 use plica::tube::{Load, Mesh, Support, Tube};
 use std::f64::consts::PI;
+use std::fmt::Display;
 
 fn muscle(direction: Direction, zone: [f64; 2], profile: Profile) -> Muscle {
     Muscle {
@@ -236,13 +236,14 @@ fn the_energy_that_the_solver_sees_has_the_residual_as_its_slope() {
     }
 }
 
-/// Writes down what is left of the residual after every linear solve.
-struct Sequence(Vec<f64>);
+/// Records the relative residual after every linear solve.
+struct Residuals(Vec<f64>);
 
-impl Monitor for Sequence {
-    fn solved(&mut self, _: Method, relative_residual: f64) -> bool {
-        self.0.push(relative_residual);
-        true
+impl Monitor for Residuals {
+    fn working(&mut self, activity: &dyn Display, _: f64) {
+        let activity = activity.to_string();
+        let (_, residual) = activity.rsplit_once("residual ").unwrap();
+        self.0.push(residual.parse().unwrap());
     }
 }
 
@@ -255,13 +256,13 @@ fn newton_squares_the_residual_at_the_end() {
     path.begin_segment(contracted);
     let mut pairs = 0;
     for t in [0.25, 0.5, 0.75, 1.0] {
-        let mut sequence = Sequence(vec![]);
-        path.advance(t, &mut sequence).unwrap();
-        for pair in sequence.0.windows(2) {
+        let mut residuals = Residuals(vec![]);
+        path.advance(t, &mut residuals).unwrap();
+        for pair in residuals.0.windows(2) {
             let [before, after] = [pair[0], pair[1]];
             // From where the square rules to where rounding does.
             if before < 0.1 && after > 1e-11 {
-                assert!(after < 100.0 * before * before, "{:?}", sequence.0);
+                assert!(after < 100.0 * before * before, "{:?}", residuals.0);
                 pairs += 1;
             }
         }

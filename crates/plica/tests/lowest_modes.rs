@@ -5,7 +5,7 @@
 use plica::assembly::SplineTube;
 use plica::equilibrium::TubeProblem;
 use plica::matrix::lowest_eigenpairs;
-use plica::solve::{Lowest, Path, Search, relaxation};
+use plica::solve::{Effort, Lowest, Path, Search, relaxation};
 use plica::stability::Harmonics;
 use plica::study::Plan;
 use plica::tube::{Load, Support};
@@ -29,7 +29,7 @@ fn lowest(problem: &TubeProblem, load: &Load, u: &[f64], wanted: usize) -> Lowes
         iterations: 300,
         side_of: None,
     };
-    let found = problem.lowest_modes(load, u, wanted + 3, &search, &mut |_| true);
+    let found = problem.lowest_modes(load, u, wanted + 3, &search, &mut ());
     let found = found.unwrap();
     println!("{} iterations: {:?}", found.iterations, found.values);
     assert!(found.iterations < 300, "{:?}", found.residuals);
@@ -87,9 +87,16 @@ fn an_oval_tube_has_the_eigenvalues_of_its_assembled_tangent() {
             }
         };
         let u = (0..tube.unknowns()).map(oval).collect();
-        let u = relaxation(&problem, &load, u, &plan.solver, &mut ())
-            .unwrap()
-            .u;
+        let u = relaxation(
+            &problem,
+            &load,
+            u,
+            &plan.solver,
+            &mut Effort::default(),
+            &mut (),
+        )
+        .unwrap()
+        .u;
         let radial = u.chunks_exact(rings).skip(1).step_by(3);
         let most = radial.map(|u| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs())));
         assert!(most.fold(0.0, f64::max) > 0.02);

@@ -12,7 +12,7 @@ use plica::activation::{Direction, Muscle, Profile};
 use plica::assembly::{Inverted, SplineTube};
 use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
-use plica::solve::{Equilibrium, ResidualEvaluation, newton};
+use plica::solve::{Effort, Equilibrium, ResidualEvaluation, newton};
 use plica::spline::gauss_legendre;
 use plica::tube::{Load, Mesh, Support, Tube};
 use plica_view::draw::{Chart, Curve, Stroke};
@@ -204,7 +204,14 @@ impl Manufactured {
             [along, outwards / circle, 0.0]
         });
         self.apply_prescribed(&self.load(), &mut start);
-        let found = newton(self, &self.load(), start, &tight(), &mut ());
+        let found = newton(
+            self,
+            &self.load(),
+            start,
+            &tight(),
+            &mut Effort::default(),
+            &mut (),
+        );
         let found = found.map_err(|failed| Trouble::Solve(failed.to_string()))?;
         let (mut off, mut all) = ([0.0; 2], [0.0; 2]);
         everywhere(spline, |at| {

@@ -6,7 +6,7 @@ use plica::activation::{Direction, Muscle, Profile};
 use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean, Volumetric};
 use plica::solve::{
-    Equilibrium, Integrator, Path, PseudoTime, Scheme, Settings, Solver, State, Tangent,
+    Effort, Equilibrium, Integrator, Path, PseudoTime, Scheme, Settings, Solver, State, Tangent,
 };
 use plica::tube::{Axial, End, Imperfection, Integration, Load, Part, Push, Shape, Support, Wave};
 
@@ -135,7 +135,7 @@ pub fn solvers(found: &mut Findings<'_>) -> Result<(), Trouble> {
             .shifted(0.0)
             .map_err(|e| Trouble::Solve(e.to_string()))?;
         let solved = solver
-            .solve(&mut harmonic, 1e-10, &mut ())
+            .solve(&mut harmonic, 1e-10, &())
             .map_err(|_| Trouble::Solve("negative curvature".into()))?;
         let mut matrix = problem.tube.tangent(&load, &u);
         matrix.constrain(problem.prescribed());
@@ -219,8 +219,16 @@ pub fn schemes(found: &mut Findings<'_>) -> Result<(), Trouble> {
         );
     }
     let rest = vec![0.0; problem.tube.unknowns()];
-    let relaxed = plica::solve::relaxation(&problem, &segments[1].0, rest, &tight(), &mut ())
-        .map_err(|e| Trouble::Solve(e.to_string()))?;
+    let mut effort = Effort::default();
+    let relaxed = plica::solve::relaxation(
+        &problem,
+        &segments[1].0,
+        rest,
+        &tight(),
+        &mut effort,
+        &mut (),
+    )
+    .map_err(|e| Trouble::Solve(e.to_string()))?;
     let relaxed = relaxed.forces.energy * problem.tube.sector.repeats();
     let quantity = "W, relaxation from rest in one step";
     found.within(1e-8, quantity, relaxed, (direct, "Newton along the path"));

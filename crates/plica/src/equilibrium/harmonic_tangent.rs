@@ -3,10 +3,9 @@
 use super::spare::Spare;
 use crate::assembly::{Linearised, LowHarmonics, RingDamping, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
+use crate::monitor::Monitor;
 use crate::rings::{Coupling, HarmonicSolver, Transform};
-use crate::solve::{
-    Monitor, NegativeCurvature, Operator, Solved, Solver, Tangent, conjugate_gradients,
-};
+use crate::solve::{NegativeCurvature, Operator, Solved, Solver, Tangent, conjugate_gradients};
 use crate::tube::Load;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -330,7 +329,7 @@ impl Operator for HarmonicSystem {
     fn prescribed(&self) -> &[bool] {
         self.state.tube.tube.prescribed()
     }
-    fn take_out_pins(&self, v: &mut [f64]) {
+    fn project_out_constraints(&self, v: &mut [f64]) {
         self.state.tube.tube.take_out_pins(v);
     }
     fn apply(&self, v: &[f64], out: &mut [f64]) {
@@ -388,7 +387,7 @@ impl Solver for HarmonicSystem {
         &self,
         b: &mut [f64],
         accuracy: f64,
-        monitor: &mut dyn Monitor,
+        monitor: &dyn Monitor,
     ) -> Result<Solved, NegativeCurvature> {
         conjugate_gradients(self, b, accuracy, ITERATIONS, monitor)
     }
@@ -433,7 +432,7 @@ mod tests {
             let mut b = wave(3.0);
             let solver = tangent.into_shifted(1.0).unwrap();
             let solved = solver.solve(&mut b, 1e-6, &mut ()).unwrap();
-            assert!(solved.reached);
+            assert!(solved.converged);
             (coupled, solved.iterations, b)
         };
         let shared = Arc::new(HarmonicTube::new(tube.clone()));

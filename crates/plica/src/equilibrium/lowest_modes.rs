@@ -2,6 +2,7 @@
 
 use super::TubeProblem;
 use super::problem::TubeSolver;
+use crate::monitor::Monitor;
 use crate::solve::{Equilibrium, Lowest, Operator, Search, Tangent, lowest};
 use crate::tube::Load;
 
@@ -19,7 +20,7 @@ impl TubeProblem {
         u: &[f64],
         block: usize,
         search: &Search,
-        goes_on: &mut dyn FnMut(&Lowest) -> bool,
+        monitor: &mut dyn Monitor,
     ) -> Option<Lowest> {
         let system = self.tangent(load, u).into_shifted(0.0);
         let Ok(TubeSolver::Harmonic(system)) = system else {
@@ -33,7 +34,7 @@ impl TubeProblem {
             smooth
         };
         let seeds: Vec<Vec<f64>> = (0..block).map(|_| seed()).collect();
-        Some(lowest(&system, &seeds, search, goes_on))
+        Some(lowest(&system, &seeds, search, monitor))
     }
 }
 

@@ -3,8 +3,9 @@
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
 use crate::assembly::{Inverted, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
+use crate::monitor::Monitor;
 use crate::solve::{
-    Direct, Equilibrium, Monitor, NegativeCurvature, ResidualEvaluation, Solved, Solver, Tangent,
+    Direct, Equilibrium, NegativeCurvature, ResidualEvaluation, Solved, Solver, Tangent,
 };
 use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
@@ -163,7 +164,7 @@ impl Solver for TubeSolver {
         &self,
         b: &mut [f64],
         accuracy: f64,
-        monitor: &mut dyn Monitor,
+        monitor: &dyn Monitor,
     ) -> Result<Solved, NegativeCurvature> {
         match self {
             Self::Direct(factor) => Solver::solve(factor, b, accuracy, monitor),

@@ -5,6 +5,7 @@ use super::lowest_modes::Noise;
 use super::problem::{TubeSolver, TubeTangent};
 use super::{TubeProblem, harmonic_tangent::HarmonicSystem};
 use crate::assembly::SplineTube;
+use crate::monitor::Monitor;
 use crate::solve::{Equilibrium, Operator, Path, Search, lowest};
 use crate::tube::Load;
 use rayon::prelude::*;
@@ -31,13 +32,13 @@ const ITERATIONS: usize = 80;
 ///
 /// What the path solves with at its state is made use of, and made if need be.
 ///
-/// `goes_on` is asked in every iteration of such a search; a sign that did not show until it said no
-/// is `unknown`.
+/// A search reports to `monitor` after every iteration; a sign that did not show before it was
+/// cancelled is `unknown`.
 pub fn unstable_modes(
     problem: &TubeProblem,
     path: &mut Path<impl Equilibrium<Load = Load, Tangent = TubeTangent>>,
     harmonics: usize,
-    goes_on: &mut dyn FnMut() -> bool,
+    monitor: &mut dyn Monitor,
 ) -> String {
     let tube = &problem.tube;
     let (own, k) = (path.state().negative_pivots, tube.sector.rings);
@@ -52,7 +53,7 @@ pub fn unstable_modes(
     if !round || (twisted && k > 1) {
         let lost = match (own, path.solver()) {
             (0, _) if harmonics == 0 => None,
-            (0, Some(TubeSolver::Harmonic(system))) => lowest_is_negative(tube, system, goes_on),
+            (0, Some(TubeSolver::Harmonic(system))) => lowest_is_negative(tube, system, monitor),
             (0, _) => None,
             _ => Some(true),
         };
@@ -116,7 +117,7 @@ pub fn unstable_modes(
 fn lowest_is_negative(
     tube: &SplineTube,
     system: &HarmonicSystem,
-    goes_on: &mut dyn FnMut() -> bool,
+    monitor: &mut dyn Monitor,
 ) -> Option<bool> {
     if system.average_is_indefinite() {
         return Some(true);
@@ -136,7 +137,7 @@ fn lowest_is_negative(
     let mut smooth = vec![0.0; force.len()];
     system.precondition(&force, &mut smooth);
     seeds.push(smooth);
-    lowest(system, &seeds, &search, &mut |_| goes_on()).is_below(0.0)
+    lowest(system, &seeds, &search, monitor).is_below(0.0)
 }
 
 /// Two displacements with a part of every low harmonic, not alike on any two sides of the tube.
@@ -216,7 +217,7 @@ mod tests {
                 let average = system.average_is_indefinite();
                 assert!(!average || negative > 0);
                 assert_eq!(path.state().negative_pivots, usize::from(average));
-                let told = unstable_modes(&problem, &mut path, 4, &mut || true);
+                let told = unstable_modes(&problem, &mut path, 4, &mut ());
                 println!("{rings} {pressure}: {negative} negative, {average}, {told}");
                 assert_eq!(told, if negative > 0 { "any:1" } else { "none" });
                 seen[usize::from(negative > 0) + usize::from(average)] += 1;

@@ -1,5 +1,5 @@
-//! The dense kernels under the block-banded factorisation and the tall columns, from faer; no other
-//! file names it. All run on the thread that calls them, so sums have one order.
+//! Dense kernels of the other matrices, from the library faer, which no other file uses. All run on the
+//! calling thread, so that sums have one order.
 
 use faer::diag::DiagMut;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -8,7 +8,8 @@ use faer::linalg::{evd, matmul, triangular_solve};
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
-/// Eigenvalues, rising, and eigenvectors of a small symmetric matrix; none if it is not finite.
+/// Returns the eigenvalues, the lowest first, and eigenvectors of a small symmetric matrix; None if it is
+/// not finite.
 pub fn symmetric_eigen(
     size: usize,
     entry: impl Fn(usize, usize) -> f64,
@@ -23,15 +24,15 @@ pub fn symmetric_eigen(
     ))
 }
 
-/// Kernels with their working memory.
+/// Kernels of the block-banded factorisation, with their buffers.
 pub struct Kernels {
-    /// X = L D below the diagonal block of the panel at hand, column-major.
+    /// X = L D below the diagonal block of the current panel, column-major.
     scaled: Vec<f64>,
     memory: MemBuffer,
 }
 
 impl Kernels {
-    /// For panels of `size` columns with at most `below` rows under the diagonal block.
+    /// Allocates for panels of `size` columns with at most `below` rows under the diagonal block.
     pub fn new(size: usize, below: usize) -> Self {
         let need = factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, Default::default());
         Self {
@@ -40,9 +41,9 @@ impl Kernels {
         }
     }
 
-    /// Factors the diagonal block of a panel (`size` columns, leading dimension `height`), turns
-    /// the `below` rows under it into L, and keeps X = L D for [`Kernels::update`]. Returns the
-    /// number of negative pivots, or the place of a pivot that is zero or not a number.
+    /// Factors the diagonal block of a panel (`size` columns, leading dimension `height`), replaces the
+    /// `below` rows under it by L, and stores X = L D for [`Kernels::update`]. Returns the number of
+    /// negative pivots, or as error the index of a pivot that is zero or NaN.
     pub fn factor_panel(
         &mut self,
         panel: &mut [f64],
@@ -87,8 +88,8 @@ impl Kernels {
         Ok(negative)
     }
 
-    /// Takes X L_cᵀ off the panel `target`: rows `from..from + rows` of the part under the
-    /// diagonal of `panel`, against the `size` rows that begin at `from`.
+    /// Subtracts X L_cᵀ from the panel `target`: the product of the rows `from..from + rows` below the
+    /// diagonal block of `panel` with the `size` rows that begin at `from`.
     pub fn update(
         &self,
         target: &mut [f64],
@@ -112,11 +113,11 @@ impl Kernels {
     }
 }
 
-/// A matrix in a slice: its numbers, its rows and columns, and the steps from row to row and from
-/// column to column, one of which is one.
+/// A matrix in a slice: its entries, its numbers of rows and columns, and the strides from row to row
+/// and from column to column, one of which is 1.
 type Strided<'a> = (&'a [f64], [usize; 2], [usize; 2]);
 
-/// C = A B, for matrices whose rows or columns are each in one piece; C is given with the steps of its rows and columns.
+/// Writes A B into C, which comes with its strides.
 pub fn multiply(a: Strided<'_>, b: Strided<'_>, c: (&mut [f64], [usize; 2])) {
     let (rows, columns) = (a.1[0], b.1[1]);
     let (numbers, [down, right]) = c;
@@ -137,7 +138,7 @@ fn view((numbers, [rows, columns], [down, right]): Strided<'_>) -> MatRef<'_, f6
     }
 }
 
-/// `out` = Aᵀ B for column-major A and B of `rows` rows.
+/// Writes Aᵀ B into `out`, for column-major A and B of `rows` rows.
 pub fn transposed_times(out: &mut [f64], a: &[f64], b: &[f64], rows: usize) {
     let (m, n) = (a.len() / rows, b.len() / rows);
     matmul::matmul(
@@ -150,7 +151,7 @@ pub fn transposed_times(out: &mut [f64], a: &[f64], b: &[f64], rows: usize) {
     );
 }
 
-/// `out` += factor · A B for column-major A of `rows` rows.
+/// Adds `factor` · A B to `out`, for column-major A of `rows` rows.
 pub fn add_times(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows: usize) {
     let (m, n) = (a.len() / rows, out.len() / rows);
     matmul::matmul(
@@ -163,8 +164,8 @@ pub fn add_times(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows: usize
     );
 }
 
-/// Eigenvalues, the lowest first, of a symmetric n × n matrix whose lower half is read; writes
-/// orthonormal eigenvectors into `vectors`. None if that does not converge.
+/// Returns the eigenvalues, the lowest first, of a symmetric n × n matrix of which the lower half is
+/// read, and writes orthonormal eigenvectors into `vectors`. None if that does not converge.
 pub fn eigen(matrix: &[f64], vectors: &mut [f64], n: usize) -> Option<Vec<f64>> {
     let mut values = vec![0.0; n];
     let need = evd::self_adjoint_evd_scratch::<f64>(

@@ -1,24 +1,23 @@
-//! The lowest eigenpairs of A x = λ B x, by shift and invert.
+//! The lowest eigenpairs of A x = λ B x, by shift-and-invert Lanczos (Ericsson and Ruhe 1980).
 //!
-//! Lanczos's method on (A − σB)⁻¹ B, which is self-adjoint in the product x · B y and turns the
-//! eigenvalues next above σ into its largest, θ = 1/(λ − σ) (Ericsson and Ruhe 1980). σ lies below
-//! all eigenvalues: zero, or further down until the inertia of A − σB shows no negative one. In the
-//! end the inertia of A − τB, with τ just below the last pair, says whether a pair below it was
-//! missed.
+//! The operator (A − σB)⁻¹ B is self-adjoint in the product x · B y, and maps the eigenvalues next above
+//! σ to its largest, θ = 1/(λ − σ). The shift σ lies below all eigenvalues: it is zero, or lower until
+//! the inertia of A − σB shows no negative one. Finally, the inertia of A − τB, with τ just below the
+//! last pair, shows whether a lower pair was missed.
 
 use super::block_banded::{BlockBanded, Factor};
 use super::dense::symmetric_eigen;
 
-/// Lanczos vectors at most.
-const LONGEST: usize = 160;
-/// New vectors between two looks at what has converged.
-const BETWEEN: usize = 6;
+/// Largest number of Lanczos vectors.
+const LANCZOS_VECTORS: usize = 160;
+/// Lanczos vectors between two tests of convergence.
+const TEST_INTERVAL: usize = 6;
 /// Residual of a converged pair, relative to θ.
 const CONVERGED: f64 = 1e-10;
-/// How far apart eigenvalues are that rounding lets inertias tell, over the mean of all.
+/// Distance of eigenvalues that inertias resolve in spite of rounding, relative to their mean size.
 const ROUNDING: f64 = 1e-13;
-/// Starting vectors that are tried; each adds what those before missed (all but one of several
-/// equal eigenvalues, for one).
+/// Number of starting vectors. Each finds pairs that the previous ones missed, such as further ones of
+/// a multiple eigenvalue.
 const STARTS: u64 = 3;
 
 /// An eigenvalue and its vector.
@@ -26,7 +25,7 @@ const STARTS: u64 = 3;
 pub struct Eigenpair {
     /// λ.
     pub value: f64,
-    /// x, with x · B x = 1 and zero where an unknown is given.
+    /// x, with x · B x = 1 and zeros for prescribed unknowns.
     pub vector: Vec<f64>,
 }
 
@@ -34,54 +33,54 @@ pub struct Eigenpair {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the lowest {count} eigenvalue(s) could not be found")]
 pub struct NoEigenpairs {
-    /// How many were looked for.
+    /// Number of pairs that were requested.
     pub count: usize,
 }
 
-/// The `count` lowest eigenpairs of A x = λ B x over the unknowns that are not `given`, rising; B
-/// is positive definite. Fewer if there are not so many unknowns.
+/// Returns the `count` lowest eigenpairs of A x = λ B x on the unknowns that are not prescribed, the
+/// lowest first; B must be positive definite. Returns fewer if there are fewer unknowns.
 ///
 /// # Errors
-/// [`NoEigenpairs`] if none of three starting vectors leads to pairs below which the inertia shows
-/// no other, or the matrices are not finite.
+/// [`NoEigenpairs`] if pairs are still missing after three starting vectors, or the matrices are not
+/// finite.
 pub fn lowest_eigenpairs(
     a: &BlockBanded,
     b: &BlockBanded,
-    given: &[bool],
+    prescribed: &[bool],
     count: usize,
 ) -> Result<Vec<Eigenpair>, NoEigenpairs> {
-    lowest_eigenpairs_beside(a, b, given, count, &[])
+    lowest_eigenpairs_excluding(a, b, prescribed, count, &[])
 }
 
-/// The same of the eigenpairs beside some that are known: `beside` holds independent vectors x with
-/// A x = 0, such as rigid motions.
+/// Does the same with the exception of known eigenpairs: `null_vectors` are independent vectors x with
+/// A x = 0, such as rigid-body motions.
 ///
 /// # Errors
 /// Those of [`lowest_eigenpairs`].
-pub fn lowest_eigenpairs_beside(
+pub fn lowest_eigenpairs_excluding(
     a: &BlockBanded,
     b: &BlockBanded,
-    given: &[bool],
+    prescribed: &[bool],
     count: usize,
-    beside: &[Vec<f64>],
+    null_vectors: &[Vec<f64>],
 ) -> Result<Vec<Eigenpair>, NoEigenpairs> {
     let failed = NoEigenpairs { count };
-    let pencil = Pencil { a, b, given };
-    let beside = pencil.orthonormal(beside);
-    let free = given.iter().filter(|given| !**given).count() - beside.len();
+    let pencil = Pencil { a, b, prescribed };
+    let excluded = pencil.orthonormal(null_vectors);
+    let free = prescribed.iter().filter(|prescribed| !**prescribed).count() - excluded.len();
     let count = count.min(free);
-    let (shift, factor) = pencil.below_all(!beside.is_empty()).ok_or(failed)?;
+    let (shift, factor) = pencil.below_all(!excluded.is_empty()).ok_or(failed)?;
     let mut found: Vec<Eigenpair> = vec![];
     for start in 0..STARTS {
         let more = count.min(free - found.len());
-        let known = [&beside[..], &found].concat();
+        let known = [&excluded[..], &found].concat();
         found.extend(
             pencil
                 .lanczos(shift, &factor, more, start, &known)
                 .unwrap_or_default(),
         );
         found.sort_by(|a, b| a.value.total_cmp(&b.value));
-        let known = [&beside[..], &found[..count.min(found.len())]].concat();
+        let known = [&excluded[..], &found[..count.min(found.len())]].concat();
         if found.len() >= count && pencil.none_is_missed(shift, &known, found.get(count - 1)) {
             found.truncate(count);
             return Ok(found);
@@ -93,7 +92,7 @@ pub fn lowest_eigenpairs_beside(
 struct Pencil<'a> {
     a: &'a BlockBanded,
     b: &'a BlockBanded,
-    given: &'a [bool],
+    prescribed: &'a [bool],
 }
 
 impl Pencil<'_> {
@@ -103,21 +102,21 @@ impl Pencil<'_> {
         if shift != 0.0 {
             shifted.add_scaled(-shift, self.b);
         }
-        shifted.constrain(self.given);
+        shifted.constrain(self.prescribed);
         shifted.factor().ok()
     }
 
-    /// A shift below all eigenvalues; zero if that will do and is no eigenvalue.
+    /// Returns a shift below all eigenvalues, zero if possible, and the factored A − σB.
     fn below_all(&self, singular: bool) -> Option<(f64, Factor)> {
         let negative = |factor: &Factor| factor.negative_pivots();
         let at_zero = || self.factor(0.0).filter(|factor| negative(factor) == 0);
         if let Some(factor) = (!singular).then(at_zero).flatten() {
             return Some((0.0, factor));
         }
-        // Down in strides that grow, from one that is small beside the eigenvalues' mean.
+        // Growing negative shifts, the first of them small compared with the mean eigenvalue.
         let mean = self.mean();
-        let strides = (0..60).map(|n| -1e-9 * mean * 4_f64.powi(n));
-        for shift in strides.filter(|shift| shift.is_finite() && *shift < 0.0) {
+        let shifts = (0..60).map(|n| -1e-9 * mean * 4_f64.powi(n));
+        for shift in shifts.filter(|shift| shift.is_finite() && *shift < 0.0) {
             if let Some(factor) = self.factor(shift).filter(|factor| negative(factor) == 0) {
                 return Some((shift, factor));
             }
@@ -125,43 +124,43 @@ impl Pencil<'_> {
         None
     }
 
-    /// Vectors with A x = 0, made orthonormal in B.
+    /// Returns pairs of eigenvalue 0 whose vectors are orthonormal in B.
     fn orthonormal(&self, vectors: &[Vec<f64>]) -> Vec<Eigenpair> {
         let mut pairs: Vec<Eigenpair> = vec![];
         for vector in vectors {
             let mut vector = vector.clone();
             for pair in &pairs {
-                take_part(&mut vector, &pair.vector, &self.weigh(&pair.vector));
+                orthogonalise(&mut vector, &pair.vector, &self.times_b(&pair.vector));
             }
-            let norm = dot(&vector, &self.weigh(&vector)).sqrt();
+            let norm = dot(&vector, &self.times_b(&vector)).sqrt();
             vector.iter_mut().for_each(|x| *x /= norm);
             pairs.push(Eigenpair { value: 0.0, vector });
         }
         pairs
     }
 
-    /// The size of the eigenvalues, on the average.
+    /// Returns the mean size of the eigenvalues.
     fn mean(&self) -> f64 {
         let diagonal = |m: &BlockBanded| -> f64 {
-            let free = (0..m.unknowns()).filter(|&i| !self.given[i]);
+            let free = (0..m.unknowns()).filter(|&i| !self.prescribed[i]);
             free.map(|i| m.entry(i, i)).sum()
         };
         (diagonal(self.a) / diagonal(self.b)).abs()
     }
 
-    /// B x on the free unknowns.
-    fn weigh(&self, x: &[f64]) -> Vec<f64> {
+    /// Returns B x on the free unknowns.
+    fn times_b(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         self.b.multiply_add(1.0, x, &mut y);
-        for (y, given) in y.iter_mut().zip(self.given) {
-            if *given {
+        for (y, prescribed) in y.iter_mut().zip(self.prescribed) {
+            if *prescribed {
                 *y = 0.0;
             }
         }
         y
     }
 
-    /// The pairs next above the shift, the known ones aside; none if they do not converge.
+    /// Returns the pairs next above the shift, without the known ones; None if they do not converge.
     fn lanczos(
         &self,
         shift: f64,
@@ -170,26 +169,31 @@ impl Pencil<'_> {
         start: u64,
         known: &[Eigenpair],
     ) -> Option<Vec<Eigenpair>> {
-        // Vectors q, their weights Bq, and the tridiagonal matrix of the operator between them.
-        let (mut q, mut weights): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (vec![], vec![]);
+        // Lanczos vectors q, Bq, and the tridiagonal matrix of the operator.
+        let (mut q, mut products): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (vec![], vec![]);
         let (mut alpha, mut beta): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
         let known: Vec<(&Vec<f64>, Vec<f64>)> = known
             .iter()
-            .map(|pair| (&pair.vector, self.weigh(&pair.vector)))
+            .map(|pair| (&pair.vector, self.times_b(&pair.vector)))
             .collect();
-        let free = self.given.iter().filter(|given| !**given).count() - known.len();
+        let free = self
+            .prescribed
+            .iter()
+            .filter(|prescribed| !**prescribed)
+            .count()
+            - known.len();
         let mut next = self.noise(start);
-        for (vector, weight) in &known {
-            take_part(&mut next, vector, weight);
+        for (vector, product) in &known {
+            orthogonalise(&mut next, vector, product);
         }
         loop {
-            let mut weight = self.weigh(&next);
-            let norm = dot(&next, &weight).sqrt();
-            // Nothing is left: what there is spans an invariant space.
+            let mut product = self.times_b(&next);
+            let norm = dot(&next, &product).sqrt();
+            // The vectors span an invariant subspace.
             let ended = q.len() == free || norm <= 1e-13 * alpha.first().map_or(0.0, |a| a.abs());
-            let full = q.len() == LONGEST.min(free) || ended;
-            let look = q.len() >= count && (full || q.len().is_multiple_of(BETWEEN));
-            if look {
+            let full = q.len() == LANCZOS_VECTORS.min(free) || ended;
+            let test = q.len() >= count && (full || q.len().is_multiple_of(TEST_INTERVAL));
+            if test {
                 let left = if ended { 0.0 } else { norm };
                 if let Some(pairs) = self.ritz(shift, count, &q, &alpha, &beta, left) {
                     return Some(pairs);
@@ -201,28 +205,28 @@ impl Pencil<'_> {
             if !q.is_empty() {
                 beta.push(norm);
             }
-            for (x, w) in next.iter_mut().zip(&mut weight) {
+            for (x, w) in next.iter_mut().zip(&mut product) {
                 (*x, *w) = (*x / norm, *w / norm);
             }
-            let mut image = weight.clone();
+            let mut image = product.clone();
             factor.solve(&mut image);
-            alpha.push(dot(&image, &weight));
+            alpha.push(dot(&image, &product));
             q.push(std::mem::take(&mut next));
-            weights.push(weight);
-            // Against all vectors, twice: rounding would let converged ones back in.
+            products.push(product);
+            // Reorthogonalise, twice because of rounding, so that converged vectors do not come back.
             for _ in 0..2 {
-                for (vector, weight) in &known {
-                    take_part(&mut image, vector, weight);
+                for (vector, product) in &known {
+                    orthogonalise(&mut image, vector, product);
                 }
-                for (vector, weight) in q.iter().zip(&weights) {
-                    take_part(&mut image, vector, weight);
+                for (vector, product) in q.iter().zip(&products) {
+                    orthogonalise(&mut image, vector, product);
                 }
             }
             next = image;
         }
     }
 
-    /// The pairs of the tridiagonal matrix, if the largest `count` have converged.
+    /// Returns the pairs of the tridiagonal matrix if the `count` largest have converged.
     fn ritz(
         &self,
         shift: f64,
@@ -243,7 +247,7 @@ impl Pencil<'_> {
             if *theta <= 0.0 || left * s[size - 1].abs() > CONVERGED * theta {
                 return None;
             }
-            let mut vector = vec![0.0; self.given.len()];
+            let mut vector = vec![0.0; self.prescribed.len()];
             for (q, s) in q.iter().zip(s) {
                 for (x, q) in vector.iter_mut().zip(q) {
                     *x += s * q;
@@ -257,7 +261,7 @@ impl Pencil<'_> {
         Some(pairs)
     }
 
-    /// Whether as many eigenvalues lie below the last pair as are known there.
+    /// Returns whether as many eigenvalues lie below the last pair as are known.
     fn none_is_missed(&self, shift: f64, pairs: &[Eigenpair], last: Option<&Eigenpair>) -> bool {
         let Some(last) = last else {
             return true;
@@ -269,7 +273,7 @@ impl Pencil<'_> {
             .is_some_and(|factor| factor.negative_pivots() == found)
     }
 
-    /// A vector without a pattern, zero where an unknown is given; always the same one.
+    /// Returns a pseudo-random vector with zeros for prescribed unknowns, always the same for a start.
     fn noise(&self, start: u64) -> Vec<f64> {
         let mut state = start + 1;
         let mut number = || {
@@ -278,16 +282,16 @@ impl Pencil<'_> {
                 .wrapping_add(1442695040888963407);
             (state >> 33) as f64 / (1_u64 << 31) as f64 - 0.5
         };
-        let given = self.given.iter();
-        given
-            .map(|given| if *given { 0.0 } else { number() })
+        let prescribed = self.prescribed.iter();
+        prescribed
+            .map(|prescribed| if *prescribed { 0.0 } else { number() })
             .collect()
     }
 }
 
-/// Takes the part along a vector q off x, by its weight Bq.
-fn take_part(x: &mut [f64], vector: &[f64], weight: &[f64]) {
-    let part = dot(x, weight);
+/// Makes x orthogonal in B to a unit vector q with the product Bq.
+fn orthogonalise(x: &mut [f64], vector: &[f64], product: &[f64]) {
+    let part = dot(x, product);
     for (x, q) in x.iter_mut().zip(vector) {
         *x -= part * q;
     }
@@ -301,8 +305,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A chain of 40 unit masses in pairs between springs, its ends held by springs too, with
-    /// `shift` taken off its diagonal: λ_k = 4 sin²(kπ/82) − shift.
+    /// A chain of 40 unit masses between 41 unit springs, in blocks of two, with `shift` subtracted from
+    /// its diagonal: λ_k = 4 sin²(kπ/82) − shift.
     fn chain(shift: f64) -> (BlockBanded, BlockBanded) {
         let (mut a, mut b) = (BlockBanded::zeros(20, 2, 1), BlockBanded::zeros(20, 2, 1));
         let [first, coupled, second, on] = [(0, 0, 0), (0, 1, 0), (0, 1, 1), (1, 0, 1)]
@@ -326,8 +330,8 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_of_masses_has_its_frequencies() {
-        // All positive, some negative, one zero to rounding.
+    fn a_chain_of_masses_has_its_known_eigenvalues() {
+        // All are positive, some negative, one zero up to rounding.
         for shift in [0.0, 0.31, eigenvalue(3, 40)] {
             let (a, b) = chain(shift);
             let pairs = lowest_eigenpairs(&a, &b, &[false; 40], 6).unwrap();
@@ -348,11 +352,11 @@ mod tests {
     }
 
     #[test]
-    fn given_unknowns_stay_where_they_are() {
-        // Held in the middle the chain falls into two of 19 and 20 masses.
+    fn prescribed_unknowns_are_zero_in_eigenvectors() {
+        // A fixed mass in the middle divides the chain into two of 19 and 20 masses.
         let (a, b) = chain(0.0);
-        let given: Vec<bool> = (0..40).map(|i| i == 19).collect();
-        let pairs = lowest_eigenpairs(&a, &b, &given, 2).unwrap();
+        let prescribed: Vec<bool> = (0..40).map(|i| i == 19).collect();
+        let pairs = lowest_eigenpairs(&a, &b, &prescribed, 2).unwrap();
         for (pair, masses) in pairs.iter().zip([20, 19]) {
             assert!((pair.value - eigenvalue(1, masses)).abs() < 1e-12);
             assert_eq!(pair.vector[19], 0.0);
@@ -360,11 +364,11 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_that_occurs_twice_is_found_twice() {
-        // Held at both sides of its middle: two chains of 19.
+    fn a_double_eigenvalue_is_found_twice() {
+        // Two fixed masses in the middle divide the chain into two of 19.
         let (a, b) = chain(0.1);
-        let given: Vec<bool> = (0..40).map(|i| i == 19 || i == 20).collect();
-        let found = lowest_eigenpairs(&a, &b, &given, 2);
+        let prescribed: Vec<bool> = (0..40).map(|i| i == 19 || i == 20).collect();
+        let found = lowest_eigenpairs(&a, &b, &prescribed, 2);
         let value = eigenvalue(1, 19) - 0.1;
         let values: Vec<f64> = found.unwrap().iter().map(|pair| pair.value).collect();
         assert!(

@@ -1,12 +1,11 @@
-//! Symmetric block-banded matrices, their factorisation and lowest eigenpairs, and matrices of a
-//! few tall columns, on a library's dense kernels.
+//! Symmetric block-banded matrices with their factorisation and lowest eigenpairs, and dense matrices.
 
 mod block_banded;
-mod columns;
 mod dense;
 mod eigen;
+mod tall_matrix;
 
 pub use block_banded::{BlockBanded, Factor, Singular};
-pub use columns::Columns;
 pub use dense::multiply;
-pub use eigen::{Eigenpair, NoEigenpairs, lowest_eigenpairs, lowest_eigenpairs_beside};
+pub use eigen::{Eigenpair, NoEigenpairs, lowest_eigenpairs, lowest_eigenpairs_excluding};
+pub use tall_matrix::TallMatrix;

@@ -1,65 +1,65 @@
-//! Conjugate gradients with a preconditioner, for matrices that are near positive definite and may
-//! turn out not to be (Hestenes and Stiefel 1952; the truncation is Steihaug's, 1983).
+//! Preconditioned conjugate gradients for matrices that may turn out to be indefinite (Hestenes and
+//! Stiefel 1952, truncated as in Steihaug 1983).
 
-use super::operator::{Operator, add, dot, hold};
-use super::{Monitor, NegativeCurvature, Solved};
+use super::operator::{Operator, add, dot, project};
+use super::tangent::{NegativeCurvature, Solved};
+use crate::monitor::Monitor;
 
-/// What a step adds to the fall of the energy, relative to all before, where rounding takes over.
+/// Decrease of the energy in one iteration, relative to that in all before, at which rounding takes
+/// over.
 const IDLE: f64 = f64::EPSILON * f64::EPSILON;
-/// Steps in a row that add no more, after which the iteration has stagnated.
-const IDLE_STEPS: usize = 10;
+/// Successive iterations without a larger decrease after which the method has stagnated.
+const IDLE_ITERATIONS: usize = 10;
 
-/// Solves A x = b in place for the free unknowns; the other entries of `b` stay as they are.
-/// Each iteration applies A and M⁻¹ once.
+/// Solves A x = b in place for the free unknowns; the other entries of `b` stay as they are. Each
+/// iteration applies A and M⁻¹ once.
 ///
-/// It stops when the Euclidean norm of the residual is at most `accuracy` times that of b. That is
-/// the norm in which a state is accepted: to first order, the residual of A Δu = −R is what is left
-/// of R after the step. Short of that it stops after `iterations`, where the watch says so, where
-/// rounding hides all progress, and where a number is no longer one. What it then leaves in `b` is
-/// still of use: each iterate x is the minimum of ½ x · A x − b · x over all directions so far,
-/// hence b · x > 0, and along x the energy falls.
+/// The iteration stops when the Euclidean norm of the residual is at most `accuracy` times that of b.
+/// To first order, the residual of A Δu = −R is the R that is left after the step. It also stops after
+/// `iterations`, when the monitor cancels, when rounding hides all progress, and at NaN. Each iterate x
+/// is the minimum of ½ x · A x − b · x over all directions so far; hence b · x > 0, and the energy
+/// decreases along x.
 ///
-/// β is that of Polak and Ribière, z · (r − r₋)/(z₋ · r₋), which forgives an M that is not quite
-/// the same each time, and rounding (Golub and Ye 1999); r − r₋ is a multiple of A p, at hand.
+/// β is that of Polak and Ribière, z · (r − r₋)/(z₋ · r₋), which tolerates rounding and an M that varies
+/// slightly (Golub and Ye 1999); r − r₋ is a multiple of A p.
 ///
 /// # Errors
 ///
-/// At the first direction p with p · A p ≤ 0. The iterate so far is left in `b`.
+/// At the first direction p with p · A p ≤ 0; `b` then holds the iterate so far.
 pub fn conjugate_gradients<O: Operator>(
     operator: &O,
     b: &mut [f64],
     accuracy: f64,
     iterations: usize,
-    monitor: &mut dyn Monitor,
+    monitor: &dyn Monitor,
 ) -> Result<Solved, NegativeCurvature> {
-    let prescribed = operator.prescribed();
     let mut r = b.to_vec();
-    hold(operator, &mut r);
+    project(operator, &mut r);
     let mut x = vec![0.0; b.len()];
     let outcome = iterate(operator, &mut r, &mut x, accuracy, iterations, monitor);
-    for i in 0..b.len() {
-        if !prescribed[i] {
-            b[i] = x[i];
+    for ((b, x), &prescribed) in b.iter_mut().zip(x).zip(operator.prescribed()) {
+        if !prescribed {
+            *b = x;
         }
     }
     outcome
 }
 
-/// From x = 0 and r = b.
+/// Iterates from x = 0 and r = b.
 fn iterate<O: Operator>(
     operator: &O,
     r: &mut [f64],
     x: &mut [f64],
     accuracy: f64,
-    iterations: usize,
-    monitor: &mut dyn Monitor,
+    limit: usize,
+    monitor: &dyn Monitor,
 ) -> Result<Solved, NegativeCurvature> {
     let size = dot(r, r).sqrt();
     let target = accuracy * size;
-    let ended = |iterations, reached| {
+    let ended = |iterations, converged| {
         Ok(Solved {
             iterations,
-            reached,
+            converged,
         })
     };
     if size == 0.0 {
@@ -67,17 +67,16 @@ fn iterate<O: Operator>(
     }
     let [mut z, mut Ap] = [vec![0.0; r.len()], vec![0.0; r.len()]];
     operator.precondition(r, &mut z);
-    hold(operator, &mut z);
+    project(operator, &mut z);
     let mut p = z.clone();
     let mut rho = dot(r, &z);
-    let (mut fall, mut idle_steps) = (0.0, 0);
-    for done in 0..iterations {
-        // Not a number is not positive.
-        if rho.is_nan() || rho <= 0.0 || idle_steps >= IDLE_STEPS {
+    let (mut decrease, mut idle) = (0.0, 0);
+    for done in 0..limit {
+        if rho.is_nan() || rho <= 0.0 || idle >= IDLE_ITERATIONS {
             return ended(done, false);
         }
         operator.apply(&p, &mut Ap);
-        hold(operator, &mut Ap);
+        project(operator, &mut Ap);
         let pAp = dot(&p, &Ap);
         if pAp <= 0.0 {
             operator.metric(&p, &mut z);
@@ -93,33 +92,34 @@ fn iterate<O: Operator>(
         }
         add(length, &p, x);
         add(-length, &Ap, r);
-        let reached = dot(r, r).sqrt() <= target;
-        if reached || !monitor.iterating() {
-            return ended(done + 1, reached);
+        let converged = dot(r, r).sqrt() <= target;
+        if converged || monitor.is_cancelled() {
+            return ended(done + 1, converged);
         }
-        // Twice what ½ x · A x − b · x falls by.
-        let step_fall = length * rho;
-        fall += step_fall;
-        idle_steps = if step_fall <= IDLE * fall {
-            idle_steps + 1
+        // Twice the decrease of ½ x · A x − b · x in this iteration.
+        let latest = length * rho;
+        decrease += latest;
+        idle = if latest <= IDLE * decrease {
+            idle + 1
         } else {
             0
         };
         operator.precondition(r, &mut z);
-        hold(operator, &mut z);
+        project(operator, &mut z);
         let beta = (-length * dot(&z, &Ap) / rho).max(0.0);
         rho = dot(r, &z);
         for (p, z) in p.iter_mut().zip(&z) {
             *p = z + beta * *p;
         }
     }
-    ended(iterations, false)
+    ended(limit, false)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Method, reflected::Reflected};
+    use super::super::reflected::Reflected;
     use super::*;
+    use std::cell::Cell;
 
     fn residual(operator: &Reflected, x: &[f64], b: &[f64]) -> f64 {
         let mut r = vec![0.0; b.len()];
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_positive_definite_system_is_solved_to_the_accuracy_asked_for() {
+    fn a_positive_definite_system_is_solved_to_the_required_accuracy() {
         let spectrum: Vec<f64> = (0..120)
             .map(|i| 10_f64.powf(i as f64 / 20.0 - 3.0))
             .collect();
@@ -142,45 +142,45 @@ mod tests {
         for accuracy in [1e-1, 1e-4, 1e-8] {
             let b = waves(120);
             let mut x = b.clone();
-            let taken = conjugate_gradients(&operator, &mut x, accuracy, 1000, &mut ()).unwrap();
+            let taken = conjugate_gradients(&operator, &mut x, accuracy, 1000, &()).unwrap();
             let left = residual(&operator, &x, &b);
             assert!(left <= 1.01 * accuracy, "{accuracy}: {left}");
-            // No more than asked for, and quickly: M is within a factor 3 of A.
+            // M is within a factor 3 of A.
             let Solved {
                 iterations,
-                reached,
+                converged,
             } = taken;
-            assert!(reached && iterations > before, "{accuracy}: {taken:?}");
+            assert!(converged && iterations > before, "{accuracy}: {taken:?}");
             assert!(iterations < 60, "{accuracy}: {taken:?}");
             before = iterations;
         }
     }
 
     #[test]
-    fn as_many_iterations_as_there_are_different_eigenvalues_are_enough() {
+    fn iterations_do_not_exceed_the_number_of_distinct_eigenvalues() {
         let spectrum: Vec<f64> = (0..50).map(|i| [0.1, 2.0, 30.0][i % 3]).collect();
         let operator = Reflected::with_preconditioner(&spectrum, vec![1.0; 50]);
         let mut x = waves(50);
-        let taken = conjugate_gradients(&operator, &mut x, 1e-10, 1000, &mut ()).unwrap();
+        let taken = conjugate_gradients(&operator, &mut x, 1e-10, 1000, &()).unwrap();
         let expected = Solved {
             iterations: 3,
-            reached: true,
+            converged: true,
         };
         assert_eq!(taken, expected);
     }
 
     #[test]
-    fn a_truncated_solution_leads_down() {
+    fn the_energy_decreases_along_truncated_solutions() {
         let spectrum: Vec<f64> = (0..80).map(|i| 1e-2 * 1.15_f64.powi(i)).collect();
         let operator = Reflected::new(&spectrum, 10.0);
         let b = waves(80);
         let mut energies = vec![0.0];
         for iterations in 1..6 {
             let mut x = b.clone();
-            let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations, &mut ()).unwrap();
+            let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations, &()).unwrap();
             let cut_off = Solved {
                 iterations,
-                reached: false,
+                converged: false,
             };
             assert_eq!(taken, cut_off);
             assert!(dot(&b, &x) > 0.0);
@@ -191,66 +191,63 @@ mod tests {
         assert!(energies.windows(2).all(|e| e[1] < e[0]), "{energies:?}");
     }
 
-    /// Someone who wants no more than so many iterations.
-    struct Stops(usize);
+    /// Cancels after a number of iterations.
+    struct CancelAfter(Cell<usize>);
 
-    impl Monitor for Stops {
-        fn solved(&mut self, _: Method, _: f64) -> bool {
-            self.0 > 0
-        }
-        fn iterating(&mut self) -> bool {
-            self.0 -= 1;
-            self.0 > 0
+    impl Monitor for CancelAfter {
+        fn is_cancelled(&self) -> bool {
+            self.0.set(self.0.get() - 1);
+            self.0.get() == 0
         }
     }
 
     #[test]
-    fn a_long_solve_is_cut_off_when_the_watch_says_so() {
+    fn a_solve_stops_when_the_monitor_cancels() {
         let spectrum: Vec<f64> = (0..80).map(|i| 1e-2 * 1.15_f64.powi(i)).collect();
         let operator = Reflected::new(&spectrum, 10.0);
-        let solved = |iterations: usize, monitor: &mut dyn Monitor| {
+        let solved = |iterations: usize, monitor: &dyn Monitor| {
             let mut x = waves(80);
             let taken = conjugate_gradients(&operator, &mut x, 1e-12, iterations, monitor);
             (taken.unwrap(), x)
         };
-        assert!(solved(1000, &mut ()).0.iterations > 30);
-        assert_eq!(solved(1000, &mut Stops(3)), solved(3, &mut ()));
+        assert!(solved(1000, &()).0.iterations > 30);
+        assert_eq!(solved(1000, &CancelAfter(Cell::new(3))), solved(3, &()));
     }
 
     #[test]
-    fn negative_curvature_is_met_and_measured_in_the_metric() {
+    fn negative_curvature_is_found_and_measured_in_the_metric() {
         let mut spectrum: Vec<f64> = (0..100).map(|i| 0.1 + i as f64).collect();
         spectrum[40] = -0.5;
         let operator = Reflected::new(&spectrum, 2.0);
         let b = waves(100);
         let mut x = b.clone();
-        let down = conjugate_gradients(&operator, &mut x, 1e-8, 1000, &mut ()).unwrap_err();
+        let met = conjugate_gradients(&operator, &mut x, 1e-8, 1000, &()).unwrap_err();
         let [mut Ad, mut Cd] = [vec![0.0; 100], vec![0.0; 100]];
-        let d = &down.direction;
+        let d = &met.direction;
         operator.apply(d, &mut Ad);
         operator.metric(d, &mut Cd);
-        assert_eq!(down.curvature, dot(d, &Ad) / dot(d, &Cd));
+        assert_eq!(met.curvature, dot(d, &Ad) / dot(d, &Cd));
         // No Rayleigh quotient is below the lowest eigenvalue.
-        assert!((-0.5..=0.0).contains(&down.curvature), "{}", down.curvature);
-        // The energy falls along d, too.
+        assert!((-0.5..=0.0).contains(&met.curvature), "{}", met.curvature);
+        // The energy decreases along d, too.
         assert!(dot(d, &b) > 0.0);
         assert!(dot(&x, &b) >= 0.0);
     }
 
     #[test]
-    fn a_singular_system_that_has_a_solution_is_solved() {
+    fn a_consistent_singular_system_is_solved() {
         let mut spectrum: Vec<f64> = (0..100).map(|i| 1.0 + i as f64).collect();
         spectrum[3] = 0.0;
         let operator = Reflected::new(&spectrum, 2.0);
         let mut b = vec![0.0; 100];
         operator.apply(&waves(100), &mut b);
         let mut x = b.clone();
-        conjugate_gradients(&operator, &mut x, 1e-9, 1000, &mut ()).unwrap();
+        conjugate_gradients(&operator, &mut x, 1e-9, 1000, &()).unwrap();
         assert!(residual(&operator, &x, &b) < 1.01e-9);
     }
 
     #[test]
-    fn given_unknowns_take_no_part() {
+    fn prescribed_unknowns_stay_as_they_are() {
         let spectrum: Vec<f64> = (0..30).map(|i| 1.0 + i as f64).collect();
         let mut operator = Reflected::new(&spectrum, 2.0);
         for i in [0, 7, 29] {
@@ -258,7 +255,7 @@ mod tests {
         }
         let b = waves(30);
         let mut x = b.clone();
-        conjugate_gradients(&operator, &mut x, 1e-12, 1000, &mut ()).unwrap();
+        conjugate_gradients(&operator, &mut x, 1e-12, 1000, &()).unwrap();
         for i in [0, 7, 29] {
             assert_eq!(x[i], b[i]);
             x[i] = 0.0;
@@ -271,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_pinned_takes_no_part() {
+    fn the_solution_is_orthogonal_to_constrained_combinations() {
         let spectrum: Vec<f64> = (0..30).map(|i| 1.0 + i as f64).collect();
         let mut operator = Reflected::new(&spectrum, 2.0);
         operator.prescribed[7] = true;
@@ -280,44 +277,44 @@ mod tests {
         operator.pinned = Some(pinned.clone());
         let b = waves(30);
         let mut x = b.clone();
-        conjugate_gradients(&operator, &mut x, 1e-12, 1000, &mut ()).unwrap();
+        conjugate_gradients(&operator, &mut x, 1e-12, 1000, &()).unwrap();
         assert_eq!(x[7], b[7]);
         x[7] = 0.0;
         assert!(dot(&x, &pinned).abs() < 1e-13);
-        // What is left is what the pin carries.
+        // The residual is the force of the constraint.
         let mut r = vec![0.0; 30];
         operator.apply(&x, &mut r);
         add(-1.0, &b, &mut r);
         assert!(dot(&r, &pinned).abs() > 0.1);
-        hold(&operator, &mut r);
+        project(&operator, &mut r);
         assert!(r.iter().all(|r| r.abs() < 1e-10));
     }
 
     #[test]
-    fn it_ends_where_there_is_nothing_to_gain() {
+    fn the_iteration_ends_at_zero_at_rounding_and_at_nan() {
         let operator = Reflected::new(&[1.0, 2.0, 3.0, 400.0, 1e-3], 2.0);
-        // Nothing to solve.
+        // Zero.
         let mut x = vec![0.0; 5];
         assert_eq!(
-            conjugate_gradients(&operator, &mut x, 1e-3, 1000, &mut ()),
+            conjugate_gradients(&operator, &mut x, 1e-3, 1000, &()),
             Ok(Solved {
                 iterations: 0,
-                reached: true
+                converged: true
             })
         );
-        // More asked for than rounding allows.
+        // A higher accuracy than rounding permits.
         let mut x = waves(5);
-        let taken = conjugate_gradients(&operator, &mut x, 0.0, 1000, &mut ()).unwrap();
-        assert!(taken.iterations < 100 && !taken.reached, "{taken:?}");
+        let taken = conjugate_gradients(&operator, &mut x, 0.0, 1000, &()).unwrap();
+        assert!(taken.iterations < 100 && !taken.converged, "{taken:?}");
         let left = residual(&operator, &x, &waves(5));
         assert!(left < 1e-9, "{taken:?}: {left:e}");
-        // Not a number.
+        // NaN.
         let mut x = vec![1.0, f64::NAN, 0.0, 0.0, 0.0];
         assert_eq!(
-            conjugate_gradients(&operator, &mut x, 1e-3, 1000, &mut ()),
+            conjugate_gradients(&operator, &mut x, 1e-3, 1000, &()),
             Ok(Solved {
                 iterations: 0,
-                reached: false
+                converged: false
             })
         );
         assert_eq!(x, [0.0; 5]);

@@ -2,10 +2,10 @@
 //! conjugate gradients (Knyazev 2001).
 //!
 //! Each iteration finds the best block X within the span of three: X itself, the preconditioned
-//! residuals W = M⁻¹ (A X − C X ν), and P, what the last iteration changed X by. What makes it
-//! robust follows Hetmaniuk and Lehoucq (2006) and Duersch et al. (2018): W is made orthogonal to X
-//! beforehand, P to X by way of the coefficients, and the basis is orthonormalised by the
-//! eigenvectors of its Gram matrix, without those that rounding has made up.
+//! residuals W = M⁻¹ (A X − C X ν), and P, the last change of X. For robustness it follows Hetmaniuk and
+//! Lehoucq (2006) and Duersch et al. (2018): W is made orthogonal to X beforehand, P to X through the
+//! coefficients, and the basis is orthonormalised by the eigenvectors of its Gram matrix, without those
+//! that are due to rounding.
 //!
 //! | letter | meaning |
 //! |---|---|
@@ -14,59 +14,59 @@
 //! | S | the basis (X, W, P) |
 //! | δ | error bound of an eigenvalue |
 
-use super::operator::{Operator, add, dot, hold};
-use crate::matrix::Columns;
+use super::operator::{Operator, add, dot, project};
+use crate::matrix::TallMatrix;
+use crate::monitor::Monitor;
 
-/// Eigenvalues of a basis's Gram matrix, scaled to a unit diagonal and relative to the largest,
-/// below which what they stand for is rounding.
+/// Eigenvalues of a basis's Gram matrix, scaled to a unit diagonal and relative to the largest, below
+/// which their directions are due to rounding.
 const DEPENDENT: f64 = 1e-10;
-/// Iterations after which A X and C X are not combined but applied anew.
+/// Iterations after which A X and C X are computed anew instead of combined.
 const REFRESH: usize = 25;
-/// How far above a value, in error bounds, the lowest Ritz value must be for its side to be certain.
-/// The bound is exact for M = A only, and an eigenvector that is hardly there yet does not show in
-/// it: with 2, and M from the tube at rest, tubes that had just become unstable passed for stable.
+/// Distance of the lowest Ritz value above a value, in error bounds, at which its side is certain. The
+/// bound is exact for M = A only, and does not include eigenvectors that are hardly present yet: with 2,
+/// and M from the undeformed tube, tubes that had just become unstable were found to be stable.
 const CERTAIN: f64 = 10.0;
-/// An eigenvalue near zero need not be known more closely, against itself, than one this much of the
-/// largest wanted.
+/// Residuals are relative to at least this fraction of the largest wanted eigenvalue.
 const NEAR_ZERO: f64 = 1e-2;
 
-/// What is looked for, and when it is found.
+/// The eigenpairs to search for, and the criteria for stopping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Search {
-    /// How many of the lowest eigenvalues; at most as many as there are seeds.
+    /// Number of eigenvalues, at most the number of seeds.
     pub wanted: usize,
-    /// They are found when their relative residuals are at most this. (The relative error of an
-    /// eigenvalue is about the square of that.)
+    /// Largest relative residual of a converged eigenpair. (The relative error of the eigenvalue is
+    /// about its square.)
     pub accuracy: f64,
-    /// The iterations, at most.
+    /// Largest number of iterations.
     pub iterations: usize,
-    /// If only the side of this value matters, on which the lowest eigenvalue lies, the search ends
-    /// once it is certain.
+    /// If given, the search ends as soon as it is certain on which side of this value the lowest
+    /// eigenvalue lies.
     pub side_of: Option<f64>,
 }
 
-/// The lowest eigenpairs, as far as they were found.
+/// The lowest eigenpairs, as far as they have converged.
 #[derive(Clone, Debug)]
 pub struct Lowest {
-    /// Eigenvalues ν, the lowest first, as many as there were independent seeds. Each is a Rayleigh
-    /// quotient: the lowest of all is no higher than the first.
+    /// Eigenvalues ν, the lowest first, as many as there were independent seeds. They are Rayleigh
+    /// quotients, so the lowest eigenvalue is at most the first.
     pub values: Vec<f64>,
-    /// Eigenvectors x, for every unknown; x · C x = 1.
+    /// Eigenvectors x of all unknowns, with x · C x = 1.
     pub vectors: Vec<Vec<f64>>,
-    /// Error bounds δ: an eigenvalue lies that near.
+    /// Error bounds δ: at least one eigenvalue lies within this distance.
     pub errors: Vec<f64>,
-    /// Relative residuals (r · M⁻¹ r/s)^½ with r = A x − ν C x and s = |ν|, or a hundredth of the
-    /// largest wanted if that is more. An eigenvalue is off by about their square times s.
+    /// Relative residuals (r · M⁻¹ r/s)^½ with r = A x − ν C x and s = |ν|, but at least a hundredth of
+    /// the largest wanted eigenvalue. The error of an eigenvalue is about their square times s.
     pub residuals: Vec<f64>,
-    /// Iterations it took; each applies A, M⁻¹ and C once to every vector not found yet.
+    /// Iterations; each applies A, M⁻¹ and C once to every vector that has not converged.
     pub iterations: usize,
 }
 
 impl Lowest {
-    /// The side of a value on which the lowest eigenvalue lies, as far as that is certain: whether
-    /// it is below. A Rayleigh quotient below proves that. That none is, is as certain as that the
-    /// seeds have a part of every eigenvector, and is asked of all that were found: a seed that happens
-    /// to be an eigenvector has no error, and what lies below shows in what the others turn into.
+    /// Returns whether the lowest eigenvalue is below a value; None if that is not certain. A Rayleigh
+    /// quotient below proves it. The opposite is as certain as that the seeds contain every
+    /// eigenvector, and requires it of all pairs: a seed that happens to be an eigenvector has no error,
+    /// and a lower eigenvalue shows in the others.
     pub fn is_below(&self, value: f64) -> Option<bool> {
         let certain = |(found, error): (&f64, &f64)| found - value > CERTAIN * error;
         if *self.values.first()? < value {
@@ -78,7 +78,7 @@ impl Lowest {
         }
     }
 
-    /// Error bounds and residuals, of r · M⁻¹ r.
+    /// Computes error bounds and residuals from r · M⁻¹ r.
     fn measure(&mut self, squares: &[f64], wanted: usize) {
         let wanted = self.values.iter().take(wanted);
         let near_zero = NEAR_ZERO * wanted.fold(0.0, |most: f64, value| most.max(value.abs()));
@@ -90,21 +90,20 @@ impl Lowest {
     }
 }
 
-/// Finds the lowest eigenpairs of A x = ν C x on the free unknowns, from seeds: vectors that have a
-/// part, however small, of each eigenvector that is looked for. More seeds than wanted eigenvalues
-/// help where the lowest lie close together.
+/// Finds the lowest eigenpairs of A x = ν C x on the free unknowns, from seeds: vectors that together
+/// contain every eigenvector of interest, however little of it. More seeds than wanted eigenvalues help
+/// where the lowest lie close together.
 ///
 /// The error bound of a pair is δ² = |ν| r · M⁻¹ r with r = A x − ν C x: with x = Σ c v over
 /// eigenvectors and Σ c² = 1, r · A⁻¹ r = Σ c² (νᵢ − ν)²/νᵢ, so some νᵢ has |νᵢ − ν| ≤ (νᵢ r · A⁻¹ r)^½.
 /// It costs nothing, and does not depend on the mesh.
 ///
-/// `goes_on` is asked in every iteration, and told what there is, vectors aside; if false the search
-/// ends there.
+/// The search reports every iteration, and ends with what it has when the monitor cancels.
 pub fn lowest<O: Operator>(
     operator: &O,
     seeds: &[Vec<f64>],
     search: &Search,
-    goes_on: &mut dyn FnMut(&Lowest) -> bool,
+    monitor: &mut dyn Monitor,
 ) -> Lowest {
     let mut found = Lowest {
         values: vec![],
@@ -121,7 +120,6 @@ pub fn lowest<O: Operator>(
     };
     let mut x = start.times(&ritz.coefficients);
     found.values = ritz.values;
-    // What the last iteration changed every vector by.
     let mut p: Option<Basis> = None;
     loop {
         let (squares, corrections) = corrections(operator, &x, &found.values);
@@ -135,22 +133,25 @@ pub fn lowest<O: Operator>(
             || (all && search.side_of.is_none())
             || search.side_of.is_some_and(decided)
             || found.iterations == search.iterations
-            || !goes_on(&found)
         {
             break;
         }
+        report(&found, search, monitor);
+        if monitor.is_cancelled() {
+            break;
+        }
         let mut basis = x.clone();
-        basis.append(&Basis::of(operator, x.without(corrections.chosen(&open))));
+        basis.append(&Basis::of(operator, x.without(corrections.select(&open))));
         if let Some(p) = &p {
-            basis.append(&p.chosen(&open));
+            basis.append(&p.select(&open));
         }
         let Some(ritz) = Ritz::of(&basis, found.values.len()) else {
-            break; // not a number
+            break; // NaN
         };
         found.iterations += 1;
         x = basis.times(&ritz.coefficients);
         p = Some(basis.times(&ritz.changes));
-        // The basis holds the vectors before: only rounding lets a value rise.
+        // The basis contains the previous vectors, so only rounding can raise a value.
         let risen = ritz.values[0] > found.values[0] + DEPENDENT * found.values[0].abs();
         found.values = ritz.values;
         if risen || found.iterations.is_multiple_of(REFRESH) {
@@ -164,36 +165,47 @@ pub fn lowest<O: Operator>(
     found
 }
 
-/// r · M⁻¹ r of eigenpairs, and M⁻¹ r.
-fn corrections<O: Operator>(operator: &O, x: &Basis, values: &[f64]) -> (Vec<f64>, Columns) {
-    let (mut squares, mut corrections) = (vec![], Columns::new(x.vectors.rows()));
+fn report(found: &Lowest, search: &Search, monitor: &mut dyn Monitor) {
+    let residuals = found.residuals.iter().take(search.wanted);
+    let activity = format_args!(
+        "{} iterations, lowest eigenvalue {:.3e}, residual {:.0e}",
+        found.iterations,
+        found.values[0],
+        residuals.fold(0.0, |most: f64, r| most.max(*r)),
+    );
+    monitor.working(&activity, 0.0);
+}
+
+/// Returns r · M⁻¹ r and M⁻¹ r of eigenpairs.
+fn corrections<O: Operator>(operator: &O, x: &Basis, values: &[f64]) -> (Vec<f64>, TallMatrix) {
+    let (mut squares, mut corrections) = (vec![], TallMatrix::new(x.vectors.rows()));
     let mut z = vec![0.0; x.vectors.rows()];
     for (j, &value) in values.iter().enumerate() {
         let mut r = x.applied.column(j).to_vec();
         add(-value, x.measured.column(j), &mut r);
         operator.precondition(&r, &mut z);
-        hold(operator, &mut z);
+        project(operator, &mut z);
         squares.push(dot(&r, &z).max(0.0));
         corrections.push(&z);
     }
     (squares, corrections)
 }
 
-/// Vectors S with their images A S and C S.
+/// Vectors S with A S and C S.
 #[derive(Clone, Debug)]
 struct Basis {
-    vectors: Columns,
-    applied: Columns,
-    measured: Columns,
+    vectors: TallMatrix,
+    applied: TallMatrix,
+    measured: TallMatrix,
 }
 
 impl Basis {
-    fn of<O: Operator>(operator: &O, vectors: Columns) -> Self {
+    fn of<O: Operator>(operator: &O, vectors: TallMatrix) -> Self {
         let image = |apply: &dyn Fn(&[f64], &mut [f64])| {
             let mut images = vectors.clone();
-            for j in 0..vectors.count() {
+            for j in 0..vectors.columns() {
                 apply(vectors.column(j), images.column_mut(j));
-                hold(operator, images.column_mut(j));
+                project(operator, images.column_mut(j));
             }
             images
         };
@@ -205,16 +217,16 @@ impl Basis {
     }
 
     fn of_seeds<O: Operator>(operator: &O, seeds: &[Vec<f64>]) -> Option<Self> {
-        let mut vectors = Columns::new(seeds.first()?.len());
+        let mut vectors = TallMatrix::new(seeds.first()?.len());
         for seed in seeds {
             let mut seed = seed.clone();
-            hold(operator, &mut seed);
+            project(operator, &mut seed);
             vectors.push(&seed);
         }
         Some(Self::of(operator, vectors))
     }
 
-    fn times(&self, coefficients: &Columns) -> Self {
+    fn times(&self, coefficients: &TallMatrix) -> Self {
         Self {
             vectors: self.vectors.times(coefficients),
             applied: self.applied.times(coefficients),
@@ -222,11 +234,11 @@ impl Basis {
         }
     }
 
-    fn chosen(&self, which: &[usize]) -> Self {
+    fn select(&self, which: &[usize]) -> Self {
         Self {
-            vectors: self.vectors.chosen(which),
-            applied: self.applied.chosen(which),
-            measured: self.measured.chosen(which),
+            vectors: self.vectors.select(which),
+            applied: self.applied.select(which),
+            measured: self.measured.select(which),
         }
     }
 
@@ -236,12 +248,12 @@ impl Basis {
         self.measured.append(&other.measured);
     }
 
-    /// Other vectors without their part in the span of these, which are orthonormal: w − X Xᵀ C w,
-    /// twice, since the first time leaves rounding.
-    fn without(&self, mut others: Columns) -> Columns {
+    /// Projects other vectors orthogonally to these orthonormal ones: w − X Xᵀ C w, twice because of
+    /// rounding.
+    fn without(&self, mut others: TallMatrix) -> TallMatrix {
         for _ in 0..2 {
             let part = self.measured.gram(&others);
-            self.vectors.times_onto(-1.0, &part, &mut others);
+            self.vectors.add_product(-1.0, &part, &mut others);
         }
         others
     }
@@ -251,14 +263,14 @@ impl Basis {
 struct Ritz {
     values: Vec<f64>,
     /// X = S · coefficients, orthonormal in C.
-    coefficients: Columns,
-    /// P = S · changes: what the first columns of the basis have no part in, orthogonal to X.
-    changes: Columns,
+    coefficients: TallMatrix,
+    /// P = S · changes: the part of X outside the first columns of the basis, orthogonal to X.
+    changes: TallMatrix,
 }
 
 impl Ritz {
-    /// Of as many as `wanted` or the independent vectors of the basis. None if there are none, or
-    /// they are no numbers.
+    /// Computes `wanted` pairs, or as many as there are independent vectors in the basis. None if there
+    /// are none, or at NaN.
     fn of(basis: &Basis, wanted: usize) -> Option<Self> {
         let A = basis.vectors.gram(&basis.applied);
         let C = basis.vectors.gram(&basis.measured);
@@ -268,8 +280,8 @@ impl Ritz {
         let count = wanted.min(values.len());
         values.truncate(count);
         let chosen: Vec<usize> = (0..count).collect();
-        let coefficients = independent.times(&vectors.chosen(&chosen));
-        let mut changes = Columns::from_fn(C.rows(), count, |i, j| {
+        let coefficients = independent.times(&vectors.select(&chosen));
+        let mut changes = TallMatrix::from_fn(C.rows(), count, |i, j| {
             if i < count {
                 0.0
             } else {
@@ -277,7 +289,7 @@ impl Ritz {
             }
         });
         let part = coefficients.gram(&C.times(&changes));
-        coefficients.times_onto(-1.0, &part, &mut changes);
+        coefficients.add_product(-1.0, &part, &mut changes);
         Some(Self {
             values,
             coefficients,
@@ -286,20 +298,20 @@ impl Ritz {
     }
 }
 
-/// Coefficients T with Tᵀ C T = 1, of all directions that are not rounding (Stathopoulos and Wu
-/// 2002). None if there are none.
-fn orthonormal(C: &Columns) -> Option<Columns> {
+/// Returns coefficients T with Tᵀ C T = 1 of all directions that are not due to rounding (Stathopoulos
+/// and Wu 2002). None if there are none.
+fn orthonormal(C: &TallMatrix) -> Option<TallMatrix> {
     let n = C.rows();
     let scale: Vec<f64> = (0..n)
         .map(|i| C.entry(i, i).sqrt().recip())
         .map(|scale| if scale.is_finite() { scale } else { 0.0 })
         .collect();
-    let scaled = Columns::from_fn(n, n, |i, j| scale[i] * C.entry(i, j) * scale[j]);
+    let scaled = TallMatrix::from_fn(n, n, |i, j| scale[i] * C.entry(i, j) * scale[j]);
     let (sizes, directions) = scaled.eigen()?;
     let least = DEPENDENT * sizes[n - 1];
     let kept: Vec<usize> = (0..n).filter(|&j| sizes[j] > least).collect();
     (!kept.is_empty()).then(|| {
-        Columns::from_fn(n, kept.len(), |i, k| {
+        TallMatrix::from_fn(n, kept.len(), |i, k| {
             scale[i] * directions.entry(i, kept[k]) / sizes[kept[k]].sqrt()
         })
     })
@@ -320,7 +332,7 @@ mod tests {
     }
 
     fn lowest_of(operator: &Reflected, seeds: &[Vec<f64>], search: &Search) -> Lowest {
-        lowest(operator, seeds, search, &mut |_| true)
+        lowest(operator, seeds, search, &mut ())
     }
 
     fn search(wanted: usize) -> Search {
@@ -332,7 +344,7 @@ mod tests {
         }
     }
 
-    /// Pairs are held against the spectrum and against their own equation.
+    /// Compares pairs with the spectrum and with the eigenvalue equation.
     fn assert_lowest(operator: &Reflected, found: &Lowest, exact: &[f64]) {
         for (j, &exact) in exact.iter().enumerate() {
             let (value, error) = (found.values[j], found.errors[j]);
@@ -357,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cluster_at_the_bottom_is_told_apart() {
+    fn a_cluster_of_lowest_eigenvalues_is_resolved() {
         let mut spectrum: Vec<f64> = (0..300).map(|i| 1.0 + (i * i) as f64).collect();
         (spectrum[100], spectrum[7], spectrum[200]) = (1e-3, 1.01e-3, 1.02e-3);
         let operator = Reflected::new(&spectrum, 3.0);
@@ -413,7 +425,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_on_to_rounding_and_stays_there() {
+    fn the_iteration_converges_to_rounding_and_stays_there() {
         let mut spectrum: Vec<f64> = (0..100).map(|i| 1.0 + (i * i) as f64).collect();
         spectrum[50] = 0.9;
         let operator = Reflected::new(&spectrum, 3.0);
@@ -449,7 +461,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_that_depend_on_each_other_count_once() {
+    fn dependent_seeds_count_once() {
         let spectrum: Vec<f64> = (0..60).map(|i| 1.0 + i as f64).collect();
         let operator = Reflected::new(&spectrum, 3.0);
         let mut seeds = seeds(60, 2);
@@ -470,7 +482,7 @@ mod tests {
     }
 
     #[test]
-    fn given_unknowns_take_no_part() {
+    fn prescribed_unknowns_are_zero_in_eigenvectors() {
         let spectrum: Vec<f64> = (0..40).map(|i| 1.0 + i as f64).collect();
         let mut operator = Reflected::new(&spectrum, 3.0);
         for i in [0, 11, 39] {
@@ -479,15 +491,15 @@ mod tests {
         let found = lowest_of(&operator, &seeds(40, 2), &search(1));
         let x = &found.vectors[0];
         assert_eq!([x[0], x[11], x[39]], [0.0; 3]);
-        // Fewer directions: no lower.
+        // Constraints do not lower eigenvalues.
         assert!(found.values[0] > 1.0);
     }
 
     #[test]
-    fn what_is_pinned_takes_no_part() {
+    fn eigenvectors_are_orthogonal_to_constrained_combinations() {
         let spectrum: Vec<f64> = (0..40).map(|i| 1.0 + i as f64).collect();
         let mut operator = Reflected::new(&spectrum, 3.0);
-        // What is orthogonal to the lowest eigenvector in C: the others are left.
+        // With the lowest eigenvector constrained, the others are left.
         let free = lowest_of(&operator, &seeds(40, 2), &search(1));
         let mut pinned = vec![0.0; 40];
         operator.metric(&free.vectors[0], &mut pinned);

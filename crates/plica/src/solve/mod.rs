@@ -1,33 +1,43 @@
-//! Finding equilibria: Newton, relaxation, pseudo-time, and the way through a snap.
+//! Solvers that find equilibrium states of any energy, one by one or along a path of loads.
 //!
-//! This room never hears of a tube. It sees an [`Equilibrium`]: an energy W(u, load) with its
-//! residual R = ∂W/∂u, its tangent K = ∂²W/∂u², a drag matrix C, and unknowns that supports give.
-//! How a linear system is solved it leaves to the [`Tangent`] and its [`Solver`]: [`Direct`] has
-//! matrices that are factored; others may iterate, and then say where they meet an energy that is
-//! curved downwards.
+//! A problem is an [`Equilibrium`]: an energy W(u, load) with residual R = ∂W/∂u, tangent K = ∂²W/∂u²
+//! and damping matrix C; supports prescribe some of the unknowns. Its [`Tangent`] makes the linear
+//! [`Solver`]: [`Direct`] factors assembled matrices; others may iterate, and report directions of
+//! negative curvature. This module contains no physics.
 //!
-//! - [`newton`]: K Δu = −R with the energy as judge. Refuses an indefinite tangent.
-//! - [`relaxation`]: (K + α C) Δu = −R, backward Euler in pseudo-time with a drag α that shrinks
-//!   as the residual does; every step lowers the energy, so it leaves every unstable state but
-//!   one that its symmetry keeps it on.
-//! - [`pseudo_time`]: the same with a drag that stays, and the paper's Newmark recurrence.
-//! - [`conjugate_gradients`] and [`lowest`]: linear systems and lowest eigenpairs of an [`Operator`]
-//!   that is never assembled.
-//! - [`Path`]: from state to state along a load; predicts with the path's tangent, then takes the
-//!   first of these that arrives, and halves the step when none does.
+//! - [`Path`] follows states along a load: it predicts with the tangent du/dt of the path, corrects
+//!   with Newton's method, halves the step, relaxes, and halves further.
+//! - [`newton`] solves K Δu = −R with a line search in the energy, and refuses an indefinite tangent.
+//! - [`relaxation`] solves (K + α C) Δu = −R, backward Euler in pseudo-time, with damping α that
+//!   decreases with the residual. Every step lowers the energy, so it leaves unstable states, unless
+//!   a symmetry keeps it on them.
+//! - [`PseudoTime`] is relaxation with constant damping, by backward Euler or the Newmark recurrence of
+//!   Okino et al. (2025).
+//! - [`conjugate_gradients`] and [`lowest`] solve linear systems and eigenvalue problems with an
+//!   [`Operator`] that is never assembled.
+//!
+//! All count their work in [`Effort`], and report to a [`Monitor`](crate::monitor::Monitor), which may
+//! cancel them.
 //!
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | u | unknowns | D |
+//! | W | energy | E D³ |
 //! | R | residual | E D² |
 //! | K | tangent stiffness | E D |
-//! | C | drag matrix of unit coefficient | D³ |
-//! | α | drag | E/D² |
+//! | C | damping matrix of unit coefficient | D³ |
+//! | α | damping | E/D² |
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
 mod conjugate_gradients;
+mod continuation;
+mod damping_controller;
+mod equilibrium;
+mod failure;
 mod forcing;
+mod iterate;
+mod line_search;
 mod lowest;
 mod newton;
 mod operator;
@@ -38,17 +48,21 @@ mod reflected;
 mod relaxation;
 mod settings;
 mod state;
+mod step_controller;
 mod tangent;
 #[cfg(test)]
 mod tests;
 
 pub use conjugate_gradients::conjugate_gradients;
+pub use continuation::{ContinuationState, PreviousPoint};
+pub(crate) use equilibrium::EQUILIBRIUM;
+pub use equilibrium::{Equilibrium, ResidualEvaluation};
+pub use failure::Failure;
 pub use lowest::{Lowest, Search, lowest};
 pub use newton::newton;
 pub use operator::Operator;
-pub use path::{ContinuationState, Path, PathError, PreviousPoint, Step};
-pub use pseudo_time::pseudo_time;
+pub use path::{Path, PathError, Step};
 pub use relaxation::relaxation;
 pub use settings::{Integrator, PseudoTime, Scheme, Settings};
-pub use state::{Equilibrium, Failure, Method, Monitor, ResidualEvaluation, Solution, State};
+pub use state::{Effort, Method, Solution, State};
 pub use tangent::{Direct, NegativeCurvature, Solved, Solver, Tangent};

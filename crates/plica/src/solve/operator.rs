@@ -1,41 +1,39 @@
-//! What the iterations see of a matrix that is never assembled.
+//! Matrices that are never assembled, as the iterative methods see them.
 
 /// A symmetric operator A on the free unknowns, with a preconditioner and a metric.
 ///
-/// Vectors hold every unknown; they come in with zeros where a support gives one and without what is
-/// pinned, and what is written there does not count.
+/// Vectors hold all unknowns. They come in with zeros for prescribed unknowns and orthogonal to
+/// constrained combinations; what is written there is ignored.
 pub trait Operator {
-    /// For every unknown, whether a support gives it.
+    /// Returns for every unknown whether a support prescribes it.
     fn prescribed(&self) -> &[bool];
-    /// Takes out of `v` what else must not move, by orthogonal projection: combinations of unknowns
-    /// that supports pin.
-    fn take_out_pins(&self, _v: &mut [f64]) {}
-    /// `out` = A v.
+    /// Projects `v` orthogonally to the combinations of unknowns that supports constrain.
+    fn project_out_constraints(&self, _v: &mut [f64]) {}
+    /// Writes A v into `out`.
     fn apply(&self, v: &[f64], out: &mut [f64]);
-    /// `out` = M⁻¹ r with a symmetric, positive definite M that is near A.
+    /// Writes M⁻¹ r into `out`, with a symmetric, positive definite M close to A.
     fn precondition(&self, r: &[f64], out: &mut [f64]);
-    /// `out` = C v with a symmetric, positive definite C.
+    /// Writes C v into `out`, with a symmetric, positive definite C.
     fn metric(&self, v: &[f64], out: &mut [f64]);
 }
 
-/// Takes out of `v` all that supports max_steps: the unknowns that they give, and what they pin.
-pub(super) fn hold<O: Operator>(operator: &O, v: &mut [f64]) {
-    for (x, _) in v
-        .iter_mut()
-        .zip(operator.prescribed())
-        .filter(|(_, prescribed)| **prescribed)
-    {
-        *x = 0.0;
+/// Projects `v` to what supports leave free: sets prescribed unknowns to zero, and takes out constrained
+/// combinations.
+pub(super) fn project<O: Operator>(operator: &O, v: &mut [f64]) {
+    for (x, &prescribed) in v.iter_mut().zip(operator.prescribed()) {
+        if prescribed {
+            *x = 0.0;
+        }
     }
-    operator.take_out_pins(v);
+    operator.project_out_constraints(v);
 }
 
-/// a · b, summed in order, so that it does not depend on threads.
+/// Returns a · b, summed in order, so that it does not depend on the number of threads.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// y += factor · x.
+/// Adds `factor` · x to `y`.
 pub(super) fn add(factor: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += factor * x;

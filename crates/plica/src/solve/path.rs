@@ -1,103 +1,90 @@
-//! From state to state along a load, and through a snap.
+//! The path from state to state along a load, and through a snap.
 
-use super::newton::EQUILIBRIUM;
-use super::{
-    Equilibrium, Failure, Method, Monitor, PseudoTime, ResidualEvaluation, Scheme, Settings,
-    Solution, Solver, State, Tangent, newton, pseudo_time, relaxation,
-};
+use super::continuation::{ContinuationState, PreviousPoint};
+use super::equilibrium::{Equilibrium, ResidualEvaluation};
+use super::failure::Failure;
+use super::newton::newton;
+use super::pseudo_time::pseudo_time;
+use super::relaxation::relaxation;
+use super::settings::{PseudoTime, Scheme, Settings};
+use super::state::{Effort, Method, Solution, State};
+use super::step_controller::StepController;
+use super::tangent::{Solver, Tangent};
+use crate::monitor::Monitor;
 
-/// How often a step is halved for Newton before relaxation takes over.
-const NEWTON_HALVINGS: usize = 5;
-
-/// Step of the difference that gives ∂R/∂t, as a fraction of a leg.
+/// Step of the central difference that gives ∂R/∂t, as a fraction of a segment.
 const DIFFERENCE: f64 = 1e-5;
 
-/// Accuracy of du/dt, which a state is predicted with.
+/// Accuracy of the linear solve for du/dt.
 const PREDICTION: f64 = 1e-4;
 
-/// A way through states, leg by leg; a leg is a straight way through loads, t from 0 to 1. It owns
-/// the last accepted state.
+/// A path of equilibrium states. It consists of segments; on each the load goes straight from one
+/// value to another with t from 0 to 1. The path owns its last accepted state.
 pub struct Path<P: Equilibrium> {
     problem: P,
     settings: Settings,
     state: State<P::Load>,
-    /// Solves with the tangent stiffness of the state, unless that is singular. It may be as large as
-    /// everything else, so it is let go before another state is looked for, and made again if asked for.
+    /// Solver of the state's tangent stiffness, unless that is singular. It may need as much memory as
+    /// everything else, so it is dropped before the next state is computed, and made again on request.
     solver: Option<SolverOf<P>>,
-    /// du/dt at the state, or that there is none, once it has been asked for.
+    /// du/dt at the state, once it has been computed; None inside if there is none.
     tangent: Option<Option<Vec<f64>>>,
-    /// The leg, and how far along it the state is.
     from: P::Load,
     to: P::Load,
-    t: f64,
-    /// The state before on this leg, unless a snap lies between.
+    /// What else [`ContinuationState`] holds.
+    reached: f64,
     previous: Option<PreviousPoint>,
-    /// How often the last step had to be halved; the next begins there, or one halving longer.
     halving_level: usize,
-    /// u̇ of the pseudo-time.
     velocity: Vec<f64>,
 }
 
 type SolverOf<P> = <<P as Equilibrium>::Tangent as Tangent>::Solver;
 
-/// A state of the path and its tangent du/dt.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PreviousPoint {
-    /// How far along the leg.
-    pub t: f64,
-    /// The unknowns.
-    pub u: Vec<f64>,
-    /// Their change along the leg.
-    pub tangent: Vec<f64>,
-}
-
-/// What a path keeps of its way beside its state: with both it goes on as if it had never been left.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContinuationState {
-    /// How far along its leg it is, 0 to 1.
-    pub reached: f64,
-    /// How often the last step had to be halved.
-    pub halving_level: usize,
-    /// The state before on this leg, unless a snap lies between.
-    pub previous: Option<PreviousPoint>,
-    /// u̇ of the pseudo-time.
-    pub velocity: Vec<f64>,
-}
-
-/// How an accepted state was reached.
+/// The way in which an accepted state was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// How it was found.
+    /// The method that found it.
     pub method: Method,
-    /// Linear solves, counting those of tries that failed.
-    pub iterations: usize,
-    /// Iterations inside the linear solves; 0 where the solver is direct.
-    pub inner_iterations: usize,
-    /// Energy spent on drag.
+    /// Work of the solvers. Each accepted state adds one linear solve for its own tangent.
+    pub effort: Effort,
+    /// Energy dissipated by damping.
     pub damping_work: f64,
 }
 
-/// Where a path ended, and why: what was tried from there, in order.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PathError<B: std::error::Error> {
-    /// Methods and how they failed.
-    pub tried: Vec<(Method, Failure<B>)>,
-    /// What was done on the way, up to the last state that was found.
-    pub step: Step,
-}
-
-impl<B: std::error::Error> PathError<B> {
-    /// Whether someone asked to stop.
-    pub fn stopped(&self) -> bool {
-        self.tried
-            .iter()
-            .any(|(_, failure)| matches!(failure, Failure::Stopped))
+impl Step {
+    fn new(method: Method) -> Self {
+        Self {
+            method,
+            effort: Effort::default(),
+            damping_work: 0.0,
+        }
     }
 }
 
-impl<B: std::error::Error> std::fmt::Display for PathError<B> {
+/// The end of a path: all attempts to continue from its last state failed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathError<E: std::error::Error> {
+    /// The attempts in their order, with their failures.
+    pub attempts: Vec<(Method, Failure<E>)>,
+    /// Method and work up to the last accepted state, and the work of the attempts.
+    pub step: Step,
+}
+
+impl<E: std::error::Error> PathError<E> {
+    /// Returns whether the monitor cancelled the computation.
+    pub fn is_cancelled(&self) -> bool {
+        is_cancelled(&self.attempts)
+    }
+}
+
+fn is_cancelled<E: std::error::Error>(attempts: &[(Method, Failure<E>)]) -> bool {
+    let mut failures = attempts.iter().map(|(_, failure)| failure);
+    failures.any(|failure| matches!(failure, Failure::Cancelled))
+}
+
+impl<E: std::error::Error> std::fmt::Display for PathError<E> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        for (i, (method, failure)) in self.tried.iter().enumerate() {
+        for (i, (method, failure)) in self.attempts.iter().enumerate() {
             let semicolon = if i > 0 { "; " } else { "" };
             write!(f, "{semicolon}{method}: {failure}")?;
         }
@@ -105,10 +92,14 @@ impl<B: std::error::Error> std::fmt::Display for PathError<B> {
     }
 }
 
-impl<B: std::error::Error> std::error::Error for PathError<B> {}
+impl<E: std::error::Error> std::error::Error for PathError<E> {}
 
 impl<P: Equilibrium> Path<P> {
     /// Begins at a state that is already in equilibrium under `load`.
+    ///
+    /// # Errors
+    ///
+    /// If the energy is not defined there.
     pub fn begin(
         problem: P,
         load: P::Load,
@@ -118,59 +109,62 @@ impl<P: Equilibrium> Path<P> {
         let forces = problem.forces(&load, &u)?;
         let velocity = vec![0.0; u.len()];
         let (state, solver) = accepted(&problem, load.clone(), u, &forces);
-        let (from, to) = (load.clone(), load);
         Ok(Self {
             problem,
             settings,
             state,
             solver,
             tangent: None,
-            from,
-            to,
-            t: 0.0,
+            from: load.clone(),
+            to: load,
+            reached: 0.0,
             previous: None,
             halving_level: 0,
             velocity,
         })
     }
 
-    /// Goes on from an accepted state of a leg between two loads.
+    /// Continues from an accepted state of a segment between two loads.
+    ///
+    /// # Errors
+    ///
+    /// If the energy is not defined there.
     pub fn resume(
         problem: P,
         [from, to]: [P::Load; 2],
         load: P::Load,
         u: Vec<f64>,
-        memory: ContinuationState,
+        continuation: ContinuationState,
         settings: Settings,
     ) -> Result<Self, P::EvaluationError> {
         Ok(Self {
             from,
             to,
-            t: memory.reached,
-            previous: memory.previous,
-            halving_level: memory.halving_level,
-            velocity: memory.velocity,
+            reached: continuation.reached,
+            previous: continuation.previous,
+            halving_level: continuation.halving_level,
+            velocity: continuation.velocity,
             ..Self::begin(problem, load, u, settings)?
         })
     }
 
-    /// What it takes to go on later from the last accepted state.
+    /// Returns what [`Path::resume`] needs beside the last accepted state.
     pub fn continuation_state(&self) -> ContinuationState {
         ContinuationState {
-            reached: self.t,
+            reached: self.reached,
             halving_level: self.halving_level,
             previous: self.previous.clone(),
             velocity: self.velocity.clone(),
         }
     }
 
-    /// The last accepted state.
+    /// Returns the last accepted state.
     pub fn state(&self) -> &State<P::Load> {
         &self.state
     }
 
-    /// What solves with the tangent stiffness of the last accepted state, without drag; none where that
-    /// is singular.
+    /// Returns the solver of the tangent stiffness at the last accepted state, without damping; None
+    /// if that is singular.
     pub fn solver(&mut self) -> Option<&SolverOf<P>> {
         if self.solver.is_none() {
             let State { load, u, .. } = &self.state;
@@ -179,103 +173,92 @@ impl<P: Equilibrium> Path<P> {
         self.solver.as_ref()
     }
 
-    /// Sets out on a leg from where the path is to a load.
+    /// Begins a segment from the load of the last accepted state to another.
     pub fn begin_segment(&mut self, to: P::Load) {
-        (self.from, self.to, self.t) = (self.state.load.clone(), to, 0.0);
+        (self.from, self.to, self.reached) = (self.state.load.clone(), to, 0.0);
         (self.tangent, self.previous, self.halving_level) = (None, None, 0);
     }
 
-    /// How far along its leg the path is, 0 to 1.
+    /// Returns the position of the last accepted state on its segment, 0 to 1.
     pub fn reached(&self) -> f64 {
-        self.t
+        self.reached
     }
 
-    /// Goes on to `t` of the leg. On failure the path stays at the last state that it found on
-    /// the way.
+    /// Advances to position `t` of the segment, through intermediate states if need be.
+    ///
+    /// # Errors
+    ///
+    /// If all attempts fail. The path then stays at the last state that was accepted on the way.
     pub fn advance(
         &mut self,
         t: f64,
         monitor: &mut dyn Monitor,
     ) -> Result<Step, PathError<P::EvaluationError>> {
-        let monitor = &mut Counted {
-            monitor,
-            inner_iterations: 0,
+        let advanced = match self.settings.scheme.clone() {
+            Scheme::Static => {
+                let mut step = Step::new(Method::Newton);
+                (self.advance_static(t, &mut step, monitor), step)
+            }
+            Scheme::PseudoTime(scheme) => {
+                let mut step = Step::new(Method::PseudoTime);
+                let advanced = self.advance_damped(t, &scheme, &mut step, monitor);
+                (advanced.map_err(|failed| vec![failed]), step)
+            }
         };
-        let mut advanced = match self.settings.scheme.clone() {
-            Scheme::Static => self.advance_static(t, monitor),
-            Scheme::PseudoTime(scheme) => self.advance_damped(t, &scheme, monitor),
-        };
-        let step = match &mut advanced {
-            Ok(step) => step,
-            Err(error) => &mut error.step,
-        };
-        step.inner_iterations = monitor.inner_iterations;
-        advanced
+        match advanced {
+            (Ok(()), step) => Ok(step),
+            (Err(attempts), step) => Err(PathError { attempts, step }),
+        }
     }
 
-    /// Newton from the path's tangent. Where that fails the step is halved, since a branch that
-    /// bends can still be followed in shorter steps; where it still fails relaxation takes over,
-    /// and follows the tube down to whatever stable state comes next.
+    /// Advances part by part, and halves the parts where all methods fail.
     fn advance_static(
         &mut self,
         target: f64,
+        step: &mut Step,
         monitor: &mut dyn Monitor,
-    ) -> Result<Step, PathError<P::EvaluationError>> {
-        let mut step = Step {
-            method: Method::Newton,
-            iterations: 0,
-            inner_iterations: 0,
-            damping_work: 0.0,
-        };
-        let (begin, whole) = (self.t, target - self.t);
-        // The step is cut into 2^halvings pieces, `done` of them behind.
-        let (mut halvings, mut done) = (self.halving_level, 0_u64);
-        while done < 1 << halvings {
-            let reach = if done + 1 == 1 << halvings {
-                target
-            } else {
-                begin + whole * (done + 1) as f64 / (1_u64 << halvings) as f64
-            };
-            let mut tried = vec![];
-            let mut arrived = match self.try_newton(reach, &mut step, monitor) {
-                Ok(()) => Some(done + 1),
-                Err(failed) => {
-                    tried.push((Method::Newton, failed));
-                    None
+    ) -> Result<(), Vec<(Method, Failure<P::EvaluationError>)>> {
+        let max_level = self.settings.max_step_halvings;
+        let mut parts = StepController::new([self.reached, target], self.halving_level, max_level);
+        while let Some(t) = parts.next() {
+            match self.try_methods(t, parts.halves_before_relaxation(), step, monitor) {
+                Ok(()) => {
+                    parts.accept();
+                    self.halving_level = parts.level();
                 }
-            };
-            // Shorter steps help a tangent that leads too far, not one that leads away or is hard
-            // to solve with.
-            let unsolved = |(_, failed): &(_, _)| matches!(failed, Failure::Unsolved { .. });
-            let halve_first = self.state.negative_pivots == 0
-                && !tried.iter().any(unsolved)
-                && halvings < NEWTON_HALVINGS.min(self.settings.max_step_halvings);
-            let stopped = |tried: &[(_, _)]| {
-                tried
-                    .iter()
-                    .any(|(_, failed)| matches!(failed, Failure::Stopped))
-            };
-            if arrived.is_none() && !halve_first && !stopped(&tried) {
-                match self.try_relaxation(reach, &mut step, monitor) {
-                    Ok(()) => arrived = Some(done + 1),
-                    Err(failed) => tried.push((Method::Relaxation, failed)),
-                }
-            }
-            match arrived {
-                Some(now) => {
-                    done = now;
-                    if halvings > 0 && done % 2 == 0 {
-                        (halvings, done) = (halvings - 1, done / 2);
+                Err(attempts) => {
+                    if is_cancelled(&attempts) || !parts.halve() {
+                        return Err(attempts);
                     }
-                    self.halving_level = halvings;
                 }
-                None if stopped(&tried) || halvings >= self.settings.max_step_halvings => {
-                    return Err(PathError { tried, step });
-                }
-                None => (halvings, done) = (halvings + 1, 2 * done),
             }
         }
-        Ok(step)
+        Ok(())
+    }
+
+    /// Tries Newton's method. If it fails at a stable state, a shorter step may still follow a branch
+    /// that bends; otherwise relaxation descends to the next stable state. A shorter step does not help
+    /// where the linear solver misses its accuracy.
+    fn try_methods(
+        &mut self,
+        t: f64,
+        may_halve: bool,
+        step: &mut Step,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(), Vec<(Method, Failure<P::EvaluationError>)>> {
+        let Err(failed) = self.try_newton(t, step, monitor) else {
+            return Ok(());
+        };
+        let inaccurate = matches!(failed, Failure::InaccurateSolves { .. });
+        let cancelled = matches!(failed, Failure::Cancelled);
+        let mut attempts = vec![(Method::Newton, failed)];
+        if cancelled || (may_halve && !inaccurate && self.state.negative_pivots == 0) {
+            return Err(attempts);
+        }
+        self.try_relaxation(t, step, monitor).map_err(|failed| {
+            attempts.push((Method::Relaxation, failed));
+            attempts
+        })
     }
 
     fn try_newton(
@@ -284,11 +267,12 @@ impl<P: Equilibrium> Path<P> {
         step: &mut Step,
         monitor: &mut dyn Monitor,
     ) -> Result<(), Failure<P::EvaluationError>> {
-        // To ask for it may tell that the state is unstable.
-        let stable = self.state.negative_pivots == 0;
-        let tangent = if stable { self.tangent(monitor) } else { None };
+        let mut tangent = None;
+        if self.state.negative_pivots == 0 {
+            tangent = self.tangent(&mut step.effort, monitor);
+        }
+        // Solving for the tangent may have shown that the state is unstable. The path then leaves it.
         if self.state.negative_pivots > 0 {
-            // The tangent leads away from an unstable state, not along it.
             return Err(Failure::Indefinite {
                 negative_pivots: self.state.negative_pivots,
             });
@@ -296,10 +280,10 @@ impl<P: Equilibrium> Path<P> {
         let load = self.load_at(t);
         let start = self.predict(t, &load, tangent.as_deref());
         self.solver = None;
-        let found = newton(&self.problem, &load, start, &self.settings, monitor)
-            .inspect_err(|failed| step.iterations += spent(failed))?;
+        let (settings, effort) = (&self.settings, &mut step.effort);
+        let found = newton(&self.problem, &load, start, settings, effort, monitor)?;
         let previous = tangent.map(|tangent| PreviousPoint {
-            t: self.t,
+            t: self.reached,
             u: self.state.u.clone(),
             tangent,
         });
@@ -315,21 +299,50 @@ impl<P: Equilibrium> Path<P> {
         monitor: &mut dyn Monitor,
     ) -> Result<(), Failure<P::EvaluationError>> {
         let load = self.load_at(t);
-        // The last state, if its ends need not move; else along the tangent, which moves them
-        // gently.
+        // From the last state if prescribed unknowns stay; else along the tangent, which moves them
+        // with the rest.
         let mut start = self.state.u.clone();
         self.problem.apply_prescribed(&load, &mut start);
         if start != self.state.u {
             self.previous = None;
-            let tangent = self.tangent(monitor);
+            let tangent = self.tangent(&mut step.effort, monitor);
             start = self.predict(t, &load, tangent.as_deref());
         }
         self.solver = None;
-        let found = relaxation(&self.problem, &load, start, &self.settings, monitor)
-            .inspect_err(|failed| step.iterations += spent(failed))?;
+        let (settings, effort) = (&self.settings, &mut step.effort);
+        let found = relaxation(&self.problem, &load, start, settings, effort, monitor)?;
         self.accept(t, load, found, step);
         self.previous = None;
         step.method = Method::Relaxation;
+        Ok(())
+    }
+
+    /// Advances in pseudo-time with constant damping, then to equilibrium without damping if the
+    /// scheme requires that.
+    fn advance_damped(
+        &mut self,
+        t: f64,
+        scheme: &PseudoTime,
+        step: &mut Step,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(), (Method, Failure<P::EvaluationError>)> {
+        self.solver = None;
+        let load = self.load_at(t);
+        let (problem, settings, effort) = (&self.problem, &self.settings, &mut step.effort);
+        let loads = [&self.state.load, &load];
+        let start = (self.state.u.clone(), self.velocity.clone());
+        let (mut found, mut velocity) =
+            pseudo_time(problem, loads, start, scheme, settings, effort, monitor)
+                .map_err(|failed| (Method::PseudoTime, failed))?;
+        step.damping_work += found.damping_work;
+        found.damping_work = 0.0;
+        if scheme.equilibrate {
+            velocity.fill(0.0);
+            found = relaxation(problem, &load, found.u, settings, effort, monitor)
+                .map_err(|failed| (Method::Relaxation, failed))?;
+        }
+        self.velocity = velocity;
+        self.accept(t, load, found, step);
         Ok(())
     }
 
@@ -338,145 +351,86 @@ impl<P: Equilibrium> Path<P> {
     }
 
     fn accept(&mut self, t: f64, load: P::Load, found: Solution, step: &mut Step) {
-        step.iterations += found.iterations + 1;
+        step.effort.linear_solves += 1;
         step.damping_work += found.damping_work;
         (self.state, self.solver) = accepted(&self.problem, load, found.u, &found.forces);
-        (self.tangent, self.t) = (None, t);
+        (self.tangent, self.reached) = (None, t);
     }
 
-    /// Pseudo-time with a fixed drag, then to equilibrium without if the scheme says so.
-    fn advance_damped(
-        &mut self,
-        t: f64,
-        scheme: &PseudoTime,
-        monitor: &mut dyn Monitor,
-    ) -> Result<Step, PathError<P::EvaluationError>> {
-        let mut step = Step {
-            method: Method::PseudoTime,
-            iterations: 0,
-            inner_iterations: 0,
-            damping_work: 0.0,
-        };
-        self.solver = None;
-        let (load, settings) = (self.load_at(t), &self.settings);
-        let fail = |method, failed, step| PathError {
-            tried: vec![(method, failed)],
-            step,
-        };
-        let mut velocity = self.velocity.clone();
-        let damped = pseudo_time(
-            &self.problem,
-            [&self.state.load, &load],
-            self.state.u.clone(),
-            &mut velocity,
-            scheme,
-            settings,
-            monitor,
-        )
-        .map_err(|failed| fail(Method::PseudoTime, failed, step))?;
-        step.iterations += damped.iterations;
-        step.damping_work += damped.damping_work;
-        let found = if scheme.equilibrate {
-            velocity.fill(0.0);
-            relaxation(&self.problem, &load, damped.u, settings, monitor)
-                .map_err(|failed| fail(Method::Relaxation, failed, step))?
-        } else {
-            Solution {
-                iterations: 0,
-                damping_work: 0.0,
-                ..damped
-            }
-        };
-        self.velocity = velocity;
-        self.accept(t, load, found, &mut step);
-        Ok(step)
-    }
-
-    /// The path's tangent du/dt at the state. None where the tangent stiffness is singular or the
-    /// residual does not exist, where the solver does not come far enough, and where it meets negative
-    /// curvature: the state is then known to be unstable.
-    fn tangent(&mut self, monitor: &mut dyn Monitor) -> Option<Vec<f64>> {
+    /// Returns du/dt at the state. None if the tangent stiffness is singular, the residual is not
+    /// defined, or the solver misses its accuracy or meets negative curvature; the state is then
+    /// recorded as unstable.
+    fn tangent(&mut self, effort: &mut Effort, monitor: &dyn Monitor) -> Option<Vec<f64>> {
         if self.tangent.is_none() {
-            self.tangent = Some(self.solve_for_tangent(monitor));
+            self.tangent = Some(self.solve_for_tangent(effort, monitor));
         }
         self.tangent.clone().flatten()
     }
 
-    /// K du/dt = −∂R/∂t, the supports moving as they do.
-    fn solve_for_tangent(&mut self, monitor: &mut dyn Monitor) -> Option<Vec<f64>> {
+    /// Solves K du/dt = −∂R/∂t, where prescribed unknowns move as the load says.
+    fn solve_for_tangent(
+        &mut self,
+        effort: &mut Effort,
+        monitor: &dyn Monitor,
+    ) -> Option<Vec<f64>> {
         self.solver()?;
-        let (problem, prescribed, u) = (&self.problem, self.problem.prescribed(), &self.state.u);
+        let (problem, u) = (&self.problem, &self.state.u);
         // Central difference in t; the residual is smooth in the load.
         let at = |t: f64| {
             let load = self.load_at(t);
-            let mut held = u.clone();
-            problem.apply_prescribed(&load, &mut held);
-            problem
-                .forces(&load, u)
-                .ok()
-                .map(|forces| (forces.residual, held))
+            let mut moved = u.clone();
+            problem.apply_prescribed(&load, &mut moved);
+            let forces = problem.forces(&load, u).ok()?;
+            Some((forces.residual, moved))
         };
-        let (after, held_after) = at(self.t + DIFFERENCE)?;
-        let (before, held_before) = at(self.t - DIFFERENCE)?;
+        let (after, moved_after) = at(self.reached + DIFFERENCE)?;
+        let (before, moved_before) = at(self.reached - DIFFERENCE)?;
         let slope = |a: &[f64], b: &[f64]| -> Vec<f64> {
-            a.iter()
-                .zip(b)
-                .map(|(a, b)| (a - b) / (2.0 * DIFFERENCE))
-                .collect()
+            let pairs = a.iter().zip(b);
+            pairs.map(|(a, b)| (a - b) / (2.0 * DIFFERENCE)).collect()
         };
-        let motion = slope(&held_after, &held_before);
+        let motion = slope(&moved_after, &moved_before);
         let mut tangent = slope(&before, &after);
         if motion.iter().any(|&d| d != 0.0) {
             let K = problem.tangent(&self.state.load, u);
             K.multiply_add(-1.0, &motion, &mut tangent);
         }
-        for i in 0..tangent.len() {
-            if prescribed[i] {
-                tangent[i] = motion[i];
-            }
+        for (i, _) in problem.prescribed().iter().enumerate().filter(|(_, p)| **p) {
+            tangent[i] = motion[i];
         }
-        let solver = self.solver.as_ref()?;
-        match solver.solve(&mut tangent, PREDICTION, monitor) {
+        match self
+            .solver
+            .as_ref()?
+            .solve(&mut tangent, PREDICTION, monitor)
+        {
             Ok(solved) => {
-                monitor.iterated(solved.iterations);
-                // What was cut off is no du/dt.
-                solved.reached.then_some(tangent)
+                effort.inner_iterations += solved.iterations;
+                solved.converged.then_some(tangent)
             }
-            Err(down) => {
-                monitor.iterated(down.iterations);
+            Err(met) => {
+                effort.inner_iterations += met.iterations;
                 self.state.negative_pivots = self.state.negative_pivots.max(1);
                 None
             }
         }
     }
 
-    /// Where the path leads: along its tangent, or along the cubic through the state before and
-    /// this one with the tangents of both, whichever comes closer to equilibrium.
+    /// Predicts u at `t`: along the tangent, or along the cubic through the previous point and the
+    /// state, whichever has the smaller residual.
     fn predict(&self, t: f64, load: &P::Load, tangent: Option<&[f64]>) -> Vec<f64> {
-        let (problem, u, ahead) = (&self.problem, &self.state.u, t - self.t);
-        let Some(tangent) = tangent else {
-            let mut u = u.clone();
+        let (problem, u, ahead) = (&self.problem, &self.state.u, t - self.reached);
+        let prescribed = |mut u: Vec<f64>| {
             problem.apply_prescribed(load, &mut u);
-            return u;
+            u
         };
-        let mut line: Vec<f64> = u.iter().zip(tangent).map(|(u, v)| u + ahead * v).collect();
-        problem.apply_prescribed(load, &mut line);
+        let Some(tangent) = tangent else {
+            return prescribed(u.clone());
+        };
+        let line = prescribed(u.iter().zip(tangent).map(|(u, v)| u + ahead * v).collect());
         let Some(previous) = &self.previous else {
             return line;
         };
-        // Hermite's cubic on [0, 1] = [behind, state], read at s beyond 1.
-        let back = self.t - previous.t;
-        let s = 1.0 + ahead / back;
-        let [a, b, c, d] = [
-            (2.0 * s - 3.0) * s * s + 1.0,
-            ((s - 2.0) * s + 1.0) * s * back,
-            (3.0 - 2.0 * s) * s * s,
-            (s - 1.0) * s * s * back,
-        ];
-        let mut cubic: Vec<f64> = (0..u.len())
-            .map(|i| a * previous.u[i] + b * previous.tangent[i] + c * u[i] + d * tangent[i])
-            .collect();
-        problem.apply_prescribed(load, &mut cubic);
+        let cubic = prescribed(previous.extrapolate(self.reached, u, tangent, t));
         let relative_residual = |u: &[f64]| {
             let forces = problem.forces(load, u);
             forces.map_or(f64::INFINITY, |forces| {
@@ -491,38 +445,7 @@ impl<P: Equilibrium> Path<P> {
     }
 }
 
-/// Linear solves that a failure cost, as far as it tells.
-fn spent<B: std::error::Error>(failure: &Failure<B>) -> usize {
-    match failure {
-        Failure::NoDescent { iterations, .. }
-        | Failure::NotConverged { iterations, .. }
-        | Failure::Unsolved { iterations, .. } => *iterations,
-        Failure::Indefinite { .. } => 1,
-        _ => 0,
-    }
-}
-
-/// Counts the iterations inside the linear solves, those of failed tries too.
-struct Counted<'a> {
-    monitor: &'a mut dyn Monitor,
-    inner_iterations: usize,
-}
-
-impl Monitor for Counted<'_> {
-    fn solved(&mut self, method: Method, relative_residual: f64) -> bool {
-        self.monitor.solved(method, relative_residual)
-    }
-    fn iterated(&mut self, inner_iterations: usize) {
-        self.inner_iterations += inner_iterations;
-        self.monitor.iterated(inner_iterations);
-    }
-    fn iterating(&mut self) -> bool {
-        self.monitor.iterating()
-    }
-}
-
-/// Makes a state of a solution, and readies its tangent, which may tell whether it is stable and
-/// leads to the next.
+/// Makes a state of a solution, with the solver of its tangent, which may show that it is unstable.
 fn accepted<P: Equilibrium>(
     problem: &P,
     load: P::Load,
@@ -531,8 +454,8 @@ fn accepted<P: Equilibrium>(
 ) -> (State<P::Load>, Option<SolverOf<P>>) {
     let solver = problem.tangent(&load, &u).into_shifted(0.0).ok();
     let negative = |solver: &SolverOf<P>| {
-        let away = usize::from(solver.is_unstable());
-        solver.negative_pivots().max(away)
+        let unstable = usize::from(solver.is_unstable());
+        solver.negative_pivots().max(unstable)
     };
     let state = State {
         load,
@@ -542,11 +465,4 @@ fn accepted<P: Equilibrium>(
         u,
     };
     (state, solver)
-}
-
-impl<L> State<L> {
-    /// Whether the residual without drag is small against the forces in play.
-    pub fn in_equilibrium(&self) -> bool {
-        self.relative_residual <= EQUILIBRIUM
-    }
 }

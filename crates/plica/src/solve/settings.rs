@@ -1,34 +1,33 @@
-//! What a case may choose about the solver.
+//! Settings of the solvers.
 
-/// How states are found and when they are accepted.
+/// Settings of the solvers, as a case file chooses them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// How the tube gets from one state to the next.
+    /// The method that leads from one state to the next.
     pub scheme: Scheme,
-    /// A state is in equilibrium when its residual without drag, over the forces in play, is at
-    /// most this.
+    /// Largest relative residual, without damping, of a state in equilibrium.
     pub tolerance: f64,
-    /// Newton iterations before a step is given to relaxation.
+    /// Linear solves of Newton's method before relaxation takes over.
     pub newton_iterations: usize,
-    /// Relaxation steps before a step is halved.
+    /// Linear solves of relaxation before a step is halved.
     pub relaxation_steps: usize,
-    /// Drag at which relaxation starts, in E/D² per unit volume.
+    /// Damping at which relaxation begins, in E/D² per unit volume.
     pub relaxation_damping: f64,
-    /// How often a step may be halved before the run stops.
+    /// Halvings of a step before the path ends.
     pub max_step_halvings: usize,
 }
 
-/// How the tube gets from one state to the next.
+/// The method that leads from one state to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Scheme {
-    /// Newton from the path's tangent; where that fails, relaxation with a drag that shrinks.
+    /// Newton's method along the tangent of the path; where that fails, relaxation.
     Static,
-    /// A pseudo-time with a drag that stays.
+    /// Pseudo-time with constant damping.
     PseudoTime(PseudoTime),
 }
 
 impl Scheme {
-    /// What a case file calls it.
+    /// Returns the name in a case file.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Static => "static",
@@ -50,26 +49,26 @@ impl std::fmt::Display for Scheme {
     }
 }
 
-/// Pseudo-time with a fixed drag: C u̇ + R(u) = 0 (Okino et al. 2025, Eqs. (15)–(18)).
+/// Pseudo-time with constant damping: C u̇ + R(u) = 0 (Okino et al. 2025, Eqs. (15)–(18)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PseudoTime {
-    /// How the velocity follows from the displacements.
+    /// Time integration.
     pub integrator: Integrator,
-    /// ηD/(EΔτ); the paper's is 100.
+    /// ηD/(EΔτ); 100 in the paper.
     pub damping: f64,
-    /// Pseudo-time steps over which each step of a stage is ramped.
+    /// Pseudo-time steps over which the load of each step of a stage is ramped.
     pub ramp: usize,
-    /// After the ramp, pseudo-time goes on until no control point moves more than this in a step,
-    /// in D; the paper's is 1e-5.
+    /// Largest displacement of a control point, in D, in the last pseudo-time step after the ramp; 1e-5
+    /// in the paper.
     pub tolerance: f64,
-    /// Pseudo-time steps after the ramp before the run stops.
+    /// Pseudo-time steps after the ramp before the path ends.
     pub max_steps: usize,
-    /// Whether the state is then taken to equilibrium without drag. If not, states are accepted
-    /// as the paper accepts them, and say how far from equilibrium they are.
+    /// Whether the state is then taken to equilibrium without damping. If not, states are accepted as
+    /// in the paper, and their relative residual says how far from equilibrium they are.
     pub equilibrate: bool,
 }
 
-/// How the velocity follows from the displacements.
+/// Time integration of the velocity u̇.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
     /// Newmark with γ = ½, β = ¼, as in the paper: u̇ₙ₊₁ = 2 (uₙ₊₁ − uₙ)/Δτ − u̇ₙ.

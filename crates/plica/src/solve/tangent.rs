@@ -1,26 +1,26 @@
-//! The tangent stiffness as the drivers see it: something that multiplies, and that can be solved
-//! with once a drag is added.
+//! The tangent stiffness as the solvers see it: it multiplies vectors, and can be solved with once
+//! damping is added.
 
-use super::Monitor;
 use crate::matrix::{BlockBanded, Factor, Singular};
+use crate::monitor::Monitor;
 use std::sync::Arc;
 
-/// The tangent stiffness K of a state, ready to be shifted by a drag.
+/// The tangent stiffness K of a state.
 pub trait Tangent {
-    /// What solves with it.
+    /// Solver with K + α C.
     type Solver: Solver;
 
-    /// y += factor · K v, every unknown free.
+    /// Adds `factor` · K v to `y`, with K of all unknowns, prescribed or not.
     fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]);
 
-    /// K + α C on the free unknowns, ready to be solved with.
+    /// Prepares the solution with K + α C on the free unknowns.
     ///
     /// # Errors
     ///
-    /// If K + α C, or what stands in for it in a preconditioner, is singular to working precision.
+    /// If K + α C, or the matrix of its preconditioner, is singular to working precision.
     fn shifted(&self, alpha: f64) -> Result<Self::Solver, Singular>;
 
-    /// The same where K is not needed for anything else, which may save a copy of it.
+    /// Does the same where K is not needed afterwards, which may save a copy of it.
     ///
     /// # Errors
     ///
@@ -33,53 +33,50 @@ pub trait Tangent {
     }
 }
 
-/// K + α C on the free unknowns.
+/// Solver with K + α C on the free unknowns.
 pub trait Solver {
-    /// Negative eigenvalues that a factorisation tells of. One of the whole matrix tells of all;
-    /// one of a part (the symmetry that the state itself has) of those in the part; where there is
-    /// none, 0, and only the iteration may tell.
+    /// Returns the number of negative eigenvalues that a factorisation shows: all of them if the whole
+    /// matrix is factored; those with the symmetry of the state if only that part is; 0 if none is.
     fn negative_pivots(&self) -> usize;
 
-    /// Whether what it leads to is known to lie on an unstable branch, without an iteration: the matrix is not
-    /// positive definite on displacements that the state's own symmetry allows.
+    /// Returns whether K + α C is known not to be positive definite, without an iteration.
     fn is_unstable(&self) -> bool {
         self.negative_pivots() > 0
     }
 
-    /// Solves (K + α C) x = b in place for the free unknowns, until the Euclidean norm of the
-    /// residual is at most `accuracy` times that of b, or as far as it gets: what it then leaves is
-    /// still a direction in which the energy falls. Entries of unknowns that supports give take no
-    /// part and stay as they are. A direct solver is exact, whatever the accuracy; one that iterates
-    /// is cut off where the watch says so.
+    /// Solves (K + α C) x = b in place for the free unknowns, until the Euclidean norm of the residual
+    /// is at most `accuracy` times that of b, or as far as possible; the energy decreases along the
+    /// result in any case. Entries of prescribed unknowns stay as they are. A direct solver ignores the
+    /// accuracy; an iterative one stops when the monitor cancels.
     ///
     /// # Errors
     ///
-    /// If it meets a direction of negative curvature. What is in `b` then is the iterate so far.
+    /// If it meets a direction of negative curvature; `b` then holds the iterate so far.
     fn solve(
         &self,
         b: &mut [f64],
         accuracy: f64,
-        monitor: &mut dyn Monitor,
+        monitor: &dyn Monitor,
     ) -> Result<Solved, NegativeCurvature>;
 }
 
-/// What a linear solve took, and whether it came as far as it was to.
+/// Outcome of a linear solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Solved {
-    /// Iterations; 0 of a direct solver.
+    /// Iterations; 0 for a direct solver.
     pub iterations: usize,
-    /// Whether the residual is as small as was asked for. If not it was cut off, or rounding allows no
-    /// better.
-    pub reached: bool,
+    /// Whether the residual is as small as required. It is not if the solve was cut off, or if rounding
+    /// does not permit it.
+    pub converged: bool,
 }
 
-/// A direction d along which the energy is curved downwards: d · (K + α C) d ≤ 0.
+/// A direction d of negative curvature: d · (K + α C) d ≤ 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NegativeCurvature {
-    /// d · (K + α C) d over d · C d; at most 0. A drag larger by more than its size makes up for
-    /// it along d.
+    /// d · (K + α C) d / d · C d, at most 0. An increase of α by more than its size makes the curvature
+    /// along d positive.
     pub curvature: f64,
-    /// d, for every unknown; zero where a support gives it.
+    /// d, with zeros for prescribed unknowns.
     pub direction: Vec<f64>,
     /// Iterations until it was met.
     pub iterations: usize,
@@ -94,8 +91,12 @@ pub struct Direct {
 }
 
 impl Direct {
-    /// Of an assembled stiffness K and drag matrix C, every unknown free, and the unknowns that
-    /// supports give. Panics if their sizes differ.
+    /// Takes the assembled stiffness K and damping matrix C of all unknowns, and which of them are
+    /// prescribed.
+    ///
+    /// # Panics
+    ///
+    /// If their sizes differ.
     pub fn new(stiffness: BlockBanded, damping: Arc<BlockBanded>, prescribed: Arc<[bool]>) -> Self {
         assert_eq!(stiffness.unknowns(), damping.unknowns());
         assert_eq!(stiffness.unknowns(), prescribed.len());
@@ -133,16 +134,11 @@ impl Solver for Factor {
         Factor::negative_pivots(self)
     }
 
-    fn solve(
-        &self,
-        b: &mut [f64],
-        _: f64,
-        _: &mut dyn Monitor,
-    ) -> Result<Solved, NegativeCurvature> {
+    fn solve(&self, b: &mut [f64], _: f64, _: &dyn Monitor) -> Result<Solved, NegativeCurvature> {
         Factor::solve(self, b);
         Ok(Solved {
             iterations: 0,
-            reached: true,
+            converged: true,
         })
     }
 }

@@ -2,7 +2,8 @@
 
 use super::{Harmonics, How, Quantity, StabilityError};
 use crate::equilibrium::TubeProblem;
-use crate::solve::{Method, Monitor, Path, Settings, State};
+use crate::monitor::Monitor;
+use crate::solve::{Method, Path, Settings, State};
 use crate::tube::Load;
 
 /// Largest distance of two solutions that are the same state, in D.
@@ -146,7 +147,7 @@ impl Bisection<'_> {
         path.begin_segment(b.load.clone());
         let step = match path.advance(t, monitor) {
             Ok(step) => step,
-            Err(error) if error.stopped() => return Err(StabilityError::Stopped),
+            Err(error) if error.is_cancelled() => return Err(StabilityError::Stopped),
             Err(_) => return Ok(None),
         };
         Ok(Some((path.state().clone(), step.method)))

@@ -1,13 +1,15 @@
 //! From saved state to saved state.
 
 use super::bisection::{Bisection, Bracket, Point};
+use super::observer::Relay;
 use super::{
     Change, Harmonics, How, Mode, Observer, Quantity, Stability, StabilityError, Station, Tested,
 };
 use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
 use crate::matrix::NoEigenpairs;
-use crate::solve::{Method, Monitor, Path, Scheme, Settings};
+use crate::monitor::Part;
+use crate::solve::{Path, Scheme, Settings};
 use crate::study::{Plan, RunDirectory, SavedState};
 use std::path;
 
@@ -168,12 +170,10 @@ impl Follower<'_> {
             quantity,
             tolerance: self.tolerance,
         };
-        let mut relay = Relay {
-            observer: &mut *self.observer,
-            what: format!("between states {} and {}", before.row, state.row),
-            fraction: self.fraction,
-        };
-        for bracket in bisection.brackets(&a, &b, &mut relay)? {
+        let mut relay = Relay::new(self.observer);
+        let activity = format!("between states {} and {}", before.row, state.row);
+        let mut monitor = Part::new(&mut relay, activity, self.fraction, 0.0);
+        for bracket in bisection.brackets(&a, &b, &mut monitor)? {
             self.note(&bracket, quantity, before, state)
                 .map_err(no_eigenpairs(file))?;
         }
@@ -283,23 +283,5 @@ fn no_eigenpairs(file: &path::Path) -> impl Fn(NoEigenpairs) -> StabilityError {
     |source| StabilityError::Eigenvalues {
         path: file.to_owned(),
         source,
-    }
-}
-
-/// Tells an observer of every solve.
-struct Relay<'a> {
-    observer: &'a mut dyn Observer,
-    what: String,
-    fraction: f64,
-}
-
-impl Monitor for Relay<'_> {
-    fn solved(&mut self, method: Method, relative_residual: f64) -> bool {
-        let what = format!("{}: {method}, residual {relative_residual:.1e}", self.what);
-        self.observer.working(&what, self.fraction);
-        !self.observer.stop()
-    }
-    fn iterating(&mut self) -> bool {
-        !self.observer.stop()
     }
 }

@@ -3,7 +3,7 @@
 use super::mass::harmonic_mass;
 use crate::assembly::SplineTube;
 use crate::matrix::{
-    BlockBanded, Eigenpair, NoEigenpairs, lowest_eigenpairs, lowest_eigenpairs_beside,
+    BlockBanded, Eigenpair, NoEigenpairs, lowest_eigenpairs, lowest_eigenpairs_excluding,
 };
 use crate::tube::Load;
 use rayon::prelude::*;
@@ -100,7 +100,7 @@ impl<'a> Harmonics<'a> {
             .iter()
             .all(|motion| is_neutral(&block, &held, motion))
         {
-            lowest_eigenpairs_beside(&block, mass, &held, count, &motions)
+            lowest_eigenpairs_excluding(&block, mass, &held, count, &motions)
         } else {
             lowest_eigenpairs(&block, mass, prescribed, count)
         }

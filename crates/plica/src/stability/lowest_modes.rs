@@ -1,15 +1,15 @@
 //! The lowest eigenpairs of the saved states of a three-dimensional run.
 
+use super::observer::Relay;
 use super::{Eigenvalue, Observer, Shown, Spectra, Spectrum, StabilityError};
 use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
+use crate::monitor::{Monitor, Part};
 use crate::rings::Transform;
-use crate::solve::{Equilibrium, Lowest, Search};
+use crate::solve::{EQUILIBRIUM, Equilibrium, Lowest, Search};
 use crate::study::{Array, Plan, RunDirectory, SavedState};
 use std::path::{Path, PathBuf};
 
-/// Residual relative to the forces in play up to which a state is an equilibrium.
-const EQUILIBRIUM: f64 = 1e-6;
 /// Relative residual to which eigenpairs are found; eigenvalues then are off by about its square.
 const ACCURACY: f64 = 1e-4;
 /// Iterations after which what there is must do.
@@ -54,19 +54,10 @@ pub fn lowest_modes(
     for (done, file) in files.iter().enumerate() {
         let state = read(plan, &problem, file)?;
         let (done, all) = (done as f64, files.len() as f64);
-        let mut goes_on = |found: &Lowest| {
-            let residual = found.residuals.iter().take(request.modes);
-            let what = format!(
-                "state {}: {} iterations, lowest eigenvalue {:.3e}, residual {:.0e}",
-                state.row,
-                found.iterations,
-                found.values[0],
-                residual.fold(0.0, |most: f64, r| most.max(*r)),
-            );
-            observer.working(&what, done / all);
-            !observer.stop()
-        };
-        let found = search(&problem, &state, request.modes, &mut goes_on).ok_or_else(|| {
+        let mut relay = Relay::new(&mut *observer);
+        let activity = format!("state {}", state.row);
+        let mut monitor = Part::new(&mut relay, activity, done / all, 0.0);
+        let found = search(&problem, &state, request.modes, &mut monitor).ok_or_else(|| {
             StabilityError::NoTangent {
                 path: file.to_owned(),
             }
@@ -140,7 +131,7 @@ fn search(
     problem: &TubeProblem,
     state: &SavedState,
     modes: usize,
-    goes_on: &mut dyn FnMut(&Lowest) -> bool,
+    monitor: &mut dyn Monitor,
 ) -> Option<Lowest> {
     let search = Search {
         wanted: modes,
@@ -149,7 +140,7 @@ fn search(
         side_of: None,
     };
     let block = modes + modes / 2 + GUARDS;
-    let mut found = problem.lowest_modes(&state.load, &state.u, block, &search, goes_on)?;
+    let mut found = problem.lowest_modes(&state.load, &state.u, block, &search, monitor)?;
     found.values.truncate(modes);
     (!found.values.is_empty()).then_some(found)
 }

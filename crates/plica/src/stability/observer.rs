@@ -1,7 +1,10 @@
 //! What a test of stability tells while it goes on.
 
 use super::{Spectrum, Station};
+use crate::monitor::Monitor;
 use crate::tube::Tube;
+use std::cell::RefCell;
+use std::fmt::Display;
 
 /// Someone who watches, and may stop it.
 pub trait Observer {
@@ -14,5 +17,23 @@ pub trait Observer {
     /// Asked between solves; if true nothing more is done.
     fn stop(&mut self) -> bool {
         false
+    }
+}
+
+/// An observer as a monitor.
+pub(super) struct Relay<'a>(RefCell<&'a mut dyn Observer>);
+
+impl<'a> Relay<'a> {
+    pub fn new(observer: &'a mut dyn Observer) -> Self {
+        Self(RefCell::new(observer))
+    }
+}
+
+impl Monitor for Relay<'_> {
+    fn working(&mut self, activity: &dyn Display, fraction: f64) {
+        self.0.get_mut().working(&activity.to_string(), fraction);
+    }
+    fn is_cancelled(&self) -> bool {
+        self.0.borrow_mut().stop()
     }
 }

@@ -117,7 +117,7 @@ fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
         let mut b = vec![0.0; u.len()];
         b[problem.tube.unknowns() / 2] = 1.0;
         let start = Instant::now();
-        let solved = solver.solve(&mut b, 1e-3, &mut ());
+        let solved = solver.solve(&mut b, 1e-3, &());
         let solve = start.elapsed().as_secs_f64();
         let more = match solved {
             Ok(solved) if solved.iterations > 0 => ITERATIONS_PER_SOLVE / solved.iterations as f64,

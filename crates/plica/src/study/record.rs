@@ -1,6 +1,7 @@
 //! Writes every accepted state down: its row, its walls, itself, and what it takes to go on from it.
 
 use super::checkpoint::Digest;
+use super::observer::Relay;
 use super::units::Scale;
 use super::{
     Checkpoint, Layout, Observer, Plan, Row, RunDirectory, SavedState, Snapshot, StudyError,
@@ -8,6 +9,7 @@ use super::{
 use crate::assembly::SplineTube;
 use crate::equilibrium::{TubeProblem, unstable_modes};
 use crate::measure::{Asymmetry, Face, Measures, Meridians};
+use crate::monitor::Part;
 use crate::solve::{Method, Path, Step};
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -50,8 +52,9 @@ impl<'a> Record<'a> {
         observer: &mut dyn Observer,
     ) -> Result<(), StudyError> {
         let harmonics = self.plan.output.stability_modes;
-        let mut goes_on = || !observer.stop();
-        let unstable_modes = unstable_modes(self.problem, path, harmonics, &mut goes_on);
+        let mut relay = Relay::new(observer);
+        let mut monitor = Part::new(&mut relay, "testing stability", 0.0, 0.0);
+        let unstable_modes = unstable_modes(self.problem, path, harmonics, &mut monitor);
         let (tube, state) = (&self.problem.tube, path.state());
         // The state was accepted, so its energy exists.
         let Ok(forces) = tube.forces(&state.load, &state.u) else {
@@ -89,8 +92,8 @@ impl<'a> Record<'a> {
                 "no"
             }
             .into(),
-            iterations: step.iterations,
-            cg_iterations: step.inner_iterations,
+            iterations: step.effort.linear_solves,
+            cg_iterations: step.effort.inner_iterations,
             seconds: self.since.elapsed().as_secs_f64(),
             outer_radius_min: length * measures.outer_radius_min,
             z_at_min: length * measures.z_at_min,

@@ -1,14 +1,16 @@
 //! Leads a tube through its stages, from the beginning or where it was left.
 
 use super::manifest::Manifest;
+use super::observer::Relay;
 use super::record::Record;
 use super::summary::{Ending, Phase, Summary, whereabouts};
 use super::units::Scale;
 use super::{Checkpoint, Layout, Observer, Plan, Row, RunDirectory, Start, StudyError, fits};
 use crate::assembly::{Inverted, SplineTube};
 use crate::equilibrium::{TubeProblem, prolong};
+use crate::monitor::{Monitor, Part};
 use crate::solve::{
-    Equilibrium, Failure, Method, Monitor, Path, PathError, Solution, Step, newton, relaxation,
+    Effort, Equilibrium, Failure, Method, Path, PathError, Step, newton, relaxation,
 };
 use crate::tube::{Mesh, Symmetry, Tube};
 
@@ -172,13 +174,9 @@ fn follow(
         let before: usize = steps_before(k);
         for n in previous + 1..=stage.steps {
             let done = before + n - 1;
-            let mut monitor = Relay {
-                observer: &mut *observer,
-                what: format!("{}, step {n} of {}", stage.name, stage.steps),
-                fraction: done as f64 / states as f64,
-                solves: 0,
-                inner_iterations: 0,
-            };
+            let activity = format!("{}, step {n} of {}", stage.name, stage.steps);
+            let mut relay = Relay::new(&mut *observer);
+            let mut monitor = Part::new(&mut relay, activity, done as f64 / states as f64, 0.0);
             let from = path.reached();
             match path.advance(n as f64 / stage.steps as f64, &mut monitor) {
                 Ok(step) => {
@@ -192,7 +190,7 @@ fn follow(
                     if path.reached() > from {
                         record.accept(&stage.name, &mut path, &error.step, true, observer)?;
                     }
-                    return Ok(if error.stopped() {
+                    return Ok(if error.is_cancelled() {
                         Ending::Stopped
                     } else {
                         let state = path.state();
@@ -246,24 +244,27 @@ fn begin<'a>(
         let rest = plan.tube.rest();
         let mut step = Step {
             method: Method::Rest,
-            iterations: 1,
-            inner_iterations: 0,
+            effort: Effort {
+                linear_solves: 1,
+                inner_iterations: 0,
+            },
             damping_work: 0.0,
         };
         let mut path = match path(rest.clone(), problem.tube.start()) {
             Ok(path) => path,
             Err(broken) => {
-                let tried = vec![(Method::Rest, Failure::Evaluation(broken))];
-                return Ok(Err(lost(Phase::Rest, PathError { tried, step })));
+                let attempts = vec![(Method::Rest, Failure::Evaluation(broken))];
+                return Ok(Err(lost(Phase::Rest, PathError { attempts, step })));
             }
         };
         if !plan.tube.imperfections.is_empty() {
             // The state of an imperfect tube at rest is to be found, too.
-            let mut monitor = Relay::new(observer, "rest");
+            let mut relay = Relay::new(&mut *observer);
+            let mut monitor = Part::new(&mut relay, "rest", 0.0, 0.0);
             path.begin_segment(rest);
             match path.advance(1.0, &mut monitor) {
                 Ok(found) => step = found,
-                Err(error) if error.stopped() => return Ok(Err(Ending::Stopped)),
+                Err(error) if error.is_cancelled() => return Ok(Err(Ending::Stopped)),
                 Err(error) => return Ok(Err(lost(Phase::Rest, error))),
             }
         }
@@ -271,10 +272,11 @@ fn begin<'a>(
         record.leave_checkpoint(None, &path, observer)?;
         return Ok(Ok(path));
     };
-    let mut monitor = Relay::new(observer, START);
+    let mut relay = Relay::new(&mut *observer);
+    let mut monitor = Part::new(&mut relay, START, 0.0, 0.0);
     let (u, step) = match settle(plan, problem, start, &mut monitor) {
         Ok(settled) => settled,
-        Err(error) if error.stopped() => return Ok(Err(Ending::Stopped)),
+        Err(error) if error.is_cancelled() => return Ok(Err(Ending::Stopped)),
         Err(error) => return Ok(Err(lost(Phase::Start, error))),
     };
     let mut path = match path(start.load.clone(), u) {
@@ -294,7 +296,7 @@ fn settle(
     plan: &Plan,
     problem: &TubeProblem,
     start: &Start,
-    monitor: &mut Relay<'_>,
+    monitor: &mut dyn Monitor,
 ) -> Result<(Vec<f64>, Step), PathError<Inverted>> {
     let Layout { mesh, rings, .. } = &start.state.layout;
     let perfect = Tube {
@@ -305,35 +307,28 @@ fn settle(
     let mut u = prolong(&from, &problem.tube, &start.state.u);
     problem.apply_prescribed(&start.load, &mut u);
     let (load, settings) = (&start.load, &plan.solver);
-    let step = |method, found: &Solution, inner_iterations| Step {
+    let mut effort = Effort::default();
+    let step = |method, damping_work, effort| Step {
         method,
-        iterations: found.iterations,
-        inner_iterations,
-        damping_work: found.damping_work,
+        effort,
+        damping_work,
     };
-    let newton_failed = match newton(problem, load, u.clone(), settings, monitor) {
-        Ok(found) => {
-            let step = step(Method::Newton, &found, monitor.inner_iterations);
-            return Ok((found.u, step));
-        }
+    let newton_failed = match newton(problem, load, u.clone(), settings, &mut effort, monitor) {
+        Ok(found) => return Ok((found.u, step(Method::Newton, found.damping_work, effort))),
         Err(failed) => failed,
     };
-    match relaxation(problem, load, u, settings, monitor) {
-        Ok(found) => {
-            let step = step(Method::Relaxation, &found, monitor.inner_iterations);
-            Ok((found.u, step))
-        }
+    effort.linear_solves = 0;
+    match relaxation(problem, load, u, settings, &mut effort, monitor) {
+        Ok(found) => Ok((
+            found.u,
+            step(Method::Relaxation, found.damping_work, effort),
+        )),
         Err(failed) => Err(PathError {
-            tried: vec![
+            attempts: vec![
                 (Method::Newton, newton_failed),
                 (Method::Relaxation, failed),
             ],
-            step: Step {
-                method: Method::Relaxation,
-                iterations: 0,
-                inner_iterations: monitor.inner_iterations,
-                damping_work: 0.0,
-            },
+            step: step(Method::Relaxation, 0.0, effort),
         }),
     }
 }
@@ -347,43 +342,4 @@ pub fn folded(tube: &Tube, mesh: &Mesh, symmetry: Symmetry) -> Option<Inverted> 
     };
     let perfect = SplineTube::new(&perfect, mesh, mesh.rings(symmetry));
     perfect.can_have(&tube.imperfections).err()
-}
-
-/// Tells an observer of every solve.
-struct Relay<'a> {
-    observer: &'a mut dyn Observer,
-    what: String,
-    fraction: f64,
-    solves: usize,
-    inner_iterations: usize,
-}
-
-impl<'a> Relay<'a> {
-    fn new(observer: &'a mut dyn Observer, what: &str) -> Self {
-        Self {
-            observer,
-            what: what.to_owned(),
-            fraction: 0.0,
-            solves: 0,
-            inner_iterations: 0,
-        }
-    }
-}
-
-impl Monitor for Relay<'_> {
-    fn iterated(&mut self, inner_iterations: usize) {
-        self.inner_iterations += inner_iterations;
-    }
-    fn iterating(&mut self) -> bool {
-        !self.observer.stop()
-    }
-    fn solved(&mut self, method: Method, relative_residual: f64) -> bool {
-        self.solves += 1;
-        let what = format!(
-            "{}: {method}, solve {}, residual {relative_residual:.1e}",
-            self.what, self.solves
-        );
-        self.observer.working(&what, self.fraction);
-        !self.observer.stop()
-    }
 }

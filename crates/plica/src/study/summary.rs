@@ -112,11 +112,11 @@ pub(super) fn whereabouts(
     error: &PathError<Inverted>,
     last: Option<(&Load, &[f64])>,
 ) -> Vec<Whereabouts> {
-    let tried = error.tried.last().and_then(|(_, failure)| {
+    let tried = error.attempts.last().and_then(|(_, failure)| {
         if let Failure::Evaluation(Inverted { place, .. }) = failure {
             return Some(Whereabouts::Inverted(*place));
         }
-        let place = tube.place_of(failure.worst()?);
+        let place = tube.place_of(failure.worst_unknown()?);
         Some(match failure {
             Failure::StillMoving { .. } => Whereabouts::Moving(place),
             _ => Whereabouts::Unbalanced(place),
@@ -180,11 +180,11 @@ fn advice(phase: &Phase, error: &PathError<Inverted>) -> &'static str {
         }
         Phase::Stage { .. } => {}
     }
-    match error.tried.last().map(|(_, failure)| failure) {
+    match error.attempts.last().map(|(_, failure)| failure) {
         Some(Failure::StillMoving { .. }) => {
             "Try more pseudo-time (solver.pseudo_time.max_steps), less damping, or more steps in this stage"
         }
-        Some(Failure::Unsolved { .. }) => {
+        Some(Failure::InaccurateSolves { .. }) => {
             "Try more steps in this stage, or fewer or more even elements (mesh.refine)"
         }
         Some(Failure::Evaluation(_)) => {

@@ -1,16 +1,16 @@
-//! Tall matrices of a few columns, and the small matrices that they leave.
+//! Dense matrices with many rows and few columns, and their small products.
 
 use super::dense;
 
-/// A matrix, column by column.
+/// A dense matrix with many rows and few columns, stored by columns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Columns {
+pub struct TallMatrix {
     rows: usize,
     numbers: Vec<f64>,
 }
 
-impl Columns {
-    /// No columns yet, of `rows` numbers each; at least one.
+impl TallMatrix {
+    /// Makes a matrix with `rows` > 0 rows and no columns yet.
     pub fn new(rows: usize) -> Self {
         assert!(rows > 0);
         Self {
@@ -19,88 +19,88 @@ impl Columns {
         }
     }
 
-    /// A matrix of the given shape, entry by entry (row, column).
-    pub fn from_fn(rows: usize, count: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let mut columns = Self::new(rows);
-        for j in 0..count {
-            columns.numbers.extend((0..rows).map(|i| entry(i, j)));
+    /// Makes a matrix from its entries (row, column).
+    pub fn from_fn(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+        let mut matrix = Self::new(rows);
+        for j in 0..columns {
+            matrix.numbers.extend((0..rows).map(|i| entry(i, j)));
         }
-        columns
+        matrix
     }
 
-    /// Numbers in a column.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Number of columns.
-    pub fn count(&self) -> usize {
+    /// Returns the number of columns.
+    pub fn columns(&self) -> usize {
         self.numbers.len() / self.rows
     }
 
-    /// Column j.
+    /// Returns column j.
     pub fn column(&self, j: usize) -> &[f64] {
         &self.numbers[j * self.rows..(j + 1) * self.rows]
     }
 
-    /// Column j.
+    /// Returns column j, mutably.
     pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
         &mut self.numbers[j * self.rows..(j + 1) * self.rows]
     }
 
-    /// The entry in row i and column j.
+    /// Returns the entry in row i and column j.
     pub fn entry(&self, i: usize, j: usize) -> f64 {
         self.numbers[j * self.rows + i]
     }
 
-    /// Adds a column.
+    /// Appends a column.
     pub fn push(&mut self, column: &[f64]) {
         assert_eq!(column.len(), self.rows);
         self.numbers.extend_from_slice(column);
     }
 
-    /// The columns of that number.
-    pub fn chosen(&self, which: &[usize]) -> Self {
-        let mut columns = Self::new(self.rows);
+    /// Returns the matrix of some of the columns.
+    pub fn select(&self, which: &[usize]) -> Self {
+        let mut selected = Self::new(self.rows);
         for &j in which {
-            columns.push(self.column(j));
+            selected.push(self.column(j));
         }
-        columns
+        selected
     }
 
-    /// Adds the columns of another matrix.
+    /// Appends the columns of another matrix.
     pub fn append(&mut self, other: &Self) {
         assert_eq!(self.rows, other.rows);
         self.numbers.extend_from_slice(&other.numbers);
     }
 
-    /// Aᵀ B, every product of a column with a column; A has at least one.
+    /// Returns Aᵀ B; A must have a column.
     pub fn gram(&self, other: &Self) -> Self {
         assert_eq!(self.rows, other.rows);
-        let (m, n) = (self.count(), other.count());
+        let (m, n) = (self.columns(), other.columns());
         assert!(m > 0);
         let mut numbers = vec![0.0; m * n];
         dense::transposed_times(&mut numbers, &self.numbers, &other.numbers, self.rows);
         Self { rows: m, numbers }
     }
 
-    /// A B.
+    /// Returns A B.
     pub fn times(&self, other: &Self) -> Self {
-        assert_eq!(self.count(), other.rows);
+        assert_eq!(self.columns(), other.rows);
         let mut product = Self {
             rows: self.rows,
-            numbers: vec![0.0; self.rows * other.count()],
+            numbers: vec![0.0; self.rows * other.columns()],
         };
-        self.times_onto(1.0, other, &mut product);
+        self.add_product(1.0, other, &mut product);
         product
     }
 
-    /// C += factor · A B.
-    pub fn times_onto(&self, factor: f64, other: &Self, onto: &mut Self) {
-        assert_eq!(self.count(), other.rows);
-        assert_eq!((self.rows, other.count()), (onto.rows, onto.count()));
+    /// Adds `factor` · A B to `sum`.
+    pub fn add_product(&self, factor: f64, other: &Self, sum: &mut Self) {
+        assert_eq!(self.columns(), other.rows);
+        assert_eq!((self.rows, other.columns()), (sum.rows, sum.columns()));
         dense::add_times(
-            &mut onto.numbers,
+            &mut sum.numbers,
             factor,
             &self.numbers,
             &other.numbers,
@@ -108,11 +108,11 @@ impl Columns {
         );
     }
 
-    /// Eigenvalues, the lowest first, and orthonormal eigenvectors of a square matrix, symmetric
-    /// with its lower half. None if its entries are no numbers.
+    /// Returns the eigenvalues, the lowest first, and orthonormal eigenvectors of a symmetric matrix, of
+    /// which the lower half is read. None if an entry is not finite.
     pub fn eigen(&self) -> Option<(Vec<f64>, Self)> {
         let n = self.rows;
-        assert_eq!(self.count(), n);
+        assert_eq!(self.columns(), n);
         if !self.numbers.iter().all(|x| x.is_finite()) {
             return None;
         }
@@ -130,9 +130,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn eigenvectors_are_orthonormal_and_put_the_matrix_together() {
+    fn eigenvectors_are_orthonormal_and_diagonalise_the_matrix() {
         for n in [1, 2, 5, 12] {
-            let a = Columns::from_fn(n, n, |i, j| 1.0 / (1 + i + j) as f64 - f64::from(i == j));
+            let a = TallMatrix::from_fn(n, n, |i, j| 1.0 / (1 + i + j) as f64 - f64::from(i == j));
             let (values, vectors) = a.eigen().unwrap();
             assert!(values.windows(2).all(|pair| pair[0] <= pair[1]));
             let orthonormal = vectors.gram(&vectors);
@@ -145,13 +145,13 @@ mod tests {
                 }
             }
         }
-        assert!(Columns::from_fn(2, 2, |_, _| f64::NAN).eigen().is_none());
+        assert!(TallMatrix::from_fn(2, 2, |_, _| f64::NAN).eigen().is_none());
     }
 
     #[test]
-    fn products_are_those_of_their_entries() {
-        let a = Columns::from_fn(7, 3, |i, j| (i + 10 * j) as f64);
-        let b = Columns::from_fn(7, 2, |i, j| (i * i) as f64 - j as f64);
+    fn products_equal_sums_over_entries() {
+        let a = TallMatrix::from_fn(7, 3, |i, j| (i + 10 * j) as f64);
+        let b = TallMatrix::from_fn(7, 2, |i, j| (i * i) as f64 - j as f64);
         let gram = a.gram(&b);
         for i in 0..3 {
             for j in 0..2 {
