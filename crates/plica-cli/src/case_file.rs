@@ -3,7 +3,9 @@
 use crate::args::CaseArguments;
 use crate::failure::Failure;
 use plica::case::{self, Open, Wanted};
-use plica::study::{NamedMode, Plan, RunDirectory, SavedState, SavedStateError, StudyError};
+use plica::run_directory::{RunDirectory, RunError};
+use plica::saved_state::{SavedState, SavedStateError};
+use plica::study::{ModeShape, Plan};
 use plica_view::draw::missing_glyphs;
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
@@ -114,9 +116,9 @@ pub fn open_with(path: &Path, named: &Open<'_>) -> Result<(String, Plan), Failur
 /// # Errors
 /// What it has kept, if that is damaged, and not the case that names it.
 pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
-    for path in directory.kept() {
+    for path in directory.inputs() {
         let read = SavedState::read(&path);
-        read.map_err(|source| Failure::Study(StudyError::State { path, source }))?;
+        read.map_err(|source| Failure::Study(RunError::State { path, source }))?;
     }
     let own = |wanted: Wanted<'_>| kept(directory, wanted);
     let case = directory.path().join("case.toml");
@@ -141,7 +143,7 @@ pub fn open_again(
         let as_then = match wanted {
             Wanted::State(file) => old.start.iter().any(|start| start.file == file),
             Wanted::Mode(number, file) => {
-                let is_it = |mode: &NamedMode| mode.imperfection == number && mode.file == file;
+                let is_it = |mode: &ModeShape| mode.imperfection == number && mode.file == file;
                 old.modes.iter().any(is_it)
             }
         };

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::{case_file, console};
 use plica::material::{Material, NeoHookean, Volumetric};
 use plica::spline::Circle;
-use plica::study::{Plan, fits, forecast};
+use plica::study::{Plan, check_memory, forecast};
 use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube};
 
 /// Checks a case and prints its size and estimated cost.
@@ -19,7 +19,7 @@ pub fn check(arguments: &CaseArguments) -> Result<(), Failure> {
         text += &format!("\nwarning: {warning}");
     }
     console::say(&(text.trim_end().to_owned() + "\n"))?;
-    fits(&plan).map_err(Failure::Study)
+    check_memory(&plan).map_err(|error| Failure::Study(error.into()))
 }
 
 /// Returns the names and values of the printed table.

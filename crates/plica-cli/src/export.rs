@@ -6,7 +6,7 @@ use crate::finished::Finished;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{console, threads};
-use plica::study::RunDirectory;
+use plica::run_directory::RunDirectory;
 use plica_view::export::{Exporter, Geometry};
 use plica_view::vtk::collection;
 use std::collections::BTreeMap;

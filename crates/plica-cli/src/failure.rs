@@ -2,7 +2,7 @@
 
 use crate::console;
 use plica::case::CaseError;
-use plica::study::StudyError;
+use plica::run_directory::RunError;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -27,7 +27,7 @@ pub enum Failure {
     /// Internal error.
     Fault(String),
     /// Error of a study.
-    Study(StudyError),
+    Study(RunError),
     /// Interrupted by the user; says what has been written.
     Interrupted(String),
 }
@@ -54,8 +54,8 @@ impl Failure {
                 1
             }
             Self::Study(error) => {
-                console::tell(&format!("error: {error}"));
-                if error.is_file_trouble() { 3 } else { 1 }
+                console::tell(&format!("error: {error}{}", help(error)));
+                if error.is_about_files() { 3 } else { 1 }
             }
             Self::Interrupted(what) => {
                 console::tell(what);
@@ -63,5 +63,27 @@ impl Failure {
             }
         };
         ExitCode::from(code)
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        Self::Study(error)
+    }
+}
+
+/// Returns what a user of the program can do about an error, as the end of its message.
+fn help(error: &RunError) -> &'static str {
+    match error {
+        RunError::Occupied(_) => {
+            "; resume it with --resume, choose another directory with --out, or replace it with --overwrite"
+        }
+        RunError::Busy { .. } => "; wait for it, end it, or choose another directory with --out",
+        RunError::NoCheckpoint { .. } => "; run the case again with --overwrite",
+        RunError::NotARun(_) => " (not even with --overwrite); choose another directory with --out",
+        RunError::NoDirectory(_) => {
+            "; give the directory of a run: runs/NAME, or the value of --out"
+        }
+        _ => "",
     }
 }

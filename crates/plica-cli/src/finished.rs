@@ -3,7 +3,9 @@
 use crate::case_file;
 use crate::console;
 use crate::failure::Failure;
-use plica::study::{Plan, Row, RunDirectory, SavedState};
+use plica::run_directory::RunDirectory;
+use plica::saved_state::SavedState;
+use plica::study::{Plan, Row};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -54,7 +56,7 @@ impl Finished {
             .numbered("states", "safetensors")
             .map_err(Failure::Study)?;
         let plan = case_file::of_run(&directory)?;
-        let (rows, broken) = directory.history_so_far().map_err(Failure::Study)?;
+        let (rows, broken) = directory.readable_history().map_err(Failure::Study)?;
         if rows.is_empty() {
             return Err(Failure::Usage(format!(
                 "{}: the run has not come to its first state",
@@ -123,9 +125,7 @@ impl Finished {
         let path = &self.saved[&number];
         let trouble = |why: &dyn std::fmt::Display| format!("{}: {why}", path.display());
         let state = SavedState::read(path).map_err(|error| trouble(&error))?;
-        state
-            .belongs_to(&self.plan)
-            .map_err(|error| trouble(&error))?;
+        self.plan.accepts(&state).map_err(|error| trouble(&error))?;
         let row = self.rows.iter().find(|row| row.step == number);
         let row = row.ok_or_else(|| trouble(&"history.csv has no such state"))?;
         Ok((state, row.clone()))

@@ -1,57 +1,69 @@
-//! A run as it goes on: a line per accepted state.
+//! Progress of a run: a line per accepted state.
 
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
-use plica::study::{Observer, Plan, Row};
+use plica::monitor::Monitor;
+use plica::study::{Plan, Row};
+use std::fmt::Display;
 
-/// Shows a run, and stops it when someone asks.
+/// Shows the states of a run and cancels it when the user asks.
 pub struct Progress {
     ticker: Ticker,
     stage_width: usize,
-    round: bool,
-    pressed: bool,
-    begun: bool,
+    is_axisymmetric: bool,
+    has_pressures: bool,
+    has_heading: bool,
 }
 
 impl Progress {
-    /// Before the first state.
+    /// Prepares to show a run.
     pub fn new(plan: &Plan, interrupt: Interrupt) -> Self {
         let names = plan.stages.iter().map(|stage| stage.name.chars().count());
         Self {
             ticker: Ticker::new(interrupt),
             stage_width: names.max().unwrap_or(0).clamp(5, 24),
-            round: plan.mesh.rings(plan.symmetry) == 1,
-            pressed: plan.is_pressed(),
-            begun: false,
+            is_axisymmetric: plan.mesh.rings(plan.symmetry) == 1,
+            has_pressures: plan.has_pressures(),
+            has_heading: false,
         }
     }
 
-    /// After the last state: the bar goes, the lines stay.
+    /// Removes the progress bar; the lines stay.
     pub fn finish(&self) {
         self.ticker.finish();
     }
-}
 
-impl Observer for Progress {
-    fn accepted(&mut self, row: &Row) {
+    /// Shows the line of an accepted state.
+    pub fn show(&mut self, row: &Row) {
         let width = self.stage_width;
-        // What only a tube that may leave axisymmetry has to tell.
-        let departs = |what: String| if self.round { String::new() } else { what };
-        let pressed = |what: String| if self.pressed { what } else { String::new() };
-        if !self.begun {
-            self.begun = true;
+        let asymmetry_column = |cell: String| {
+            if self.is_axisymmetric {
+                String::new()
+            } else {
+                cell
+            }
+        };
+        let pressure_column = |cell: String| {
+            if self.has_pressures {
+                cell
+            } else {
+                String::new()
+            }
+        };
+        if !self.has_heading {
+            self.has_heading = true;
             self.ticker.line(&format!(
                 "{:>5}  {:<width$}  {:>7} {:>7}{} {:>11}  {:<11} {:>6}  {:<11}{} {:>5} {:>8}",
                 "state",
                 "stage",
                 "Lmax/L",
                 "Dmin/D",
-                pressed(format!(" {:>10}", "pressure")),
+                pressure_column(format!(" {:>10}", "pressure")),
                 "W",
                 "found by",
                 "angle",
                 "shape",
-                departs(format!(" {:>12}", "departs")),
+                asymmetry_column(format!(" {:>12}", "asymmetry")),
                 "iter",
                 "seconds"
             ));
@@ -62,31 +74,33 @@ impl Observer for Progress {
             row.stage,
             row.length_ratio,
             row.diameter_ratio,
-            pressed(format!(" {:>10.2e}", pressure(row))),
+            pressure_column(format!(" {:>10.2e}", pressure(row))),
             row.energy,
             row.method,
             row.max_wall_angle_deg,
             row.shape,
-            departs(format!(" {:>12}", asymmetry(row))),
+            asymmetry_column(format!(" {:>12}", asymmetry(row))),
             row.iterations,
             row.seconds
         ));
     }
+}
 
-    fn noticed(&mut self, what: &str) {
-        self.ticker.line(what);
+impl Monitor for Progress {
+    fn working(&mut self, activity: &dyn Display, fraction: f64) {
+        self.ticker.working(&activity.to_string(), fraction);
     }
 
-    fn working(&mut self, what: &str, fraction: f64) {
-        self.ticker.working(what, fraction);
+    fn notice(&mut self, message: &str) {
+        self.ticker.line(message);
     }
 
-    fn stop(&mut self) -> bool {
+    fn is_cancelled(&self) -> bool {
         self.ticker.stop()
     }
 }
 
-/// The first of the pressures that a state is under, if there is any.
+/// Returns the first pressure of a state that is not zero; 0 if there is none.
 fn pressure(row: &Row) -> f64 {
     let pressures = [
         row.outer_pressure,
@@ -94,11 +108,15 @@ fn pressure(row: &Row) -> f64 {
         row.outer_dead_load,
         row.inner_dead_load,
     ];
-    let under = |p: &f64| *p != 0.0;
-    pressures.into_iter().flatten().find(under).unwrap_or(0.0)
+    let is_not_zero = |p: &f64| *p != 0.0;
+    pressures
+        .into_iter()
+        .flatten()
+        .find(is_not_zero)
+        .unwrap_or(0.0)
 }
 
-/// How far a state is from axisymmetric, and in which harmonic.
+/// Describes the asymmetry of a state.
 fn asymmetry(row: &Row) -> String {
     match row.asymmetry_mode {
         0 => "0".into(),

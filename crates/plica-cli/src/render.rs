@@ -76,7 +76,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
     }
     let ticker = Mutex::new(Ticker::new(interrupt));
     let monitor = |done: usize| {
-        let mut ticker = ticker.lock().unwrap_or_else(|e| e.into_inner());
+        let ticker = ticker.lock().unwrap_or_else(|e| e.into_inner());
         ticker.working("drawing", done as f64 / states.len() as f64);
         !ticker.stop()
     };

@@ -4,7 +4,7 @@ use crate::args::ReportArguments;
 use crate::failure::Failure;
 use crate::finished::{Finished, endings};
 use crate::{console, threads};
-use plica::study::SavedState;
+use plica::saved_state::SavedState;
 use plica_view::page::{PageError, Run, drawn, page};
 use std::path::{Path, PathBuf};
 

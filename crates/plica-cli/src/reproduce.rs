@@ -6,6 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::page_directory::FirstPage;
 use crate::ticker::Ticker;
 use crate::{console, page_directory, threads};
+use plica::run_directory::Verdict;
 use plica_verify::reproduction::{
     FIGURES, Figure, Fineness, Observer, Ran, SUMMARY, TITLE, Trouble, reproduce as run_figures,
 };
@@ -109,7 +110,7 @@ struct Monitor(Ticker);
 
 impl Observer for Monitor {
     fn ran(&mut self, ran: &Ran, done: usize, of: usize) {
-        let lost = if ran.verdict == "complete" {
+        let lost = if ran.verdict == Verdict::Complete {
             ""
         } else {
             ", lost"

@@ -6,7 +6,8 @@ use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{case_file, console, threads};
 use plica::case::differences;
-use plica::study::{self, Observer, Plan, RunDirectory, StudyError, Summary};
+use plica::run_directory::{Run, RunDirectory, RunError, Summary};
+use plica::study::{Ending, Plan, check_memory, forbidden_changes};
 use plica_view::report::pictures;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,7 @@ fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<Stri
         }
     };
     for (name, png) in &pictures {
-        directory.write(name, png).map_err(Failure::Study)?;
+        directory.write(name, png)?;
     }
     if pictures.is_empty() {
         return Ok(String::new());
@@ -32,29 +33,28 @@ fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<Stri
     Ok(format!("  {:<22} {}\n", "pictures", names.join(", ")))
 }
 
-/// Runs a case, from the beginning or where it was left.
+/// Runs a case, from the beginning or after its last checkpoint.
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
-    // Before anything computes, which checking a case may do already.
+    // Checking a case may already compute on several threads.
     threads::limit(arguments.threads)?;
     let out = match &arguments.out {
         Some(out) => out.clone(),
         None => PathBuf::from("runs").join(case_file::stem(&arguments.case.file)),
     };
-    if arguments.resume && RunDirectory::is_there(&out) {
-        return take_up(arguments, &out);
+    if arguments.resume && RunDirectory::exists(&out) {
+        return resume_with_case(arguments, &out);
     }
     let (text, plan) = case_file::open(&arguments.case)?;
     let interrupt = listen()?;
-    study::fits(&plan).map_err(Failure::Study)?;
-    let directory = RunDirectory::create(&out, &text, &plan.title, arguments.overwrite)
-        .map_err(Failure::Study)?;
-    lead(&plan, directory, interrupt, study::run)
+    check_memory(&plan).map_err(RunError::from)?;
+    let mut directory = RunDirectory::create(&out, &text, &plan.title, arguments.overwrite)?;
+    follow(&plan, &mut directory, interrupt, false)
 }
 
-/// Goes on with a run by a case, which may have changed ahead of where it is.
-fn take_up(arguments: &RunArguments, out: &Path) -> Result<(), Failure> {
-    let mut directory = RunDirectory::open(out).map_err(Failure::Study)?;
-    directory.own().map_err(Failure::Study)?;
+/// Resumes a run with a case, which may differ from the one of the run in what is still ahead.
+fn resume_with_case(arguments: &RunArguments, out: &Path) -> Result<(), Failure> {
+    let mut directory = RunDirectory::open(out)?;
+    directory.lock()?;
     let before = directory.read("case.toml").unwrap_or_default();
     let (text, plan) = if directory.has_hardly_begun() {
         case_file::open(&arguments.case)?
@@ -67,30 +67,28 @@ fn take_up(arguments: &RunArguments, out: &Path) -> Result<(), Failure> {
             }
         } else {
             let before = String::from_utf8_lossy(&before);
-            may_go_on(&directory, [(&before, &old), (&text, &plan)])?;
+            check_changes(&directory, [(&before, &old), (&text, &plan)])?;
         }
         (text, plan)
     };
     let interrupt = listen()?;
-    study::fits(&plan).map_err(Failure::Study)?;
+    check_memory(&plan).map_err(RunError::from)?;
     if before != text.as_bytes() {
-        directory
-            .write_case(&text, &plan.title)
-            .map_err(Failure::Study)?;
+        directory.write_case(&text, &plan.title)?;
     }
-    lead(&plan, directory, interrupt, study::resume)
+    follow(&plan, &mut directory, interrupt, true)
 }
 
-/// Goes on with a run.
+/// Resumes a run.
 pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
     threads::limit(arguments.threads)?;
-    let mut directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
-    directory.own().map_err(Failure::Study)?;
+    let mut directory = RunDirectory::open(&arguments.run)?;
+    directory.lock()?;
     let plan = case_file::of_run(&directory)?;
     if directory.is_complete() {
         return nothing_to_do(&directory);
     }
-    lead(&plan, directory, listen()?, study::resume)
+    follow(&plan, &mut directory, listen()?, true)
 }
 
 fn listen() -> Result<Interrupt, Failure> {
@@ -99,44 +97,44 @@ fn listen() -> Result<Interrupt, Failure> {
 }
 
 fn nothing_to_do(directory: &RunDirectory) -> Result<(), Failure> {
-    directory.tidy().map_err(Failure::Study)?;
+    directory.close()?;
     console::say(&format!(
-        "{} is complete; there is nothing to go on with\n",
+        "{} is complete; there is nothing to resume\n",
         directory.path().display()
     ))
 }
 
-/// Refuses another case than the one that was begun, but for what may change.
-fn may_go_on(
+/// Refuses a case that differs from the one of the run in what is already computed.
+fn check_changes(
     directory: &RunDirectory,
     [(before, old), (text, new)]: [(&str, &Plan); 2],
 ) -> Result<(), Failure> {
-    let (rows, _) = directory.history_so_far().map_err(Failure::Study)?;
-    let (checkpoint, _) = directory.checkpoint(old, &rows).map_err(Failure::Study)?;
-    let reached = checkpoint.memory.reached;
-    let kept = study::kept(old, new, checkpoint.stage.map(|stage| (stage, reached)));
-    if kept.is_empty() {
+    let (rows, _) = directory.readable_history()?;
+    let (checkpoint, _) = directory.checkpoint(old, &rows)?;
+    let reached = checkpoint.path.reached;
+    let changes = forbidden_changes(old, new, checkpoint.stage.map(|stage| (stage, reached)));
+    if changes.is_empty() {
         return Ok(());
     }
-    let mut what = format!(
-        "{}: begun with another case. Of this one {} must stay as it was:",
+    let mut message = format!(
+        "{}: the run was begun with another case. This case must not change {}:",
         directory.path().display(),
-        kept.join(", ")
+        changes.join(", ")
     );
     for difference in differences(before, text) {
-        what += &format!("\n  {difference}");
+        message += &format!("\n  {difference}");
     }
-    what += "\nThe title, [solver], [output], the steps of the stage it is in and all later stages may change. \
-        Run this case into another directory, or begin again with --overwrite";
-    Err(Failure::Usage(what))
+    message += "\nThe title, [solver], [output], the steps of the current stage and all later stages may change. \
+        Run this case in another directory, or begin again with --overwrite";
+    Err(Failure::Usage(message))
 }
 
-/// Leads a run to its end, and draws it.
-fn lead(
+/// Follows a run to its end, shows its states, and draws its pictures.
+fn follow(
     plan: &Plan,
-    mut directory: RunDirectory,
+    directory: &mut RunDirectory,
     interrupt: Interrupt,
-    by: fn(&Plan, &mut RunDirectory, &mut dyn Observer) -> Result<Summary, StudyError>,
+    resume: bool,
 ) -> Result<(), Failure> {
     let out = directory.path().to_owned();
     console::tell(&format!("{}\nwriting to {}", plan.title, out.display()));
@@ -144,23 +142,41 @@ fn lead(
         console::tell(&format!("warning: {warning}"));
     }
     let mut progress = Progress::new(plan, interrupt.clone());
-    let summary = by(plan, &mut directory, &mut progress);
+    let summary = all_states(plan, directory, &mut progress, resume);
     progress.finish();
-    let summary = summary.map_err(Failure::Study)?;
-    // Whoever waits for numbers does not wait for pictures.
-    let told = console::say(&summary.to_string());
-    let drawn = draw(plan, &summary, &directory)?;
-    told.and_then(|()| console::say(&drawn))?;
-    if summary.finished() {
-        directory.tidy().map_err(Failure::Study)?;
-        return Ok(());
+    let summary = summary?;
+    // The table is printed before the pictures, which take longer.
+    let printed = console::say(&summary.to_string());
+    let drawn = draw(plan, &summary, directory)?;
+    printed.and_then(|()| console::say(&drawn))?;
+    match summary.ending() {
+        Ending::Complete => return Ok(directory.close()?),
+        Ending::Stopped => console::tell("stopped on request; every state so far is kept"),
+        Ending::Lost(lost) => console::tell(&lost.to_string()),
     }
-    console::tell(&summary.ending().to_string());
     if interrupt.asked() {
         return Err(Failure::Interrupted(format!(
-            "interrupted; everything up to the last accepted state is written, and `plica resume {}` goes on from there",
+            "interrupted; everything up to the last accepted state is written, and `plica resume {}` continues from there",
             out.display()
         )));
     }
     Err(Failure::Unfinished)
+}
+
+/// Computes all states and shows a line for each.
+fn all_states(
+    plan: &Plan,
+    directory: &mut RunDirectory,
+    progress: &mut Progress,
+    resume: bool,
+) -> Result<Summary, RunError> {
+    let mut run = if resume {
+        Run::resume(plan, directory, progress)?
+    } else {
+        Run::begin(plan, directory)?
+    };
+    while let Some(row) = run.next_row(progress)? {
+        progress.show(row);
+    }
+    run.finish()
 }

@@ -5,10 +5,11 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{case_file, console, threads};
+use plica::run_directory::{RunDirectory, RunError, Verdict};
 use plica::stability::{
     ModesRequest, Observer, Request, Spectrum, StabilityError, Station, follow, lowest_modes,
 };
-use plica::study::{Plan, RunDirectory, fits};
+use plica::study::{Plan, check_memory};
 use plica::tube::{Load, Tube};
 use plica_view::draw::DrawError;
 use plica_view::report::{mode_pictures, stability_pictures};
@@ -21,7 +22,7 @@ const MODES: u8 = 3;
 /// Tests the stability of a run's states and writes the results to its directory.
 pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     let mut directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
-    directory.own().map_err(Failure::Study)?;
+    directory.lock().map_err(Failure::Study)?;
     if directory.states().map_err(Failure::Study)?.is_empty() {
         let none = StabilityError::NoStates {
             directory: arguments.run.clone(),
@@ -32,7 +33,7 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     // Must precede reading the case, which may compute in parallel.
     threads::limit(arguments.threads)?;
     let plan = case_file::of_run(&directory)?;
-    fits(&plan).map_err(Failure::Study)?;
+    check_memory(&plan).map_err(RunError::from)?;
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
     console::tell(&format!(
@@ -40,13 +41,13 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
         plan.title,
         arguments.run.display()
     ));
-    if directory.verdict() == "running" {
+    if directory.verdict() == Verdict::Running {
         console::tell("warning: the run is unfinished; its states so far are tested");
     }
     let mut monitor = Monitor {
         ticker: Ticker::new(interrupt),
         has_heading: false,
-        has_pressure: plan.is_pressed(),
+        has_pressure: plan.has_pressures(),
     };
     if plan.mesh.rings(plan.symmetry) == 1 {
         axisymmetric(arguments, &plan, &directory, &mut monitor)

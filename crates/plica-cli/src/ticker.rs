@@ -3,6 +3,7 @@
 use crate::console;
 use crate::interrupt::Interrupt;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 /// Ticks of a full bar.
@@ -14,8 +15,8 @@ const QUIET: Duration = Duration::from_secs(30);
 pub struct Ticker {
     bar: Option<ProgressBar>,
     interrupt: Interrupt,
-    stopping: bool,
-    last_output: Instant,
+    stopping: Cell<bool>,
+    last_output: Cell<Instant>,
 }
 
 impl Ticker {
@@ -24,8 +25,8 @@ impl Ticker {
         Self {
             bar: console::is_watched().then(bar),
             interrupt,
-            stopping: false,
-            last_output: Instant::now(),
+            stopping: Cell::new(false),
+            last_output: Cell::new(Instant::now()),
         }
     }
 
@@ -37,22 +38,22 @@ impl Ticker {
     }
 
     /// Prints a line above the bar.
-    pub fn line(&mut self, line: &str) {
+    pub fn line(&self, line: &str) {
         match &self.bar {
             Some(bar) => bar.println(line),
             None => console::tell(line),
         }
-        self.last_output = Instant::now();
+        self.last_output.set(Instant::now());
     }
 
     /// Shows the current task and the completed fraction (0 to 1) of the whole work.
-    pub fn working(&mut self, what: &str, fraction: f64) {
+    pub fn working(&self, what: &str, fraction: f64) {
         match &self.bar {
             Some(bar) => {
                 bar.set_position((fraction.clamp(0.0, 1.0) * FULL as f64) as u64);
                 bar.set_message(what.to_owned());
             }
-            None if self.last_output.elapsed() > QUIET => {
+            None if self.last_output.get().elapsed() > QUIET => {
                 self.line(&format!("{:>4.0} %  {what}", 100.0 * fraction));
             }
             None => {}
@@ -60,12 +61,11 @@ impl Ticker {
     }
 
     /// Returns whether the user has asked to stop.
-    pub fn stop(&mut self) -> bool {
-        if self.interrupt.asked() && !self.stopping {
-            self.stopping = true;
+    pub fn stop(&self) -> bool {
+        if self.interrupt.asked() && !self.stopping.replace(true) {
             self.line("stopping; press Ctrl-C again to stop at once");
         }
-        self.stopping
+        self.stopping.get()
     }
 }
 

@@ -1,6 +1,9 @@
 //! The documents agree with the files, commands, tests and columns they name.
 
 use crate::common::{files, quoted, read, root, succeed};
+use plica::equilibrium::Stability;
+use plica::measure::{Shape, Side};
+use plica::solve::Method;
 use plica::study::Row;
 use std::collections::BTreeMap;
 use std::fs;
@@ -116,8 +119,8 @@ fn the_columns_of_the_history_are_documented() {
         energy_ungrown_volume: 0.0,
         residual: 0.0,
         damping_work: 0.0,
-        method: String::new(),
-        equilibrium: String::new(),
+        method: Method::Newton,
+        in_equilibrium: true,
         iterations: 0,
         cg_iterations: 0,
         seconds: 0.0,
@@ -128,13 +131,13 @@ fn the_columns_of_the_history_are_documented() {
         flatness: 0.0,
         gap: 0.0,
         lumen: 0.88,
-        side: String::new(),
-        shape: String::new(),
+        side: Side::None,
+        shape: Shape::Straight,
         asymmetry: 0.0,
         asymmetry_mode: 0,
         asymmetry_angle_deg: 0.0,
         min_det_fe: 0.0,
-        unstable_modes: String::new(),
+        stability: Stability::Stable,
     };
     let mut writer = csv::Writer::from_writer(vec![]);
     writer.serialize(&row).unwrap();

@@ -143,7 +143,7 @@ fn assert_complete_directory(run: &Path, states: usize) {
     }
     let saved = |state| format!("states/state-{state:04}.safetensors");
     for state in (0..states).map(saved) {
-        let state = plica::study::SavedState::read(&run.join(state)).unwrap();
+        let state = plica::saved_state::SavedState::read(&run.join(state)).unwrap();
         assert_eq!(state.u.len(), 100 * 5 * 3);
     }
     for picture in ["energy.png", "walls.png", "tube.png"] {

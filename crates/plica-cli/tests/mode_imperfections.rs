@@ -1,7 +1,7 @@
 //! Geometric imperfections with the shape of a buckling mode.
 
 use crate::common::{self, Table, compare, fail, succeed};
-use plica::study::SavedState;
+use plica::saved_state::SavedState;
 use std::fs;
 use std::path::{Path, PathBuf};
 

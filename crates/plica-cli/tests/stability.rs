@@ -1,7 +1,7 @@
 //! `plica stability`.
 
 use crate::common::{PLICA, compare, plica, scratch, succeed, text};
-use plica::study::SavedState;
+use plica::saved_state::SavedState;
 use std::fs;
 use std::path::Path;
 

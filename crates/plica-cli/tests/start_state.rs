@@ -1,7 +1,7 @@
 //! Cases that start from a saved state.
 
 use crate::common::{Table, compare, damage, fail, plica, scratch, succeed, text};
-use plica::study::SavedState;
+use plica::saved_state::SavedState;
 use std::fs;
 use std::path::Path;
 

@@ -3,16 +3,9 @@
 //! `cargo bench -p plica --bench pictures` prints what docs/performance.md says. On one thread.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use plica::study::{self, Observer, Row, RunDirectory};
+use plica::run_directory::{self, RunDirectory};
 use plica_view::report::pictures;
 use std::hint::black_box;
-
-struct Nobody;
-
-impl Observer for Nobody {
-    fn accepted(&mut self, _: &Row) {}
-    fn working(&mut self, _: &str, _: f64) {}
-}
 
 fn of_a_run(c: &mut Criterion) {
     rayon::ThreadPoolBuilder::new()
@@ -23,10 +16,10 @@ fn of_a_run(c: &mut Criterion) {
     let plan = plica::case::read(text, "small").expect("the case is sound");
     let out = std::env::temp_dir().join(format!("plica-pictures-{}", std::process::id()));
     let directory = RunDirectory::create(&out, text, &plan.title, true);
-    let summary = study::run(
+    let summary = run_directory::run(
         &plan,
         &mut directory.expect("there is room for a run"),
-        &mut Nobody,
+        &mut (),
     );
     let summary = summary.expect("the tube can be followed");
     c.bench_function("pictures of cases/small.toml", |b| {

@@ -2,7 +2,8 @@
 
 use plica::assembly::SplineTube;
 use plica::material::{Material, NeoHookean};
-use plica::study::{Layout, Output, Plan, SavedState};
+use plica::saved_state::SavedState;
+use plica::study::{Output, Plan};
 use plica::tube::{Mesh, Support, Symmetry, Tube};
 
 /// A tube as long as it is wide, with free ends and nothing to drive it.
@@ -55,7 +56,7 @@ pub fn state(plan: &Plan, row: usize) -> SavedState {
         along: 0.0,
         muscles: vec![],
         load: plan.tube.rest(),
-        layout: Layout::of(plan),
+        layout: plan.layout(),
         u: tube.control_values(|z, r, _| [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * late)),
         arrays: Default::default(),
     }

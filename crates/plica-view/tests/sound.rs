@@ -7,8 +7,13 @@ mod common;
 
 use common::Chance;
 use plica::case;
-use plica::study::{self, Ending, Observer, Plan, Row, RunDirectory, SavedState};
+use plica::monitor::Monitor;
+use plica::run_directory::{self, RunDirectory, RunError, Verdict};
+use plica::saved_state::SavedState;
+use plica::solve::Method;
+use plica::study::{Ending, Plan, Row};
 use plica_view::export::{Exporter, Geometry};
+use std::fmt::Display;
 use std::fmt::Write;
 use std::io::Read;
 use std::path::Path;
@@ -143,7 +148,7 @@ fn random(chance: &mut Chance) -> String {
         }
     }
     add(format_args!(
-        "[solver]\nscheme = \"{}\"\nhalvings = {}\n[output]\npictures = false\nwall_points = 51\n",
+        "[solver]\nscheme = \"{}\"\nmax_step_halvings = {}\n[output]\npictures = false\nwall_points = 51\n",
         chance.of(&["static", "static", "static", "backward-euler", "newmark"]),
         chance.below(6)
     ));
@@ -156,19 +161,24 @@ struct Patience {
     solves: usize,
 }
 
-impl Observer for Patience {
-    fn accepted(&mut self, row: &Row) {
-        assert!(row.min_det_fe > 0.0);
-        assert!(row.energy >= -1e-12, "{}", row.energy);
-        assert!(row.equilibrium == "no" || row.residual <= 1e-6 || row.method == "rest");
-    }
-    fn working(&mut self, _: &str, _: f64) {
+impl Monitor for Patience {
+    fn working(&mut self, _: &dyn Display, _: f64) {
         self.solves += 1;
-        assert!(self.solves <= MANY + 1, "asked to stop, it went on");
+        assert!(
+            self.solves <= MANY + 1,
+            "the run went on after it was cancelled"
+        );
     }
-    fn stop(&mut self) -> bool {
+    fn is_cancelled(&self) -> bool {
         self.solves >= MANY
     }
+}
+
+/// Checks the numbers of an accepted state.
+fn check(row: &Row) {
+    assert!(row.min_det_fe > 0.0);
+    assert!(row.energy >= -1e-12, "{}", row.energy);
+    assert!(!row.in_equilibrium || row.residual <= 1e-6 || row.method == Method::Rest);
 }
 
 /// The floating-point numbers in a file of VTK as Plica writes it: columns in packed blocks, behind a head in XML.
@@ -214,7 +224,8 @@ fn numbers(file: &[u8]) -> Vec<f64> {
 /// Runs a case and looks at what it leaves; how it ended.
 fn run(plan: &Plan, text: &str, path: &Path) -> Ending {
     let mut directory = RunDirectory::create(path, text, "", true).unwrap();
-    let summary = study::run(plan, &mut directory, &mut Patience::default()).unwrap();
+    let summary = run_directory::run(plan, &mut directory, &mut Patience::default()).unwrap();
+    summary.rows().iter().for_each(check);
     let rows = directory.history().unwrap_or_default();
     let states = directory.states().unwrap();
     assert_eq!(rows.len(), states.len());
@@ -228,7 +239,7 @@ fn run(plan: &Plan, text: &str, path: &Path) -> Ending {
     }
     if let (Some(row), Some(state)) = (rows.last(), states.last()) {
         let state = SavedState::read(state).unwrap();
-        state.belongs_to(plan).unwrap();
+        plan.accepts(&state).unwrap();
         // The inside of a whole tube that is not round takes too long.
         let round = plan.mesh.rings(plan.symmetry) == 1;
         for what in [Geometry::Walls, Geometry::Linear] {
@@ -272,8 +283,8 @@ fn sound_cases_run_or_end_with_a_reason() {
         let running = std::panic::AssertUnwindSafe(|| run(&plan, &text, &path));
         match std::panic::catch_unwind(running) {
             Ok(Ending::Complete) => ended[0] += 1,
-            Ok(Ending::Lost { error, .. }) => {
-                assert!(!error.attempts.is_empty());
+            Ok(Ending::Lost(lost)) => {
+                assert!(!lost.error.attempts.is_empty());
                 ended[1] += 1;
             }
             Ok(Ending::Stopped) => ended[2] += 1,
@@ -295,9 +306,9 @@ fn a_number_that_is_none_ends_a_run_as_lost() {
     plan.units.as_mut().unwrap().diameter = f64::NAN;
     let path = std::env::temp_dir().join(format!("plica-none-{}", std::process::id()));
     let mut directory = RunDirectory::create(&path, case, "", true).unwrap();
-    let ended = study::run(&plan, &mut directory, &mut Patience::default());
-    assert!(matches!(ended, Err(study::StudyError::NoNumber { .. })));
-    assert_eq!(directory.verdict(), "lost");
+    let ended = run_directory::run(&plan, &mut directory, &mut Patience::default());
+    assert!(matches!(ended, Err(RunError::NotFinite { .. })));
+    assert_eq!(directory.verdict(), Verdict::Lost);
     let manifest = std::fs::read_to_string(path.join("manifest.json")).unwrap();
     assert!(
         manifest.contains("NaN") && manifest.contains("of row 0"),

@@ -26,9 +26,13 @@ pub mod matrix;
 pub mod measure;
 pub mod monitor;
 pub mod rings;
+pub mod run_directory;
+pub mod saved_state;
 pub mod solve;
 pub mod spline;
 pub mod stability;
 pub mod study;
 pub mod tensor;
 pub mod tube;
+
+pub use study::Study;

@@ -9,7 +9,8 @@ mod common;
 
 use common::{Chance, files, root};
 use plica::case;
-use plica::study::{Checkpoint, SavedState};
+use plica::run_directory::Checkpoint;
+use plica::saved_state::SavedState;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
@@ -183,19 +184,12 @@ fn checkpoint() -> Vec<u8> {
         [[stages]]\nsteps = 2\ndrive.circular.diameter_ratio = 0.95\n[output]\npictures = false\n";
     let plan = case::read(case, "small").unwrap();
     let path = std::env::temp_dir().join(format!("plica-fuzz-{}", std::process::id()));
-    let mut directory = plica::study::RunDirectory::create(&path, case, "", true).unwrap();
-    plica::study::run(&plan, &mut directory, &mut Nobody).unwrap();
+    let mut directory = plica::run_directory::RunDirectory::create(&path, case, "", true).unwrap();
+    plica::run_directory::run(&plan, &mut directory, &mut ()).unwrap();
     let bytes = std::fs::read(path.join("checkpoint.safetensors")).unwrap();
     std::fs::remove_dir_all(path).unwrap();
     assert!(SavedState::from_bytes(&bytes).is_ok());
     bytes
-}
-
-struct Nobody;
-
-impl plica::study::Observer for Nobody {
-    fn accepted(&mut self, _: &plica::study::Row) {}
-    fn working(&mut self, _: &str, _: f64) {}
 }
 
 /// Gives a mutation the checksum that it would have, so that what lies behind it is reached.

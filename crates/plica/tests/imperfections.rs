@@ -1,37 +1,22 @@
 //! Small imperfections grow where the perfect tube is about to lose stability.
 
 use plica::assembly::SplineTube;
-use plica::study::{self, Observer, Row, RunDirectory};
-
-/// An observer that does nothing.
-struct Nobody;
-
-impl Observer for Nobody {
-    fn accepted(&mut self, _: &Row) {}
-    fn working(&mut self, _: &str, _: f64) {}
-}
+use plica::study::{State, Study};
 
 /// Runs a case. Returns for every state the length ratio and the largest displacement of the inner wall since the first state in
 /// circumferential mode n, by its parts in phase with cos nφ and sin nφ.
 fn waves(name: &str, case: &str, n: usize) -> Vec<(f64, [f64; 2])> {
     let plan = plica::case::read(case, name).unwrap();
     let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
-    let path = std::env::temp_dir().join(format!("plica-{name}-{}", std::process::id()));
-    let mut directory = RunDirectory::create(&path, case, "", true).unwrap();
-    let summary = study::run(&plan, &mut directory, &mut Nobody).unwrap();
-    std::fs::remove_dir_all(&path).unwrap();
-    assert!(summary.finished(), "{}", summary.ending());
-    let rest = &summary.snapshots()[0].as_ref().unwrap().u;
-    let states = summary
-        .rows()
-        .iter()
-        .zip(summary.snapshots().iter().flatten());
-    states
-        .map(|(row, state)| {
-            let moved: Vec<f64> = state.u.iter().zip(rest).map(|(u, r)| u - r).collect();
-            (row.length_ratio, largest_wave(&tube, &moved, n))
-        })
-        .collect()
+    let states: Result<Vec<State>, _> = Study::new(&plan).unwrap().collect();
+    let states = states.unwrap();
+    let rest = &states[0].unknowns;
+    let waves = states.iter().map(|state| {
+        let displacement = state.unknowns.iter().zip(rest);
+        let displacement: Vec<f64> = displacement.map(|(u, r)| u - r).collect();
+        (state.length_ratio(), largest_wave(&tube, &displacement, n))
+    });
+    waves.collect()
 }
 
 /// Returns the amplitudes of these waves.

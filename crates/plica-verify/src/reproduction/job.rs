@@ -76,7 +76,7 @@ impl Job {
     /// From a state of another run.
     #[must_use]
     pub fn from(self, run: &str, state: usize) -> Self {
-        let file = plica::study::RunDirectory::name_of_state(state);
+        let file = plica::run_directory::RunDirectory::name_of_state(state);
         self.with("start.state", format!("\"../{run}/{file}\""))
     }
 

@@ -2,6 +2,7 @@
 
 use super::runs::Ran;
 use super::{Figure, Fineness};
+use plica::run_directory;
 use plica::solve::Scheme;
 use plica::study::Row;
 use std::fmt::Write;
@@ -60,7 +61,7 @@ pub struct Took {
     solves: usize,
     cg_iterations: usize,
     seconds: f64,
-    verdict: String,
+    verdict: run_directory::Verdict,
     gap: String,
     lumen: String,
 }
@@ -220,7 +221,7 @@ impl Page {
             solves: ran.solves(),
             cg_iterations: ran.cg_iterations(),
             seconds: ran.seconds(),
-            verdict: ran.verdict.clone(),
+            verdict: ran.verdict,
             gap: Nearest::of(&ran.rows, |row| row.gap).told(plan.tube.thickness),
             lumen: Nearest::of(&ran.rows, |row| row.lumen).told(2.0 * plan.tube.inner_radius()),
         });
@@ -262,7 +263,7 @@ impl Page {
         }
         page += "\n## What was run\n\n";
         let rows = self.took.iter().map(|took| {
-            let lost = if took.verdict == "complete" {
+            let lost = if took.verdict == run_directory::Verdict::Complete {
                 ""
             } else {
                 " (lost)"

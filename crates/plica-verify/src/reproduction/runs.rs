@@ -5,9 +5,13 @@ use super::{Observer, Trouble};
 use plica::assembly::SplineTube;
 use plica::case::{self, Wanted};
 use plica::measure::{Face, Meridians, Wall};
-use plica::study::{self, Ending, Plan, Row, RunDirectory, SavedState, StudyError};
+use plica::monitor::Monitor;
+use plica::run_directory::{self, RunDirectory, RunError, Verdict};
+use plica::saved_state::SavedState;
+use plica::study::{Ending, Plan, Row};
 use rayon::ThreadPoolBuilder;
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -25,7 +29,7 @@ pub struct Ran {
     /// Its accepted states.
     pub rows: Vec<Row>,
     /// `complete`, or `lost` if the tube could not be followed to the end.
-    pub verdict: String,
+    pub verdict: Verdict,
     tube: SplineTube,
     directory: PathBuf,
 }
@@ -126,8 +130,8 @@ fn opened(job: &Job, folder: &Path) -> Option<Ran> {
     let text = job.text();
     let same = directory.case_hash() == blake3::hash(text.as_bytes()).to_string();
     let verdict = directory.verdict();
-    let ended = ["complete", "lost"].contains(&verdict.as_str());
-    if !same || !ended || directory.written_by() != env!("CARGO_PKG_VERSION") {
+    let ended = matches!(verdict, Verdict::Complete | Verdict::Lost);
+    if !same || !ended || directory.version() != env!("CARGO_PKG_VERSION") {
         return None;
     }
     let plan = plan(job, &text, folder).ok()?;
@@ -137,7 +141,7 @@ fn opened(job: &Job, folder: &Path) -> Option<Ran> {
     let every = plan.output.states_every;
     let is_saved =
         |row: &Row| every == 0 || !row.step.is_multiple_of(every) || saved.contains_key(&row.step);
-    if directory.states_told() != Some(rows.len()) || !rows.iter().all(is_saved) {
+    if directory.state_count() != Some(rows.len()) || !rows.iter().all(is_saved) {
         return None;
     }
     Some(Ran::new(job, plan, rows, verdict, directory.path()))
@@ -227,17 +231,20 @@ impl Queue<'_> {
         })?;
         let path = self.folder.join(&job.name);
         let directory = RunDirectory::create(&path, &text, &plan.title, true);
-        let trouble = |error: StudyError| error.to_string();
+        let trouble = |error: RunError| error.to_string();
         let mut directory = directory.map_err(trouble)?;
         let mut relay = Relay {
             monitor: &self.monitor,
             job,
         };
-        let summary = study::run(&plan, &mut directory, &mut relay).map_err(trouble)?;
+        let summary = run_directory::run(&plan, &mut directory, &mut relay).map_err(trouble)?;
         if matches!(summary.ending(), Ending::Stopped) {
             return Ok(None);
         }
-        let verdict = summary.ending().name().to_owned();
+        let verdict = match summary.ending() {
+            Ending::Complete => Verdict::Complete,
+            _ => Verdict::Lost,
+        };
         let rows = summary.rows().to_vec();
         Ok(Some(Ran::new(job, plan, rows, verdict, &path)))
     }
@@ -256,23 +263,21 @@ struct Relay<'a, 'b> {
     job: &'a Job,
 }
 
-impl study::Observer for Relay<'_, '_> {
-    fn accepted(&mut self, _: &Row) {}
-
-    fn working(&mut self, what: &str, fraction: f64) {
+impl Monitor for Relay<'_, '_> {
+    fn working(&mut self, activity: &dyn Display, fraction: f64) {
         let mut monitor = lock(self.monitor);
         let all = (monitor.done as f64 + fraction) / monitor.of.max(1) as f64;
-        let what = format!("{}: {what}", self.job.name);
+        let what = format!("{}: {activity}", self.job.name);
         monitor.observer.working(&what, all);
     }
 
-    fn stop(&mut self) -> bool {
+    fn is_cancelled(&self) -> bool {
         lock(self.monitor).stop()
     }
 }
 
 impl Ran {
-    fn new(job: &Job, plan: Plan, rows: Vec<Row>, verdict: String, directory: &Path) -> Self {
+    fn new(job: &Job, plan: Plan, rows: Vec<Row>, verdict: Verdict, directory: &Path) -> Self {
         let rings = plan.mesh.rings(plan.symmetry);
         Self {
             tube: SplineTube::new(&plan.tube, &plan.mesh, rings),

@@ -3,8 +3,8 @@
 use super::row::{Row, Tolerance, in_columns, in_markdown};
 use plica::assembly::Inverted;
 use plica::matrix::NoEigenpairs;
+use plica::run_directory::RunError;
 use plica::solve::PathError;
-use plica::study::StudyError;
 use plica_view::draw::{Chart, DrawError};
 
 /// Is told what goes on, and may ask to stop.
@@ -44,7 +44,7 @@ pub enum Trouble {
     Reference(#[from] super::one_dimension::Unbalanced),
     /// A run ended.
     #[error("{0}")]
-    Study(#[from] StudyError),
+    Study(#[from] RunError),
 }
 
 /// What was found so far.

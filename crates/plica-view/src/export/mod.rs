@@ -23,7 +23,8 @@ mod points;
 use crate::vtk::{Column, Document, Series};
 use fields::FIELDS;
 use plica::assembly::SplineTube;
-use plica::study::{Plan, Row, SavedState, Scale};
+use plica::saved_state::SavedState;
+use plica::study::{Plan, Row, Scale};
 use points::{Points, boundary_lattice, volume_lattice};
 
 /// Converts states of a run to VTK files.

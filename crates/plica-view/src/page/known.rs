@@ -48,7 +48,7 @@ impl Known {
             name: run.name.clone(),
             scene,
             stages: run.rows.iter().map(|row| row.stage.clone()).collect(),
-            shapes: run.rows.iter().map(|row| row.shape.clone()).collect(),
+            shapes: run.rows.iter().map(|row| row.shape.to_string()).collect(),
             beware: run.rows.iter().map(words::beware).collect(),
             columns: all.chain(eigenvalues(run).iter().map(plotted)).collect(),
         }

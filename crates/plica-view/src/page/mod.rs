@@ -29,7 +29,9 @@ use crate::report::{Column, upright};
 use known::Known;
 use minijinja::value::{Serde, Value};
 use minijinja::{Environment, context};
-use plica::study::{Plan, Row, RunDirectory, SavedState, Scale};
+use plica::run_directory::RunDirectory;
+use plica::saved_state::SavedState;
+use plica::study::{Plan, Row, Scale};
 use sheet::Sheet;
 use stops::Parts;
 

@@ -7,6 +7,7 @@ use crate::draw::label;
 use crate::report::{Column, Role};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use plica::run_directory::Verdict;
 use plica::study::{Findings, Row, Scale};
 use serde::Serialize;
 
@@ -78,9 +79,9 @@ impl Sheet {
         let line = |(i, row): (usize, &Row)| Line {
             step: row.step,
             stage: row.stage.clone(),
-            shape: row.shape.clone(),
-            unstable: row.unstable_modes.clone(),
-            method: row.method.clone(),
+            shape: row.shape.to_string(),
+            unstable: row.stability.to_string(),
+            method: row.method.to_string(),
             numbers: tabled.iter().map(|c| number(c.values[i])).collect(),
             drawn: known.scene.rows.contains(&row.step),
         };
@@ -101,7 +102,7 @@ impl Sheet {
             name: run.name.clone(),
             title: run.plan.title.clone(),
             headline: words::headline(run, &findings),
-            complete: run.directory.verdict() == "complete",
+            complete: run.directory.verdict() == Verdict::Complete,
             findings: findings.lines().into_iter().map(set).collect(),
             warnings: words::warnings(run, &known.scene),
             all_well: words::all_well(run),

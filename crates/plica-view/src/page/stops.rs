@@ -1,6 +1,7 @@
 //! Which states of several runs are shown together.
 
-use plica::study::{Row, SavedState, Scale};
+use plica::saved_state::SavedState;
+use plica::study::{Row, Scale};
 use std::collections::BTreeMap;
 
 /// How near states count as equally near, in what loads vary by: then the one as far along its path is taken.

@@ -3,13 +3,17 @@
 use super::Run;
 use super::scene::Scene;
 use crate::report::VISIBLE;
-use plica::study::{Findings, Row, named};
+use plica::equilibrium::{Stability, UnstableMode};
+use plica::measure::{Shape, Side};
+use plica::run_directory::Verdict;
+use plica::solve::Method;
+use plica::study::{Findings, Row};
 use plica::tube::Symmetry;
 use std::collections::BTreeMap;
 
 /// How the run ended and what the tube did.
 pub fn headline(run: &Run<'_>, findings: &Findings<'_>) -> String {
-    let told = run.directory.states_told().unwrap_or(0);
+    let told = run.directory.state_count().unwrap_or(0);
     let missing = told.saturating_sub(run.rows.len());
     if missing > 0 {
         return format!(
@@ -17,11 +21,11 @@ pub fn headline(run: &Run<'_>, findings: &Findings<'_>) -> String {
             run.rows.len()
         );
     }
-    let ended = match run.directory.verdict().as_str() {
-        "complete" => "Every stage was done.",
-        "lost" => "The tube could not be followed to the end.",
-        "stopped" => "The run was stopped before its end.",
-        _ => "The run has not ended, or was killed.",
+    let ended = match run.directory.verdict() {
+        Verdict::Complete => "Every stage was done.",
+        Verdict::Lost => "The tube could not be followed to the end.",
+        Verdict::Stopped => "The run was stopped before its end.",
+        Verdict::Running => "The run has not ended, or was killed.",
     };
     let mut sentences = vec![ended.to_owned()];
     if let Some(last) = run.rows.last() {
@@ -34,10 +38,10 @@ pub fn headline(run: &Run<'_>, findings: &Findings<'_>) -> String {
 /// What became of the tube.
 fn did(last: &Row, findings: &Findings<'_>) -> Vec<String> {
     let unit = &findings.scale.length_name;
-    let shape = match (findings.side(), last.shape.as_str()) {
-        ("none", shape) => format!("At its last state the tube is {}.", shaped(shape)),
+    let shape = match (findings.side(), last.shape) {
+        (Side::None, shape) => format!("At its last state the tube is {}.", shaped(shape)),
         (side, _) => format!(
-            "The tube invaginates toward the {side}, {:.3} {unit} deep.",
+            "The tube invaginates toward the {side}, with an overhang of {:.3} {unit}.",
             last.overhang
         ),
     };
@@ -64,31 +68,31 @@ pub fn beware(row: &Row) -> Option<&'static str> {
         Some("its wall crosses itself, which is not physical")
     } else if row.has_closed() {
         Some("its lumen is closed, and what walls do there is not physical")
-    } else if row.equilibrium == "no" {
+    } else if !row.in_equilibrium {
         Some("it is not in equilibrium")
     } else {
         None
     }
 }
 
-fn shaped(shape: &str) -> String {
+fn shaped(shape: Shape) -> String {
     match shape {
-        "V" | "U" => format!("narrowed to a {shape}"),
-        "square" => "narrowed, with square walls".into(),
-        other => other.to_owned(),
+        Shape::V | Shape::U => format!("narrowed to a {shape}"),
+        Shape::Square => "narrowed, with square walls".into(),
+        other => other.to_string(),
     }
 }
 
 /// The harmonics that are lost, with the states they are lost at.
 fn unstable(run: &Run<'_>) -> Option<String> {
-    let mut lost: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    let mut lost: BTreeMap<UnstableMode, Vec<usize>> = BTreeMap::new();
     for row in run.rows {
-        for harmonic in row.lost_harmonics().filter(|n| *n != "unknown") {
-            lost.entry(harmonic).or_default().push(row.step);
+        for mode in row.stability.unstable_modes() {
+            lost.entry(mode).or_default().push(row.step);
         }
     }
-    let told = (lost.iter())
-        .map(|(harmonic, steps)| format!("to {} in {}", named(harmonic), states(steps)));
+    let told =
+        (lost.iter()).map(|(mode, steps)| format!("to {} in {}", mode.describe(), states(steps)));
     let told: Vec<String> = told.collect();
     (!told.is_empty()).then(|| format!("Its path is unstable {}.", told.join(", and ")))
 }
@@ -106,11 +110,12 @@ fn states(steps: &[usize]) -> String {
 }
 
 /// Whether the run itself can go the way of a harmonic, or its symmetry keeps it from that.
-fn own(symmetry: Symmetry, harmonic: &str) -> bool {
-    match (symmetry, harmonic.parse::<usize>()) {
-        (_, Err(_)) | (Symmetry::None, _) | (_, Ok(0)) => true,
+fn own(symmetry: Symmetry, mode: UnstableMode) -> bool {
+    use UnstableMode::{Circumferential, Lowest};
+    match (symmetry, mode) {
+        (_, Lowest | Circumferential(0)) | (Symmetry::None, _) => true,
         (Symmetry::Axisymmetric, _) => false,
-        (Symmetry::Fold(m), Ok(n)) => n % m == 0,
+        (Symmetry::Fold(m), Circumferential(n)) => n % m == 0,
     }
 }
 
@@ -118,13 +123,13 @@ fn own(symmetry: Symmetry, harmonic: &str) -> bool {
 pub fn warnings(run: &Run<'_>, scene: &Scene) -> Vec<String> {
     let mut warnings = vec![];
     let manifest = run.directory.manifest();
-    if run.directory.verdict() != "complete" {
+    if run.directory.verdict() != Verdict::Complete {
         let text = manifest["verdict_text"].as_str();
         let text = text.unwrap_or("the run has not ended (or was killed)");
         warnings.push(format!("{}.", capital(text)));
     }
     warnings.extend(of_states(run.rows, run.plan.symmetry));
-    let version = run.directory.written_by();
+    let version = run.directory.version();
     let program = env!("CARGO_PKG_VERSION");
     if version != program {
         warnings.push(format!(
@@ -176,7 +181,7 @@ fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
         }
     };
     those(
-        &|row| row.equilibrium == "no",
+        &|row| !row.in_equilibrium,
         "accepted out of equilibrium, as the case's scheme allows.",
     );
     those(
@@ -188,12 +193,12 @@ fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
         "the lumen is closed; nothing holds opposite walls apart, and what they do there is not physical.",
     );
     those(
-        &|row| row.method == "relaxation" && row.step > 0,
+        &|row| row.method == Method::Relaxation && row.step > 0,
         "found by relaxation after Newton's way along the path had failed: on another branch, it may be, than the state before.",
     );
     let lost = |row: &Row, to_own: bool| {
-        let mut lost = row.lost_harmonics().filter(|n| *n != "unknown");
-        lost.any(|n| own(symmetry, n) == to_own)
+        let mut modes = row.stability.unstable_modes();
+        modes.any(|mode| own(symmetry, mode) == to_own)
     };
     those(
         &|row| lost(row, true),
@@ -204,7 +209,7 @@ fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
         "unstable to harmonics that the run's symmetry keeps from growing; a whole tube would leave them.",
     );
     those(
-        &|row| row.lost_harmonics().any(|n| n == "unknown"),
+        &|row| row.stability == Stability::Unknown,
         "not shown to be stable or unstable.",
     );
     warnings
@@ -270,7 +275,7 @@ mod tests {
         };
         for (change, symmetry, words) in [
             (
-                (|row| row.equilibrium = "no".into()) as fn(&mut Row),
+                (|row| row.in_equilibrium = false) as fn(&mut Row),
                 Symmetry::None,
                 "out of equilibrium",
             ),
@@ -281,42 +286,42 @@ mod tests {
                 "the lumen is closed",
             ),
             (
-                |row| row.method = "relaxation".into(),
+                |row| row.method = Method::Relaxation,
                 Symmetry::None,
                 "another branch",
             ),
             (
-                |row| row.unstable_modes = "unknown".into(),
+                |row| row.stability = "unknown".parse().unwrap(),
                 Symmetry::None,
                 "not shown to be",
             ),
             (
-                |row| row.unstable_modes = "any:1".into(),
+                |row| row.stability = "any:1".parse().unwrap(),
                 Symmetry::None,
                 "saddles",
             ),
             (
-                |row| row.unstable_modes = "1:2".into(),
+                |row| row.stability = "1:2".parse().unwrap(),
                 Symmetry::None,
                 "saddles",
             ),
             (
-                |row| row.unstable_modes = "0:1".into(),
+                |row| row.stability = "0:1".parse().unwrap(),
                 Symmetry::Axisymmetric,
                 "saddles",
             ),
             (
-                |row| row.unstable_modes = "1:2".into(),
+                |row| row.stability = "1:2".parse().unwrap(),
                 Symmetry::Axisymmetric,
                 "keeps from growing",
             ),
             (
-                |row| row.unstable_modes = "4:2".into(),
+                |row| row.stability = "4:2".parse().unwrap(),
                 Symmetry::Fold(2),
                 "saddles",
             ),
             (
-                |row| row.unstable_modes = "3:2".into(),
+                |row| row.stability = "3:2".parse().unwrap(),
                 Symmetry::Fold(2),
                 "keeps from growing",
             ),

@@ -7,7 +7,9 @@ use super::walls::{Wall, walls};
 use super::{Field, Story};
 use crate::draw::{Chart, Compression, Curve, Cutaway, DrawError, Marker, Panel, VerticalLine};
 use plica::assembly::SplineTube;
-use plica::study::{Plan, Row, Scale, Snapshot, Summary};
+use plica::measure::Shape;
+use plica::run_directory::{Snapshot, Summary};
+use plica::study::{Plan, Row, Scale};
 use rayon::prelude::*;
 
 /// Width of the pictures of a run, in pixels: a first look, for which somebody waits.
@@ -66,7 +68,7 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
     let x = |row: &Row| story.abscissa.of(row);
     let within = |row: &&Row| story.rows.iter().any(|r| r.step == row.step);
     let minimum = summary.findings().energy_minimum().filter(within);
-    let rule = |shape: &str, label: &str| {
+    let rule = |shape: Shape, label: &str| {
         let row = story.rows.iter().find(|row| row.shape == shape)?;
         Some(VerticalLine {
             at: x(row),
@@ -90,9 +92,9 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
             })
             .into_iter()
             .collect(),
-        vertical_lines: rule("square", "square")
+        vertical_lines: rule(Shape::Square, "square")
             .into_iter()
-            .chain(rule("invaginated", "overhang"))
+            .chain(rule(Shape::Invaginated, "overhang"))
             .collect(),
         ..Chart::default()
     }

@@ -5,8 +5,9 @@ use crate::draw::{
     REAR_HALF, Range, Stroke, Surface, VerticalLine,
 };
 use plica::assembly::{Point, SplineTube};
+use plica::equilibrium::mode_effect;
 use plica::stability::{Change, How, Mode, Quantity, Stability, Station};
-use plica::study::{Plan, effect};
+use plica::study::Plan;
 use plica::tube::Tube;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -195,7 +196,10 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
         panels: vec![
             panel(format!("{at}, where it loses harmonic {n}"), &half, 0.0),
             panel(
-                format!("it {} (drawn to an amplitude of {VISIBLE} *D*)", effect(n)),
+                format!(
+                    "it {} (drawn to an amplitude of {VISIBLE} *D*)",
+                    mode_effect(n)
+                ),
                 &half,
                 VISIBLE,
             ),

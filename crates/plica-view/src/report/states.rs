@@ -9,7 +9,8 @@ use crate::draw::{
     Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Surface, VerticalLine, animation,
 };
 use plica::assembly::SplineTube;
-use plica::study::{Plan, Row, SavedState, Scale};
+use plica::saved_state::SavedState;
+use plica::study::{Plan, Row, Scale};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

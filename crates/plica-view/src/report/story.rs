@@ -2,7 +2,9 @@
 
 use super::columns::unit;
 use crate::draw::format_number;
-use plica::study::{Row, Scale, Summary};
+use plica::measure::Shape;
+use plica::run_directory::Summary;
+use plica::study::{Row, Scale};
 
 /// What changes along a path: the abscissa of its charts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +113,12 @@ impl<'a> Story<'a> {
         let mut chosen: Vec<&Row> = first.into_iter().collect();
         let inside = |row: &&Row| rows.iter().any(|r| r.step == row.step);
         chosen.extend(summary.findings().energy_minimum().filter(inside));
-        chosen.extend(rows.iter().rev().find(|row| row.shape == "square").copied());
+        chosen.extend(
+            rows.iter()
+                .rev()
+                .find(|row| row.shape == Shape::Square)
+                .copied(),
+        );
         chosen.extend(rows.last().copied());
         chosen.sort_by_key(|row| row.step);
         chosen.dedup_by_key(|row| row.step);

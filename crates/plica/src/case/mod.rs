@@ -60,7 +60,8 @@ pub use schema::schema;
 pub use starter::STARTER;
 pub use table::KEYS;
 
-use crate::study::{Plan, SavedState, SavedStateError};
+use crate::saved_state::{SavedState, SavedStateError};
+use crate::study::Plan;
 use problem::Problems;
 use serde::Deserialize;
 use toml::de::{DeTable, Deserializer};

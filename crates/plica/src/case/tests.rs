@@ -3,7 +3,7 @@
 use super::keys::{Given, Kind, Limit};
 use super::spec::*;
 use super::*;
-use crate::study::{Array, Layout};
+use crate::saved_state::{Array, Layout};
 use crate::tube;
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -6,8 +6,10 @@ mod problem;
 mod prolong;
 mod spare;
 mod stability;
+mod verdict;
 
 pub use harmonic_tangent::HarmonicTangent;
 pub use problem::TubeProblem;
 pub use prolong::prolong;
-pub use stability::unstable_modes;
+pub use stability::test_stability;
+pub use verdict::{Instability, Stability, UnstableMode, mode_effect};

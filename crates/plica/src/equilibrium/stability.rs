@@ -1,8 +1,9 @@
-//! Which circumferential harmonics an axisymmetric state is unstable to, and whether the lowest
-//! eigenvalue of any other state is negative.
+//! The stability test of a state: the circumferential modes that an axisymmetric state is unstable to, and the sign of
+//! the lowest eigenvalue of any other state.
 
 use super::lowest_modes::Noise;
 use super::problem::{TubeSolver, TubeTangent};
+use super::verdict::{Instability, Stability, UnstableMode};
 use super::{TubeProblem, harmonic_tangent::HarmonicSystem};
 use crate::assembly::SplineTube;
 use crate::monitor::Monitor;
@@ -11,35 +12,32 @@ use crate::tube::Load;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Circumferential displacement, in D, from which a tube counts as twisted.
+/// Smallest circumferential displacement of a twisted tube, in D.
 const TWISTED: f64 = 1e-9;
 
-/// Displacement from ring to ring, in D, up to which a tube counts as axisymmetric.
+/// Largest difference of displacements between rings of an axisymmetric tube, in D.
 const ROUND: f64 = 1e-9;
 
-/// Iterations in which the sign of the lowest eigenvalue should show.
+/// Iterations allowed to determine the sign of the lowest eigenvalue.
 const ITERATIONS: usize = 80;
 
-/// Negative eigenvalues of the tangent, harmonic by harmonic, as `harmonic:count`, or none.
+/// Tests the stability of the state of a path.
 ///
-/// For an axisymmetric state without twist the harmonics 0 to `harmonics` are looked at, whatever
-/// the symmetry of the run: in an axisymmetric run 0 is the run's own tangent, all others are blocks
-/// of the whole tube's (1 tilts or shifts sideways, 2 turns oval, and so on). Of any other state only
-/// the run's own tangent is, whose eigenvalues cannot be told apart by harmonic: of an axisymmetric
-/// run that is twisted `0:count` lists all of them; else `any:1` tells that the lowest is negative, and
-/// `unknown` that its sign did not show in the iterations that it may take, or was not looked for,
-/// `harmonics` being zero.
+/// An axisymmetric state without twist is tested against the circumferential modes 0 to `modes`,
+/// whatever the symmetry of the run: in an axisymmetric run, mode 0 is the run's own tangent and all
+/// others are blocks of the tangent of the whole tube. For any other state only the run's own tangent
+/// is tested, whose eigenvalues do not separate by mode: for a twisted axisymmetric run all of them count
+/// for mode 0; otherwise the verdict says whether the lowest eigenvalue is negative. It is
+/// [`Stability::Unknown`] if its sign did not show within [`ITERATIONS`], if the monitor cancelled, or if
+/// `modes` is zero, which skips the test.
 ///
-/// What the path solves with at its state is made use of, and made if need be.
-///
-/// A search reports to `monitor` after every iteration; a sign that did not show before it was
-/// cancelled is `unknown`.
-pub fn unstable_modes(
+/// Uses the solver that the path has at its state, and makes it if needed.
+pub fn test_stability(
     problem: &TubeProblem,
     path: &mut Path<impl Equilibrium<Load = Load, Tangent = TubeTangent>>,
-    harmonics: usize,
+    modes: usize,
     monitor: &mut dyn Monitor,
-) -> String {
+) -> Stability {
     let tube = &problem.tube;
     let (own, k) = (path.state().negative_pivots, tube.sector.rings);
     let u = &path.state().u;
@@ -51,24 +49,27 @@ pub fn unstable_modes(
     let of_ring: Vec<f64> = u.iter().step_by(k).copied().collect();
     let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
     if !round || (twisted && k > 1) {
-        let lost = match (own, path.solver()) {
-            (0, _) if harmonics == 0 => None,
+        let unstable = match (own, path.solver()) {
+            (0, _) if modes == 0 => None,
             (0, Some(TubeSolver::Harmonic(system))) => lowest_is_negative(tube, system, monitor),
             (0, _) => None,
             _ => Some(true),
         };
-        return match lost {
-            Some(true) => format!("any:{}", own.max(1)),
-            Some(false) => "none".into(),
-            None => "unknown".into(),
+        return match unstable {
+            Some(true) => Stability::Unstable(vec![Instability {
+                mode: UnstableMode::Lowest,
+                eigenvalues: own.max(1),
+            }]),
+            Some(false) => Stability::Stable,
+            None => Stability::Unknown,
         };
     }
-    let looked_at = if twisted {
+    let highest = if twisted {
         0
     } else {
-        harmonics.min((tube.sector.around - 1) / 2)
+        modes.min((tube.sector.around - 1) / 2)
     };
-    // Harmonics of the sector are those of the run's own tangent.
+    // The harmonics of the cyclic sector are those of the run's own tangent.
     let repeats = tube.sector.around / k;
     let known = match path.solver() {
         Some(TubeSolver::Harmonic(system)) => system.negative_in_harmonics(),
@@ -91,29 +92,32 @@ pub fn unstable_modes(
             n => ring.harmonic_tangent(load, &of_ring, n),
         };
         tangent.constrain(&ring.prescribed_in_harmonic(n));
-        // A singular block is at the edge of stability; it counts as lost.
+        // A singular block is at the limit of stability and counts as unstable.
         tangent
             .factor()
             .map_or(1, |factor| factor.negative_pivots())
     };
-    let counts: Vec<(usize, usize)> = (0..=looked_at)
+    let counts: Vec<(usize, usize)> = (0..=highest)
         .into_par_iter()
         .map(|n| (n, negative(n)))
         .collect();
-    let lost: Vec<String> = counts
-        .iter()
-        .filter(|(_, count)| *count > 0)
-        .map(|(n, count)| format!("{n}:{count}"))
+    let unstable: Vec<Instability> = counts
+        .into_iter()
+        .filter(|(_, eigenvalues)| *eigenvalues > 0)
+        .map(|(n, eigenvalues)| Instability {
+            mode: UnstableMode::Circumferential(n),
+            eigenvalues,
+        })
         .collect();
-    if lost.is_empty() {
-        "none".into()
+    if unstable.is_empty() {
+        Stability::Stable
     } else {
-        lost.join(" ")
+        Stability::Unstable(unstable)
     }
 }
 
-/// Whether the lowest eigenvalue of the tangent of a state that is not round is negative, as far as
-/// that can be told.
+/// Returns whether the lowest eigenvalue of the tangent of a state that is not axisymmetric is negative; none if its sign
+/// was not determined.
 fn lowest_is_negative(
     tube: &SplineTube,
     system: &HarmonicSystem,
@@ -217,9 +221,10 @@ mod tests {
                 let average = system.average_is_indefinite();
                 assert!(!average || negative > 0);
                 assert_eq!(path.state().negative_pivots, usize::from(average));
-                let told = unstable_modes(&problem, &mut path, 4, &mut ());
-                println!("{rings} {pressure}: {negative} negative, {average}, {told}");
-                assert_eq!(told, if negative > 0 { "any:1" } else { "none" });
+                let verdict = test_stability(&problem, &mut path, 4, &mut ());
+                println!("{rings} {pressure}: {negative} negative, {average}, {verdict}");
+                assert_eq!(verdict.is_unstable(), negative > 0);
+                assert_ne!(verdict, Stability::Unknown);
                 seen[usize::from(negative > 0) + usize::from(average)] += 1;
             }
         }

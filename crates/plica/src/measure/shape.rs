@@ -4,7 +4,8 @@ use super::Wall;
 use crate::tube::Tube;
 
 /// The side a tube invaginates to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// Toward z = 0.
     Colon,
@@ -18,13 +19,16 @@ pub enum Side {
 /// measure; these thresholds are ours). V, U, square and invaginated are shapes of a tube that its
 /// circular muscles narrow; without them a tube that leaves its cylinder has
 /// swollen, in one bulge outwards, or else collapsed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Shape {
     /// The outer face stays within 2 % of D of the cylinder, or its circular muscles widen it.
     Straight,
     /// Narrowed, with a pointed bottom: flatness below 0.5, that of a raised cosine.
+    #[serde(rename = "V")]
     V,
     /// Narrowed, with a rounded bottom.
+    #[serde(rename = "U")]
     U,
     /// Narrowed, with a wall steeper than 78°.
     Square,

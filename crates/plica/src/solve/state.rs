@@ -40,8 +40,9 @@ pub struct Solution {
     pub damping_work: f64,
 }
 
-/// The method that found a state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Method by which a state was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// None: the path begins at this state.
     Rest,

@@ -1,7 +1,8 @@
 //! Why the stability of a run cannot be told.
 
 use crate::matrix::NoEigenpairs;
-use crate::study::{SavedStateError, StudyError};
+use crate::run_directory::RunError;
+use crate::saved_state::SavedStateError;
 use std::path::PathBuf;
 
 /// What can go wrong.
@@ -89,7 +90,7 @@ pub enum StabilityError {
     },
     /// Something about the run directory.
     #[error(transparent)]
-    Study(#[from] StudyError),
+    Study(#[from] RunError),
     /// Someone asked to stop.
     #[error("stopped on request; nothing was written")]
     Stopped,

@@ -9,8 +9,10 @@ use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
 use crate::matrix::NoEigenpairs;
 use crate::monitor::Part;
+use crate::run_directory::RunDirectory;
+use crate::saved_state::SavedState;
 use crate::solve::{Path, Scheme, Settings};
-use crate::study::{Plan, RunDirectory, SavedState};
+use crate::study::Plan;
 use std::path;
 
 /// Circumferential displacement, in D, from which a tube counts as twisted.
@@ -106,7 +108,7 @@ impl Follower<'_> {
             source,
         };
         let state = SavedState::read(file).map_err(trouble)?;
-        state.belongs_to(self.plan).map_err(trouble)?;
+        self.plan.accepts(&state).map_err(trouble)?;
         let twist = state.u.iter().skip(2).step_by(3);
         if twist.into_iter().any(|u| u.abs() > TWISTED) {
             return Err(StabilityError::Twisted { row: state.row });

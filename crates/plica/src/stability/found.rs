@@ -1,7 +1,7 @@
 //! What a test of stability finds.
 
 use super::{Quantity, Tested};
-use crate::study::SavedState;
+use crate::saved_state::SavedState;
 use crate::tube::Load;
 
 /// A place along the path that was tested: a saved state, or one end of a bracket.

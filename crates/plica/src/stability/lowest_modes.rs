@@ -6,8 +6,10 @@ use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
 use crate::monitor::{Monitor, Part};
 use crate::rings::Transform;
+use crate::run_directory::RunDirectory;
+use crate::saved_state::{Array, SavedState};
 use crate::solve::{EQUILIBRIUM, Equilibrium, Lowest, Search};
-use crate::study::{Array, Plan, RunDirectory, SavedState};
+use crate::study::Plan;
 use std::path::{Path, PathBuf};
 
 /// Relative residual to which eigenpairs are found; eigenvalues then are off by about its square.
@@ -114,7 +116,7 @@ fn read(plan: &Plan, problem: &TubeProblem, file: &Path) -> Result<SavedState, S
         source,
     };
     let state = SavedState::read(file).map_err(trouble)?;
-    state.belongs_to(plan).map_err(trouble)?;
+    plan.accepts(&state).map_err(trouble)?;
     let forces = problem.forces(&state.load, &state.u);
     let relative_residual =
         forces.map_or(f64::INFINITY, |f| f.relative_residual(problem.prescribed()));

@@ -1,7 +1,7 @@
 //! The lowest eigenvalues of states, as tables.
 
 use super::{Eigenvalue, Spectra, Spectrum};
-use crate::study::{RunDirectory, StudyError};
+use crate::run_directory::{RunDirectory, RunError};
 use crate::tube::Tube;
 use std::fmt::Write;
 
@@ -53,8 +53,8 @@ impl Spectra {
     /// Writes `eigenpairs.csv` into the directory of the run.
     ///
     /// # Errors
-    /// [`StudyError`] if the file cannot be written.
-    pub fn write(&self, tube: &Tube, directory: &RunDirectory) -> Result<String, StudyError> {
+    /// [`RunError`] if the file cannot be written.
+    pub fn write(&self, tube: &Tube, directory: &RunDirectory) -> Result<String, RunError> {
         let header = [
             "state",
             "stage",

@@ -1,6 +1,6 @@
 //! What is found of the lowest eigenpairs of a run's own tangent.
 
-use crate::study::SavedState;
+use crate::saved_state::SavedState;
 use crate::tube::Load;
 
 /// A saved state and the lowest eigenvalues of its tangent.

@@ -1,7 +1,9 @@
 //! What is found, as tables.
 
 use super::{Change, How, Stability, Station};
-use crate::study::{Array, RunDirectory, StudyError, effect, named};
+use crate::equilibrium::{UnstableMode, mode_effect};
+use crate::run_directory::{RunDirectory, RunError};
+use crate::saved_state::Array;
 use crate::tube::Tube;
 use std::fmt::Write;
 
@@ -71,7 +73,7 @@ impl Stability {
                 "  {:<width$}  {:>8}  {:<24}  {:<8}  {:>8}  {:<at$}  {:>wide$}  {from:>wide$}  {to:>wide$}",
                 change.stage,
                 change.harmonic,
-                effect(change.harmonic),
+                mode_effect(change.harmonic),
                 change.verb(),
                 format!("{before} > {after}"),
                 change.quantity.name(tube),
@@ -87,7 +89,10 @@ impl Stability {
                 how => format!("{name} = {from} to {to} ({})", how.name()),
             };
             let n = change.harmonic;
-            format!("{}, at {place}", named(&n.to_string()))
+            format!(
+                "{}, at {place}",
+                UnstableMode::Circumferential(n).describe()
+            )
         });
         let line = |page: &mut String, name: &str, value: &str| {
             let _ = writeln!(page, "  {name:<22} {value}");
@@ -102,8 +107,8 @@ impl Stability {
     /// gives their names.
     ///
     /// # Errors
-    /// [`StudyError`] if a file cannot be written.
-    pub fn write(&self, tube: &Tube, directory: &RunDirectory) -> Result<Vec<String>, StudyError> {
+    /// [`RunError`] if a file cannot be written.
+    pub fn write(&self, tube: &Tube, directory: &RunDirectory) -> Result<Vec<String>, RunError> {
         directory.clear_stability()?;
         let mut names = vec!["stability.csv".to_owned(), "eigenvalues.csv".to_owned()];
         directory.write_records(&names[0], self.critical_values(tube))?;
@@ -155,7 +160,7 @@ impl Stability {
                 format!("{number}"),
                 change.stage.clone(),
                 format!("{}", change.harmonic),
-                effect(change.harmonic),
+                mode_effect(change.harmonic),
                 change.verb().into(),
                 change.quantity.name(tube),
                 written(change.critical),

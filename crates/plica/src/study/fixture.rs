@@ -1,10 +1,11 @@
-//! A plan and its states for the tests of rooms that look at runs.
+//! A small plan and its states for tests.
 
-use super::{Layout, Output, Plan, SavedState};
+use super::{Output, Plan};
 use crate::assembly::SplineTube;
+use crate::saved_state::SavedState;
 use crate::tube::{Symmetry, fixture};
 
-/// The small tube of [`fixture`] under a symmetry, with nothing to do.
+/// The small tube of [`fixture`] under a symmetry, without stages.
 pub fn plan(symmetry: Symmetry) -> Plan {
     Plan {
         title: String::new(),
@@ -30,7 +31,7 @@ pub fn state(plan: &Plan, row: usize) -> SavedState {
         along: 0.0,
         muscles: vec![],
         load: plan.tube.rest(),
-        layout: Layout::of(plan),
+        layout: plan.layout(),
         u: tube.control_values(|z, r, _| [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * late)),
         arrays: Default::default(),
     }

@@ -128,15 +128,17 @@ fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
     seconds * whole as f64 / piece as f64
 }
 
-/// Refuses a study that the free memory of the machine does not hold, where the system tells
-/// (Linux). [`super::run`] asks this too; ask first if something would be lost by then.
-pub fn fits(plan: &Plan) -> Result<(), StudyError> {
+/// Refuses a study that needs more than the free memory of the machine, where the system reports it (Linux).
+///
+/// # Errors
+/// [`StudyError::OutOfMemory`].
+pub fn check_memory(plan: &Plan) -> Result<(), StudyError> {
     let (needed, Some(available)) = (memory_bytes(plan), available_memory()) else {
         return Ok(());
     };
     if needed > available {
         let gib = |bytes: u64| bytes as f64 / (1_u64 << 30) as f64;
-        return Err(StudyError::ContinuationState {
+        return Err(StudyError::OutOfMemory {
             needed_gib: gib(needed),
             available_gib: gib(available),
         });

@@ -1,40 +1,37 @@
-//! A study: a tube led through stages of load, state by accepted state, into a run directory.
+//! A study: a tube followed through stages of load, one accepted state after another, in memory.
+//!
+//! [`Study`] is an iterator of [`State`]s. It reads and writes no files; a run directory
+//! ([`crate::run_directory`]), a progress bar or a plot consumes its states.
+//!
+//! - [`Plan`]: the checked, dimensionless content of a case;
+//! - [`Study`] and [`State`]: the iterator and its items; [`Continuation`] resumes a study after a state;
+//! - [`Lost`]: where and why a tube could not be followed further;
+//! - [`Row`]: a state as a row of `history.csv`, in the units of the case;
+//! - [`Findings`]: statements about a whole path;
+//! - [`forecast`]: size and cost of a study before it runs.
 
-mod checkpoint;
-mod directory;
+mod changes;
 mod error;
 mod findings;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod forecast;
-mod harmonics;
-mod history;
-mod kept;
-mod layout;
-mod lock;
-mod manifest;
-mod mode;
-mod observer;
+mod lost;
 mod plan;
-mod record;
-mod run;
-mod saved_state;
-mod summary;
+mod row;
+mod start;
+mod state;
+mod study;
 mod units;
 
-pub use checkpoint::Checkpoint;
-pub use directory::RunDirectory;
+pub use changes::forbidden_changes;
 pub use error::StudyError;
 pub use findings::Findings;
-pub use forecast::{Forecast, fits, forecast};
-pub use harmonics::{effect, named};
-pub use history::Row;
-pub use kept::kept;
-pub use layout::Layout;
-pub use mode::NamedMode;
-pub use observer::Observer;
-pub use plan::{LengthUnit, Output, Plan, Stage, Start, StressUnit, Units};
-pub use run::{folded, resume, run};
-pub use saved_state::{Array, SavedState, SavedStateError};
-pub use summary::{Ending, Phase, Snapshot, Summary, Whereabouts};
+pub use forecast::{Forecast, check_memory, forecast};
+pub use lost::{Location, Lost, Phase};
+pub use plan::{LengthUnit, ModeShape, Output, Plan, Stage, Start, StressUnit, Units};
+pub use row::Row;
+pub use start::inverted_by_imperfections;
+pub use state::State;
+pub use study::{Continuation, Ending, Study};
 pub use units::Scale;

@@ -1,70 +1,80 @@
-//! What is to be computed: the checked content of a case file.
+//! The plan of a study: the checked, dimensionless content of a case.
 
-use super::{NamedMode, SavedState};
+use crate::saved_state::{Layout, SavedState, SavedStateError};
 use crate::solve::Settings;
 use crate::tube::{Load, Mesh, Pressure, Symmetry, Tube};
 use std::fmt;
 
-/// A whole study, checked and dimensionless.
+/// A checked, dimensionless study: lengths in D, stresses in E.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// One line of what it is, for titles.
+    /// Title, one line.
     pub title: String,
-    /// The tube, at rest at load `tube.rest()`.
+    /// The tube; its load at rest is `tube.rest()`.
     pub tube: Tube,
-    /// The mesh laid over it.
+    /// The mesh.
     pub mesh: Mesh,
-    /// What repeats around it.
+    /// The symmetry around the axis.
     pub symmetry: Symmetry,
-    /// Where the run begins, if not at rest.
+    /// The saved state that the study starts from; none for a start at rest.
     pub start: Option<Start>,
-    /// The modes that imperfections of the tube have the shape of, as the case names them.
-    pub modes: Vec<NamedMode>,
-    /// Where the load goes, stage after stage.
+    /// The buckling modes that give imperfections their shapes.
+    pub modes: Vec<ModeShape>,
+    /// The stages of load, in order.
     pub stages: Vec<Stage>,
-    /// How states are found.
+    /// Settings of the solver.
     pub solver: Settings,
-    /// What is left behind.
+    /// Settings of the output.
     pub output: Output,
-    /// The units of the case file, for results in real units.
+    /// The units of the case, for results in real units.
     pub units: Option<Units>,
 }
 
-/// A saved state that a run begins from.
+/// A saved state that a study starts from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// Its file, as the case names it.
     pub file: String,
-    /// Its load on the muscles of this plan's tube.
+    /// Its load, in the order of the muscles of the plan's tube.
     pub load: Load,
     /// The state, on its own mesh.
     pub state: SavedState,
 }
 
-/// A straight way through the loads.
+/// A buckling mode that gives an imperfection of the geometry its shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModeShape {
+    /// Number of the imperfection in the case, from 1.
+    pub imperfection: usize,
+    /// The file of the mode, as the case names it.
+    pub file: String,
+    /// Content of the file: the mode and the state that it belongs to.
+    pub state: SavedState,
+}
+
+/// A stage: a straight segment in the space of loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
-    /// Its name in tables.
+    /// Its name.
     pub name: String,
-    /// The load at its end; it begins at the end of the stage before, the first at rest or at the start.
+    /// The load at its end. It starts from the end of the previous stage; the first starts from rest or from the start state.
     pub load: Load,
-    /// Equal steps from begin to end, at least one; each ends in an accepted state.
+    /// Number of equal steps, at least one; each ends in an accepted state.
     pub steps: usize,
 }
 
-/// What a run leaves behind beside its history.
+/// Output of a run beside its history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// Whether pictures are drawn.
     pub pictures: bool,
-    /// Wall profiles are written for every n-th accepted state (and always for the last of a
-    /// stage); 0 for none.
+    /// Write wall profiles for every n-th state and the last of each stage; 0 for none.
     pub profiles_every: usize,
-    /// Accepted states are saved in full likewise.
+    /// Save every n-th state and the last of each stage in full; 0 for none.
     pub states_every: usize,
-    /// Circumferential harmonics that an axisymmetric state is tested for: 0 to this.
+    /// Test axisymmetric states against the circumferential modes 0 to this.
     pub stability_modes: usize,
-    /// Points along the tube at which a wall is sampled for profiles and pictures.
+    /// Points along the tube at which walls are sampled for profiles and pictures.
     pub wall_points: usize,
 }
 
@@ -106,7 +116,7 @@ pub enum StressUnit {
 }
 
 impl LengthUnit {
-    /// The power of ten of a metre.
+    /// Returns the power of ten of a metre.
     pub(super) fn power(self) -> i32 {
         match self {
             Self::Metre => 0,
@@ -118,7 +128,7 @@ impl LengthUnit {
 }
 
 impl StressUnit {
-    /// The power of ten of a pascal.
+    /// Returns the power of ten of a pascal.
     pub(super) fn power(self) -> i32 {
         match self {
             Self::Pascal => 0,
@@ -150,8 +160,41 @@ impl fmt::Display for StressUnit {
 }
 
 impl Plan {
-    /// Whether there is pressure on a wall at the start or in any stage.
-    pub fn is_pressed(&self) -> bool {
+    /// Returns the load of the first state.
+    pub fn first_load(&self) -> Load {
+        match &self.start {
+            Some(start) => start.load.clone(),
+            None => self.tube.rest(),
+        }
+    }
+
+    /// Returns the number of steps of all stages.
+    pub fn steps(&self) -> usize {
+        self.stages.iter().map(|stage| stage.steps).sum()
+    }
+
+    /// Returns the layout of the unknowns of its states.
+    pub fn layout(&self) -> Layout {
+        Layout {
+            length: self.tube.length,
+            thickness: self.tube.thickness,
+            mesh: self.mesh.clone(),
+            rings: self.mesh.rings(self.symmetry),
+        }
+    }
+
+    /// Checks that a saved state is one of this plan's tube on this plan's mesh.
+    ///
+    /// # Errors
+    /// [`SavedStateError::Other`] with the difference.
+    pub fn accepts(&self, state: &SavedState) -> Result<(), SavedStateError> {
+        let muscles = self.tube.muscles.iter();
+        let muscles: Vec<_> = muscles.map(|m| (m.name.clone(), m.direction)).collect();
+        state.check_layout(&self.layout(), &muscles)
+    }
+
+    /// Returns whether there is a pressure on a wall at the start or in any stage.
+    pub fn has_pressures(&self) -> bool {
         let start = self.start.iter().map(|start| &start.load);
         let mut loads = start.chain(self.stages.iter().map(|stage| &stage.load));
         loads.any(|load| load.pressures != [Pressure::default(); 2])

@@ -6,7 +6,9 @@ use super::super::pictures::{panel, tubes};
 use super::super::runs::{Ran, Runs};
 use super::super::{Figure, Fineness, Trouble};
 use super::{FOLD, axisymmetric, side};
+use plica::measure::Shape;
 use plica::measure::{Face, Side};
+use plica::run_directory;
 use plica::study::Row;
 
 pub(super) const FIGURE: Figure = Figure {
@@ -157,7 +159,9 @@ impl Sides {
 /// Whether a perturbed tube still invaginates: it does if it folds to one end all around; if it tilts, both of its sides
 /// fold, each to an end of its own, and that is told.
 fn verdict(ran: &Ran, row: &Row, sides: &Sides) -> Verdict {
-    let arrived = ran.verdict == "complete" && row.shape == "invaginated" && row.overhang > FOLD;
+    let arrived = ran.verdict == run_directory::Verdict::Complete
+        && row.shape == Shape::Invaginated
+        && row.overhang > FOLD;
     match (arrived, sides.to_one_end()) {
         (true, true) => Verdict::Agrees,
         (true, false) => Verdict::Explained,
@@ -188,8 +192,8 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
             let last = ran.last()?;
             let sides = Sides::of(ran, last)?;
             verdicts.push(verdict(ran, last, &sides));
-            let end = match ran.verdict.as_str() {
-                "complete" => sides.told(),
+            let end = match ran.verdict {
+                run_directory::Verdict::Complete => sides.told(),
                 _ => format!("lost after {:.3}; {}", last.length_ratio, sides.told()),
             };
             found.push(format!("{amplitude} D: {end}"));

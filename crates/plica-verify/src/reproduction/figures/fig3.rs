@@ -6,6 +6,9 @@ use super::super::pictures::{panel, tubes};
 use super::super::runs::{Ran, Runs};
 use super::super::{Figure, Fineness, Trouble};
 use super::{FOLD, axisymmetric, is_folded, side, unstable};
+use plica::equilibrium::UnstableMode;
+use plica::measure::{Shape, Side};
+use plica::run_directory;
 
 pub(super) const FIGURE: Figure = Figure {
     name: "fig3",
@@ -69,7 +72,9 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
             "{}, steepest wall {:.0}°, overhang of {overhang:.3} D in any state, at most",
             a.shape, a.max_wall_angle_deg
         ),
-        a.shape == "V" && overhang < 1e-3 && contraction.verdict == "complete",
+        a.shape == Shape::V
+            && overhang < 1e-3
+            && contraction.verdict == run_directory::Verdict::Complete,
     );
     let overhang = largest_overhang(collapse);
     page.claim(
@@ -86,7 +91,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
         b.asymmetry > 0.05
             // Less than half of what it is at rest.
             && b.lumen < collapse.plan.tube.inner_radius()
-            && b.equilibrium == "yes"
+            && b.in_equilibrium
             && overhang < FOLD,
     );
     if fineness == Fineness::Full {
@@ -96,7 +101,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
         "3C",
         "both together make it invaginate",
         side(c),
-        is_folded(c, "colon") || is_folded(c, "ileum"),
+        is_folded(c, Side::Colon) || is_folded(c, Side::Ileum),
     );
 
     let ratio = |ratio: f64| format!("*L*_{{max}}/*L* = {ratio:.2}");
@@ -149,20 +154,23 @@ fn largest_overhang(ran: &Ran) -> f64 {
 
 /// What the tube of 3B does in rings, and why it does not.
 fn instead(page: &mut Page, runs: &Runs, rings: &Ran) -> Result<(), Trouble> {
-    let lost = rings
-        .rows
-        .iter()
-        .find(|row| row.lost_harmonics().next().is_some());
+    let lost = rings.rows.iter().find(|row| row.stability.is_unstable());
     let oval_first = match lost {
-        Some(row) if row.lost_harmonics().eq(["2"]) => format!(
-            "the first harmonic that its path loses is 2, an oval, by Lmax/L = {:.2}: this is what the run of B is started on, by an end \
+        Some(row)
+            if row
+                .stability
+                .unstable_modes()
+                .eq([UnstableMode::Circumferential(2)]) =>
+        {
+            format!(
+                "the first harmonic that its path loses is 2, an oval, by Lmax/L = {:.2}: this is what the run of B is started on, by an end \
              that is held on an oval of 1e-4 D, and it is run as two halves that are alike",
-            row.length_ratio
-        ),
+                row.length_ratio
+            )
+        }
         Some(row) => format!(
             "its path first loses harmonics {} by Lmax/L = {:.2}; the run of B is started on an oval all the same",
-            row.lost_harmonics().collect::<Vec<_>>().join(", "),
-            row.length_ratio
+            row.stability, row.length_ratio
         ),
         None => {
             "its path loses no harmonic; the run of B is started on an oval all the same".into()
@@ -205,7 +213,9 @@ fn collapse_at_the_papers_length(page: &mut Page, on: &Ran) -> Result<(), Troubl
         last.length_ratio, last.asymmetry, last.lumen
     );
     let overhang = largest_overhang(on);
-    let holds = on.verdict == "complete" && last.shape == "collapsed" && overhang < FOLD;
+    let holds = on.verdict == run_directory::Verdict::Complete
+        && last.shape == Shape::Collapsed
+        && overhang < FOLD;
     let (found, verdict) = match closed {
         Some(row) => (
             format!(

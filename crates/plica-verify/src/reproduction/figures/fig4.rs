@@ -6,7 +6,8 @@ use super::super::pictures::{Outline, energies, outer, outlines};
 use super::super::runs::{Ran, Runs};
 use super::super::{Figure, Fineness, Trouble};
 use super::{COARSE, axisymmetric, first, is_folded, minimum, ratio, side, unstable};
-use plica::measure::{Face, Flank, Rotation, Side, Wall};
+use plica::measure::{Face, Flank, Rotation, Shape, Side, Wall};
+use plica::run_directory;
 use plica::study::Row;
 use plica_view::draw::{Curve, Stroke, VerticalLine};
 
@@ -57,8 +58,8 @@ fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
         off < 0.0101 && least.energy < 0.5 * rows[0].energy,
     );
     slopes(page, rows)?;
-    let squares = first(rows, "square");
-    let overhang = first(rows, "invaginated");
+    let squares = first(rows, Shape::Square);
+    let overhang = first(rows, Shape::Invaginated);
     let mut rules = vec![];
     for (row, label) in [(squares, "square"), (overhang, "overhang")] {
         rules.extend(row.map(|row| VerticalLine {
@@ -96,7 +97,7 @@ fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
 
 /// V, U, square, invaginated: in this order.
 fn shapes(page: &mut Page, rows: &[Row]) {
-    let mut shapes: Vec<&str> = rows.iter().map(|row| row.shape.as_str()).collect();
+    let mut shapes: Vec<Shape> = rows.iter().map(|row| row.shape).collect();
     shapes.dedup();
     let from = |shape| ratio(first(rows, shape));
     page.claim(
@@ -104,12 +105,16 @@ fn shapes(page: &mut Page, rows: &[Row]) {
         "V, then U, then square, then invaginated",
         format!(
             "{}; U from {}, square from {}, overhang from {}",
-            shapes.join(", "),
-            from("U"),
-            from("square"),
-            from("invaginated")
+            shapes
+                .iter()
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
+                .join(", "),
+            from(Shape::U),
+            from(Shape::Square),
+            from(Shape::Invaginated)
         ),
-        shapes == ["V", "U", "square", "invaginated"],
+        shapes == [Shape::V, Shape::U, Shape::Square, Shape::Invaginated],
     );
 }
 
@@ -118,7 +123,7 @@ fn slopes(page: &mut Page, rows: &[Row]) -> Result<(), Trouble> {
     let none = || Trouble::State("no state before or after the fold".into());
     let folded = rows
         .iter()
-        .position(|row| row.shape == "invaginated")
+        .position(|row| row.shape == Shape::Invaginated)
         .ok_or_else(none)?;
     let slope = |a: &Row, b: &Row| (b.energy - a.energy) / (b.length_ratio - a.length_ratio);
     let (Some(before), Some(last)) = (folded.checked_sub(3), rows.last()) else {
@@ -147,7 +152,7 @@ fn walls(page: &mut Page, main: &Ran) -> Result<(), Trouble> {
         "4B",
         "at 1.0 a V, at 1.18 square, at 1.2 invaginated toward the colon",
         format!("{}; {}; {}", v.shape, square.shape, side(folded)),
-        v.shape == "V" && square.shape == "square" && is_folded(folded, "colon"),
+        v.shape == Shape::V && square.shape == Shape::Square && is_folded(folded, Side::Colon),
     );
     let turning: Vec<&Row> = main
         .stage("relax")
@@ -302,7 +307,9 @@ fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
     let good = alike
         && settled < 1e-5
         && as_accepted < 1e-2
-        && [papers, raw].iter().all(|ran| ran.verdict == "complete");
+        && [papers, raw]
+            .iter()
+            .all(|ran| ran.verdict == run_directory::Verdict::Complete);
     page.add(
         "Fig. 2",
         "the paper's scheme (Newmark, ηD/(EΔτ) = 100) against Plica's",

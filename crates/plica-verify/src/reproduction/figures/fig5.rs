@@ -7,6 +7,8 @@ use super::super::runs::Runs;
 use super::super::{Figure, Fineness, Trouble};
 use super::ramps::{self, Ramps, outcome};
 use super::{COARSE, COARSER, axisymmetric, first, is_folded, ratio, side};
+use plica::measure::{Shape, Side};
+use plica::run_directory;
 
 pub(super) const FIGURE: Figure = Figure {
     name: "fig5",
@@ -19,7 +21,10 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 /// The two cases, the panel of each, and its side.
-const CASES: [ramps::Panel; 2] = [("5A", "colon-side", "colon"), ("5B", "ileum-side", "ileum")];
+const CASES: [ramps::Panel; 2] = [
+    ("5A", "colon-side", Side::Colon),
+    ("5B", "ileum-side", Side::Ileum),
+];
 
 /// Number of the state at Dmin/D = 0.25, before the relaxation.
 const CONTRACTED: usize = 15;
@@ -92,9 +97,9 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
                 square.shape,
                 square.max_wall_angle_deg,
                 ran.at(1.16)?.max_wall_angle_deg,
-                ratio(first(&ran.rows, "invaginated"))
+                ratio(first(&ran.rows, Shape::Invaginated))
             ),
-            square.shape == "square",
+            square.shape == Shape::Square,
         );
         page.claim(
             panel_name,
@@ -136,7 +141,7 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
         let last = ran.last()?;
         let by_itself = runs.get(&coarse(case))?.last()?;
         let more = last.energy / by_itself.energy;
-        if ran.verdict != "complete" {
+        if ran.verdict != run_directory::Verdict::Complete {
             lost += 1;
             return Ok(format!("lost after {:.2}", last.length_ratio));
         }
@@ -144,7 +149,7 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
             held += 1;
             return Ok(format!("{}, *W* × {more:.1}", outcome(ran)?));
         }
-        if is_folded(last, towards) {
+        if is_folded(last, *towards) {
             as_printed += 1;
         } else {
             otherwise += 1;
@@ -166,7 +171,7 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
             without[1]
         ),
         as_printed_by_it
-            && without.iter().zip(CASES).all(|(found, (_, _, towards))| found == towards),
+            && without.iter().zip(CASES).all(|(found, (_, _, towards))| *found == towards.to_string()),
     );
     Ok(())
 }
@@ -202,7 +207,7 @@ fn branches(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
             own.side, other.side
         ));
         good &= is_folded(own, towards)
-            && other.shape == "invaginated"
+            && other.shape == Shape::Invaginated
             && other.side != towards
             && differ.abs() < 0.01;
     }

@@ -7,6 +7,8 @@ use super::super::runs::Runs;
 use super::super::{Figure, Fineness, Trouble};
 use super::ramps::{self, Ramps, outcome};
 use super::{COARSE, COARSER, axisymmetric, is_folded, mesh, side};
+use plica::measure::Side;
+use plica::run_directory;
 
 pub(super) const FIGURE: Figure = Figure {
     name: "fig7",
@@ -18,7 +20,10 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 /// Panel, case, and the end that is pushed.
-const CASES: [ramps::Panel; 2] = [("7A", "push-colon", "colon"), ("7B", "push-ileum", "ileum")];
+const CASES: [ramps::Panel; 2] = [
+    ("7A", "push-colon", Side::Colon),
+    ("7B", "push-ileum", Side::Ileum),
+];
 
 /// Number of the state of Fig. 5B at Lmax/L = 1.17.
 const SQUARE: usize = 32;
@@ -81,7 +86,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
                 side(last),
                 energy(last)
             ),
-            is_folded(last, towards) && ran.verdict == "complete",
+            is_folded(last, towards) && ran.verdict == run_directory::Verdict::Complete,
         );
         panels.push(panel(
             ran,
@@ -105,7 +110,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
     let (mut as_printed, mut all) = (0, 0);
     ramps(fineness).table(page, runs, &without, |(_, _, towards), ran| {
         all += 1;
-        as_printed += usize::from(is_folded(ran.last()?, towards));
+        as_printed += usize::from(is_folded(ran.last()?, *towards));
         outcome(ran)
     })?;
     page.text(format!(

@@ -11,6 +11,7 @@ mod ramps;
 
 use super::job::Job;
 use super::{Figure, Fineness, Trouble};
+use plica::measure::{Shape, Side};
 use plica::study::Row;
 
 /// All figures, in the order of the paper.
@@ -42,7 +43,7 @@ fn axisymmetric(case: &'static str, fineness: Fineness) -> Job {
 
 /// Whether a wall overhangs, and towards which end: told of a state.
 fn side(row: &Row) -> String {
-    if row.shape == "invaginated" {
+    if row.shape == Shape::Invaginated {
         let crosses = if row.crosses_itself() {
             " (the wall has met itself)"
         } else {
@@ -53,7 +54,7 @@ fn side(row: &Row) -> String {
             row.side, row.overhang
         )
     } else {
-        row.shape.clone()
+        row.shape.to_string()
     }
 }
 
@@ -61,15 +62,16 @@ fn side(row: &Row) -> String {
 const FOLD: f64 = 0.06;
 
 /// Whether a state is invaginated toward an end, by more than its wall is thick.
-fn is_folded(row: &Row, side: &str) -> bool {
-    row.shape == "invaginated" && row.side == side && row.overhang > FOLD
+fn is_folded(row: &Row, side: Side) -> bool {
+    row.shape == Shape::Invaginated && row.side == side && row.overhang > FOLD
 }
 
 /// In words, where an axisymmetric path is unstable, and to which harmonics: the whole tube would leave it there.
 fn unstable(rows: &[Row]) -> String {
     let mut places = vec![];
     for row in rows {
-        let harmonics: Vec<&str> = row.lost_harmonics().filter(|n| *n != "unknown").collect();
+        let modes = row.stability.unstable_modes();
+        let harmonics: Vec<String> = modes.map(|mode| mode.to_string()).collect();
         if !harmonics.is_empty() {
             places.push(format!(
                 "{:.2} (n = {})",
@@ -86,7 +88,7 @@ fn unstable(rows: &[Row]) -> String {
 }
 
 /// The first state of a shape.
-fn first<'a>(rows: &'a [Row], shape: &str) -> Option<&'a Row> {
+fn first(rows: &[Row], shape: Shape) -> Option<&Row> {
     rows.iter().find(|row| row.shape == shape)
 }
 

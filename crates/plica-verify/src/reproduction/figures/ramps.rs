@@ -5,9 +5,11 @@ use super::super::job::Job;
 use super::super::page::Page;
 use super::super::runs::{Ran, Runs};
 use super::is_folded;
+use plica::measure::{Shape, Side};
+use plica::run_directory;
 
 /// A panel of a figure, its case, and the side that the paper has it fold to.
-pub type Panel = (&'static str, &'static str, &'static str);
+pub type Panel = (&'static str, &'static str, Side);
 
 /// Two panels, over drags and ramps.
 pub struct Ramps {
@@ -89,9 +91,9 @@ impl Ramps {
 /// The side that a run folded to, or what became of it instead.
 pub fn outcome(ran: &Ran) -> Result<String, Trouble> {
     let row = ran.last()?;
-    Ok(match ran.verdict.as_str() {
-        "complete" if row.shape == "invaginated" => row.side.clone(),
-        "complete" => row.shape.clone(),
+    Ok(match ran.verdict {
+        run_directory::Verdict::Complete if row.shape == Shape::Invaginated => row.side.to_string(),
+        run_directory::Verdict::Complete => row.shape.to_string(),
         _ => "lost".into(),
     })
 }
@@ -106,7 +108,7 @@ pub fn as_the_paper(
     for (panel, case, towards) in panels {
         let ran = runs.get(&run(case).name)?;
         told.push(format!("{panel}: {}", outcome(ran)?));
-        all &= ran.verdict == "complete" && is_folded(ran.last()?, towards);
+        all &= ran.verdict == run_directory::Verdict::Complete && is_folded(ran.last()?, towards);
     }
     Ok((told.join(", "), all))
 }

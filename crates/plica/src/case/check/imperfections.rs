@@ -9,7 +9,7 @@ use super::stages::SMALLEST_STRETCH;
 use super::start::check_size;
 use super::tube::tidy;
 use super::zone;
-use crate::study::{NamedMode, Stage, folded};
+use crate::study::{ModeShape, Stage, inverted_by_imperfections};
 use crate::tube::{
     Axial, End, Imperfection, Mesh, Part, Push, Random, Shape, Support, Symmetry, Tube, Wave,
 };
@@ -28,7 +28,7 @@ pub(super) fn imperfections(
     run: (&Mesh, Symmetry),
     open: &Open<'_>,
     problems: &mut Problems,
-) -> (Vec<Imperfection>, Vec<NamedMode>) {
+) -> (Vec<Imperfection>, Vec<ModeShape>) {
     let (mut imperfections, mut modes) = (vec![], vec![]);
     for (i, written) in spec.imperfections.iter().enumerate() {
         let path = format!("imperfections[{}]", i + 1);
@@ -249,7 +249,7 @@ fn mode(
     (mesh, symmetry): (&Mesh, Symmetry),
     open: &Open<'_>,
     problems: &mut Problems,
-) -> Option<(Shape, NamedMode)> {
+) -> Option<(Shape, ModeShape)> {
     let key = format!("{path}.shape.mode");
     let Wanted::Mode(imperfection, file) = wanted else {
         return None;
@@ -303,7 +303,7 @@ fn mode(
             problems.value(&key, rule, Some(format!("try {} points around", 4 * n)));
         }
     }
-    let named = NamedMode {
+    let named = ModeShape {
         imperfection,
         file: file.to_owned(),
         state,
@@ -382,7 +382,7 @@ pub(super) fn check_wall(
     if large && !problems.is_empty() {
         return;
     }
-    if let Some(at) = folded(tube, mesh, symmetry) {
+    if let Some(at) = inverted_by_imperfections(tube, mesh, symmetry) {
         let z = tidy(at.place.z * spec.tube.diameter);
         let near = at.place.beside_z();
         let rule = format!("with it the stress-free wall is folded over, near z = {z}, {near}");

@@ -6,7 +6,8 @@ use super::super::spec::Spec;
 use super::super::{Open, Wanted};
 use super::stages::{check_closed, check_held, check_stretch};
 use crate::activation::Direction;
-use crate::study::{Layout, SavedState, Start};
+use crate::saved_state::{Layout, SavedState};
+use crate::study::Start;
 use crate::tube::{Load, Mesh, Symmetry, Tube};
 
 const KEY: &str = "start.state";

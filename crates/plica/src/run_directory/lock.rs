@@ -1,6 +1,6 @@
-//! One run, one owner.
+//! The lock of a run directory: one process at a time works in it.
 
-use super::StudyError;
+use super::RunError;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Write};
 use std::path::Path;
@@ -8,27 +8,27 @@ use std::path::Path;
 /// Name of the file that is locked.
 pub(super) const LOCK: &str = "lock";
 
-/// What Linux says (ENOLCK) of a file system whose locks are not served.
+/// Error of Linux (ENOLCK) for a file system without locks.
 const NO_LOCKS: i32 = 37;
 
-/// A run directory as one's own. The system lets go of it when the process ends, however that ends, so that none is ever stale.
+/// The lock of a run directory. The system releases it when the process ends, so no lock is ever stale.
 #[derive(Debug)]
 pub(super) struct Lock(File);
 
 impl Lock {
-    /// Takes a directory for this process.
+    /// Locks a directory for this process.
     ///
     /// # Errors
-    /// [`StudyError::Busy`] if another process has it. Where the file system knows no locks there is none, and no error.
-    pub fn take(directory: &Path) -> Result<Self, StudyError> {
+    /// [`RunError::Busy`] if another process has locked it. A file system without locks is no error.
+    pub fn take(directory: &Path) -> Result<Self, RunError> {
         let path = directory.join(LOCK);
-        let trouble = |source| StudyError::File {
+        let error_at = |source| RunError::File {
             path: path.clone(),
             source,
         };
         if path.is_symlink() {
-            let why = "is a link, and a run keeps its own; remove it";
-            return Err(trouble(std::io::Error::other(why)));
+            let why = "is a symbolic link; remove it";
+            return Err(error_at(std::io::Error::other(why)));
         }
         let options = OpenOptions::new()
             .read(true)
@@ -36,12 +36,12 @@ impl Lock {
             .create(true)
             .truncate(false)
             .clone();
-        let mut file = options.open(&path).map_err(trouble)?;
+        let mut file = options.open(&path).map_err(error_at)?;
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {
                 let mut owner = String::new();
                 let _ = file.take(200).read_to_string(&mut owner);
-                return Err(StudyError::Busy {
+                return Err(RunError::Busy {
                     path: directory.to_owned(),
                     owner: owner.trim().to_owned(),
                 });
@@ -50,11 +50,11 @@ impl Lock {
                 if error.kind() != std::io::ErrorKind::Unsupported
                     && error.raw_os_error() != Some(NO_LOCKS) =>
             {
-                return Err(trouble(error));
+                return Err(error_at(error));
             }
             _ => {}
         }
-        // For whoever comes meanwhile; without it they are told less.
+        // For the message of another process; it does not matter if this fails.
         let _ = file.set_len(0);
         let _ = writeln!(file, "process {}", std::process::id());
         Ok(Self(file))
@@ -72,16 +72,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_directory_has_one_owner_at_a_time() {
+    fn one_process_at_a_time_locks_a_directory() {
         let path = std::env::temp_dir().join(format!("plica-lock-{}", std::process::id()));
         std::fs::create_dir_all(&path).unwrap();
         let mine = Lock::take(&path).unwrap();
-        let Err(StudyError::Busy { owner, .. }) = Lock::take(&path) else {
+        let Err(RunError::Busy { owner, .. }) = Lock::take(&path) else {
             panic!("taken twice");
         };
         assert_eq!(owner, format!("process {}", std::process::id()));
         drop(mine);
-        // What a process that was killed has left in it is no lock.
+        // The text that a killed process has left is not a lock.
         std::fs::write(path.join(LOCK), "process 1\n").unwrap();
         drop(Lock::take(&path).unwrap());
         assert_eq!(std::fs::read(path.join(LOCK)).unwrap(), b"");

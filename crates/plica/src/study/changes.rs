@@ -1,22 +1,26 @@
-//! What of a plan must stay while a run is left.
+//! Changes of a plan that forbid resuming a run.
 
-use super::{Plan, SavedState, Start};
+use super::{Plan, Start};
+use crate::saved_state::SavedState;
 use crate::tube::Load;
 
-/// What keeps a run that was begun by one plan, and has come so far into a stage, from going on by another, in words; nothing if it can
-/// go on. The title, the solver, the outputs, the number of steps of the stage it is in and all later stages may change.
-pub fn kept(old: &Plan, new: &Plan, within: Option<(usize, f64)>) -> Vec<String> {
-    let mut other = vec![];
-    let mut hold = |same: bool, what: String| {
+/// Returns the changes between two plans that forbid to resume a run of the old plan with the new one, in words; none if it
+/// can be resumed.
+///
+/// `progress` is the stage in which the run is and the completed fraction of that stage; none before the first stage. The
+/// title, the solver, the output, the number of steps of the current stage and all later stages may change.
+pub fn forbidden_changes(old: &Plan, new: &Plan, progress: Option<(usize, f64)>) -> Vec<String> {
+    let mut changes = vec![];
+    let mut require = |same: bool, what: String| {
         if !same {
-            other.push(what);
+            changes.push(what);
         }
     };
-    hold(old.tube == new.tube, "the tube".into());
-    hold(old.mesh == new.mesh, "the mesh".into());
-    hold(old.symmetry == new.symmetry, "the symmetry".into());
-    hold(old.units == new.units, "the units".into());
-    // Wherever it lies.
+    require(old.tube == new.tube, "the tube".into());
+    require(old.mesh == new.mesh, "the mesh".into());
+    require(old.symmetry == new.symmetry, "the symmetry".into());
+    require(old.units == new.units, "the units".into());
+    // The name of the file may change.
     fn start(plan: &Plan) -> Option<(&Load, &SavedState)> {
         let start = plan.start.as_ref();
         start.map(|Start { load, state, .. }| (load, state))
@@ -24,17 +28,17 @@ pub fn kept(old: &Plan, new: &Plan, within: Option<(usize, f64)>) -> Vec<String>
     let same_start = start(old) == start(new);
     let what = match (&old.start, &new.start) {
         (Some(_), Some(new)) => {
-            format!("the state that it starts from (`{}` is another)", new.file)
+            format!("the state to start from (`{}` holds another)", new.file)
         }
         _ => "the start".into(),
     };
-    hold(same_start, what);
-    // Stages go on from the start.
-    let begun = within
+    require(same_start, what);
+    // Stages depend on the start.
+    let begun = progress
         .filter(|_| same_start)
         .map_or(0, |(stage, _)| stage + 1);
     for k in 0..begun {
-        let is_done = within.is_some_and(|(stage, reached)| k < stage || reached == 1.0);
+        let is_done = progress.is_some_and(|(stage, reached)| k < stage || reached == 1.0);
         let steps = |plan: &Plan| {
             plan.stages
                 .get(k)
@@ -48,9 +52,9 @@ pub fn kept(old: &Plan, new: &Plan, within: Option<(usize, f64)>) -> Vec<String>
         };
         let name = &old.stages[k].name;
         let same = of(old) == of(new) && steps(old) == steps(new);
-        hold(same, format!("stage `{name}`, which has begun"));
+        require(same, format!("stage `{name}`, which has begun"));
     }
-    other
+    changes
 }
 
 #[cfg(test)]
@@ -60,7 +64,7 @@ mod tests {
     use crate::tube::Symmetry;
 
     #[test]
-    fn what_is_behind_must_stay_and_what_is_ahead_may_change() {
+    fn completed_stages_must_stay_and_later_ones_may_change() {
         let mut old = fixture::plan(Symmetry::Axisymmetric);
         for name in ["a", "b", "c"] {
             old.stages.push(Stage {
@@ -72,7 +76,7 @@ mod tests {
         let change = |change: fn(&mut Plan)| {
             let mut new = old.clone();
             change(&mut new);
-            kept(&old, &new, Some((1, 0.5)))
+            forbidden_changes(&old, &new, Some((1, 0.5)))
         };
         assert!(change(|_| {}).is_empty());
         assert!(change(|plan| plan.title = "another".into()).is_empty());

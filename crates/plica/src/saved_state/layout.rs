@@ -1,10 +1,8 @@
-//! What the unknowns of a state belong to.
+//! The layout of the unknowns of a state.
 
-use super::Plan;
 use crate::tube::{Mesh, Tube};
 
-/// The size of a tube, its mesh, and the rings that are solved for: all that it takes to know
-/// what the numbers of a state mean.
+/// The layout of the unknowns of a state: size of the tube, mesh, and rings of the cyclic sector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// Length of the tube, in D.
@@ -13,33 +11,23 @@ pub struct Layout {
     pub thickness: f64,
     /// The mesh.
     pub mesh: Mesh,
-    /// Rings of the sector; the mesh's rings around the tube are a multiple.
+    /// Rings of the cyclic sector; the number of rings around the tube is a multiple.
     pub rings: usize,
 }
 
 impl Layout {
-    /// The layout of a plan.
-    pub fn of(plan: &Plan) -> Self {
-        Self {
-            length: plan.tube.length,
-            thickness: plan.tube.thickness,
-            mesh: plan.mesh.clone(),
-            rings: plan.mesh.rings(plan.symmetry),
-        }
-    }
-
-    /// Rows of control points, points through the wall, components and rings: the shape of `u`,
-    /// the last index fastest. The largest number if it overflows.
+    /// Returns the shape of the unknowns: rows along the tube, points through the wall, components (axial, radial,
+    /// circumferential), rings; the last index is fastest.
     pub fn shape(&self) -> [usize; 4] {
         [self.mesh.axial, self.mesh.thickness, 3, self.rings]
     }
 
-    /// Unknowns of the sector.
+    /// Returns the number of unknowns; `usize::MAX` if it overflows.
     pub fn unknowns(&self) -> usize {
         self.shape().iter().fold(1, |n, &m| n.saturating_mul(m))
     }
 
-    /// Whether splines can be laid over a tube like this; if not, what is wrong.
+    /// Returns a reason why no tube can have this layout; none if one can.
     pub fn fault(&self) -> Option<&'static str> {
         let Mesh {
             axial,
@@ -61,9 +49,9 @@ impl Layout {
         } else if axial <= degree || thickness <= degree || around < 2 * degree + 2 {
             Some("its mesh has too few control points for the degree")
         } else if self.rings == 0 || !around.is_multiple_of(self.rings) {
-            Some("its rings do not repeat around the tube")
+            Some("its rings do not divide the rings around the tube")
         } else if !refinements.iter().all(|r| sound(r.from, r.to, r.factor)) {
-            Some("its mesh is refined where nothing can be")
+            Some("a zone of refinement of its mesh is invalid")
         } else {
             None
         }

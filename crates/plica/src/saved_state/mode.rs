@@ -1,25 +1,13 @@
-//! A mode of stability, as the shape of an imperfect geometry.
+//! Buckling modes in saved states, as shapes of imperfections.
 
 use super::{SavedState, SavedStateError};
 use crate::tube::Mode;
 
-/// A mode that a case names.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedMode {
-    /// Number of its imperfection in the case, from 1.
-    pub imperfection: usize,
-    /// Its file, as the case names it.
-    pub file: String,
-    /// What the file holds: the mode, and the state that it belongs to.
-    pub state: SavedState,
-}
-
 impl SavedState {
-    /// The mode that goes with the state, if the file is one of a run's `modes/`.
+    /// Returns the buckling mode in the file of a mode (`modes/` of a run directory).
     ///
     /// # Errors
-    /// [`SavedStateError::NoMode`] if there is none, [`SavedStateError::Array`] if it cannot be one of
-    /// the state's mesh.
+    /// [`SavedStateError::NoMode`] if there is none, [`SavedStateError::Array`] if it does not fit the mesh of the state.
     pub fn mode(&self) -> Result<Mode, SavedStateError> {
         let array = |name: &str| self.arrays.get(name).ok_or(SavedStateError::NoMode);
         let (mode, harmonic) = (array("mode")?, array("harmonic")?);
@@ -31,14 +19,14 @@ impl SavedState {
         let expected = [axial, thickness, components];
         if mode.shape.len() == 4 {
             let what =
-                "is of a three-dimensional run; a shape has one harmonic, as the modes that \
-                        plica stability finds of an axisymmetric run have"
+                "is of a three-dimensional run; an imperfection has one circumferential mode, as the modes of an \
+                        axisymmetric run have"
                     .into();
             return Err(wrong("mode", what));
         }
         if mode.shape != expected {
             let what = format!(
-                "has shape {:?}, and its mesh needs {expected:?}",
+                "has shape {:?} and needs {expected:?} on its mesh",
                 mode.shape
             );
             return Err(wrong("mode", what));

@@ -1,43 +1,42 @@
-//! A state in full, and its file.
+//! Saved states: a state with its load and the layout of its unknowns, and its file format.
 //!
-//! | file | holds |
-//! |---|---|
-//! | here | what a saved state is, and whether it is one of a plan's |
-//! | `header` | what a file says about it, as JSON |
-//! | `file` | the file: safetensors with a checksum |
+//! The file is safetensors with a checksum (`file`); a JSON header describes the state (`header`).
 
 mod file;
 mod header;
+mod layout;
+mod mode;
 
-use super::{Layout, Plan};
+pub use layout::Layout;
+
 use crate::activation::Direction;
 use crate::tube::{Load, Mesh};
 use file::FORMAT;
 use std::collections::BTreeMap;
 use std::io::Error;
 
-/// A state with all that it takes to go on from it.
+/// An accepted state in full: its load, the layout of its unknowns, and the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SavedState {
     /// Name of its stage; `rest` for the tube at rest.
     pub stage: String,
     /// Number of its row in `history.csv`.
     pub row: usize,
-    /// How far along its stage it is, 0 to 1.
+    /// Completed fraction of its stage, 0 to 1.
     pub along: f64,
     /// Name and direction of each muscle, in the order of the load.
     pub muscles: Vec<(String, Direction)>,
-    /// The load it is under.
+    /// Its load.
     pub load: Load,
-    /// What its unknowns belong to.
+    /// Layout of its unknowns.
     pub layout: Layout,
-    /// The unknowns of the sector, in D.
+    /// Unknowns of the cyclic sector, in D.
     pub u: Vec<f64>,
-    /// Whatever else goes with it, by name; not `u`.
+    /// Further arrays, by name; not `u`.
     pub arrays: BTreeMap<String, Array>,
 }
 
-/// Numbers in rows and columns, the last index fastest.
+/// An array of numbers, the last index fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Array {
     /// Length of each index; the product is the number of values.
@@ -46,35 +45,35 @@ pub struct Array {
     pub values: Vec<f64>,
 }
 
-/// Why a saved state cannot be used.
+/// An error of a saved state.
 #[derive(Debug, thiserror::Error)]
 pub enum SavedStateError {
-    /// It cannot be read or written.
+    /// The file cannot be read or written.
     #[error(transparent)]
     File(#[from] Error),
-    /// It is something else.
+    /// The file is not a saved state.
     #[error("this is not a saved state ({0})")]
     Foreign(String),
-    /// It ends early, or late.
+    /// The file is cut short or too long.
     #[error(
-        "the file is cut short or has something added (it holds {bytes} bytes); take another, or run its case again"
+        "the file is cut short or has something added (it holds {bytes} bytes); use another file, or run its case again"
     )]
     Cut {
         /// Bytes of the file.
         bytes: usize,
     },
-    /// A later version wrote it.
+    /// A later version wrote the file.
     #[error(
-        "its format is {found}, and this program reads formats up to {FORMAT}; take a newer plica"
+        "its format is {found}, and this program reads formats up to {FORMAT}; use a newer version of plica"
     )]
     Newer {
         /// Its format.
         found: u32,
     },
-    /// It is not what was written.
+    /// The checksum does not match.
     #[error(
         "the file is damaged: its checksum is {found}, and should be {expected}; \
-         take another, or run its case again"
+         use another file, or run its case again"
     )]
     Damaged {
         /// The checksum it carries.
@@ -82,22 +81,22 @@ pub enum SavedStateError {
         /// The checksum it has.
         found: String,
     },
-    /// An array is not as it must be.
+    /// An array is invalid.
     #[error("its array `{name}` {what}")]
     Array {
         /// Its name.
         name: String,
-        /// What is wrong with it.
+        /// The fault.
         what: String,
     },
-    /// It is a state, and a mode is wanted.
-    #[error("this is a saved state, and no mode")]
+    /// The file holds a state, not a mode.
+    #[error("this is a saved state, not a mode")]
     NoMode,
-    /// Its tube or mesh is none.
+    /// The header describes no valid tube or mesh.
     #[error("its header makes no sense: {0}")]
     Header(&'static str),
-    /// It belongs to another tube or mesh.
-    #[error("it belongs to another {what}: {found}, and not {expected}")]
+    /// The state belongs to another tube or mesh.
+    #[error("it belongs to another {what}: {found} instead of {expected}")]
     Other {
         /// Tube, mesh or symmetry.
         what: &'static str,
@@ -109,13 +108,17 @@ pub enum SavedStateError {
 }
 
 impl SavedState {
-    /// Whether the state is one of a plan's tube on the plan's mesh.
+    /// Checks that the state has a layout and a set of muscles.
     ///
     /// # Errors
-    /// [`SavedStateError::Other`] with what differs.
-    pub fn belongs_to(&self, plan: &Plan) -> Result<(), SavedStateError> {
-        let (mine, own) = (&self.layout, &Layout::of(plan));
-        let differ = |what, found: String, expected: String| {
+    /// [`SavedStateError::Other`] with the difference.
+    pub fn check_layout(
+        &self,
+        expected: &Layout,
+        muscles: &[(String, Direction)],
+    ) -> Result<(), SavedStateError> {
+        let found = &self.layout;
+        let compare = |what, found: String, expected: String| {
             if found == expected {
                 return Ok(());
             }
@@ -137,17 +140,12 @@ impl SavedState {
             format!("{axial} x {around} x {thickness} of degree {degree}")
         };
         let refine = |l: &Layout| format!("refined as {:?}", l.mesh.refinements);
-        let muscles = plan.tube.muscles.iter();
-        let muscles: Vec<_> = muscles.map(|m| (m.name.clone(), m.direction)).collect();
-        differ("tube", size(mine), size(own))?;
-        differ("mesh", mesh(mine), mesh(own))?;
-        differ("mesh", refine(mine), refine(own))?;
-        differ(
-            "symmetry",
-            format!("{} rings", mine.rings),
-            format!("{} rings", own.rings),
-        )?;
-        differ(
+        let rings = |l: &Layout| format!("{} rings", l.rings);
+        compare("tube", size(found), size(expected))?;
+        compare("mesh", mesh(found), mesh(expected))?;
+        compare("mesh", refine(found), refine(expected))?;
+        compare("symmetry", rings(found), rings(expected))?;
+        compare(
             "set of muscles",
             format!("{:?}", self.muscles),
             format!("{muscles:?}"),

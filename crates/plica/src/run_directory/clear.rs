@@ -1,16 +1,16 @@
-//! What a former run wrote, known by name: it alone is ever taken out of a directory.
+//! The files of a run, by name: only these are ever removed from a directory.
 
+use super::RunError;
 use super::{
     CASE, CHECKPOINTS, HISTORY, IMPERFECTIONS, OF_STATES, START, STATE_ENDING, number_of_state,
 };
-use crate::study::StudyError;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Takes what a former run wrote out of its directory, known by name; every other file stays, and so does the manifest, so
-/// that what is left of a broken attempt is still known as a run.
-pub(super) fn clear(path: &Path) -> Result<(), StudyError> {
-    // The case first: without it what is left is no run, should this be cut off.
+/// Removes the files of a previous run, known by name. Every other file stays, and so does the manifest, so that the
+/// directory stays a run if this is interrupted.
+pub(super) fn clear(path: &Path) -> Result<(), RunError> {
+    // The case first: without it the rest is not a run, if this is interrupted.
     let mut old = vec![path.join(CASE)];
     old.extend(stability_files(path));
     let pictures = ["energy.png", "walls.png", "tube.png", "report.html"];
@@ -22,12 +22,12 @@ pub(super) fn clear(path: &Path) -> Result<(), StudyError> {
             .map(|name| path.join(name)),
     );
     old.extend(modes(&path.join(IMPERFECTIONS)));
-    let drawn = [
+    let exported = [
         ("vtk/walls", "vtp"),
         ("vtk/volume", "vtu"),
         ("vtk/linear", "vtu"),
     ];
-    for (folder, ending) in OF_STATES.into_iter().chain(drawn) {
+    for (folder, ending) in OF_STATES.into_iter().chain(exported) {
         let mine = |file: &Path, ending| number_of_state(file, ending).is_some();
         old.extend(files(&path.join(folder)).filter(|f| mine(f, ending) || mine(f, "part")));
     }
@@ -45,7 +45,7 @@ pub(super) fn clear(path: &Path) -> Result<(), StudyError> {
     remove(old)
 }
 
-/// What a test of stability writes.
+/// Returns the files that a stability analysis writes.
 pub(super) fn stability_files(path: &Path) -> Vec<PathBuf> {
     let names = [
         "stability.csv",
@@ -62,7 +62,7 @@ pub(super) fn stability_files(path: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The files of modes in a folder.
+/// Returns the files of modes in a folder.
 pub(super) fn modes(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
     files(folder).filter(|file| {
         let name = file
@@ -73,18 +73,18 @@ pub(super) fn modes(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
     })
 }
 
-/// The files in a folder, if it is there.
+/// Returns the files in a folder, if it exists.
 pub(super) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
     let entries = fs::read_dir(folder).into_iter().flatten();
     entries.flatten().map(|entry| entry.path())
 }
 
-/// Removes files that may be there.
-pub(super) fn remove(files: Vec<PathBuf>) -> Result<(), StudyError> {
+/// Removes files, if they exist.
+pub(super) fn remove(files: Vec<PathBuf>) -> Result<(), RunError> {
     for file in files {
         match fs::remove_file(&file) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                return Err(StudyError::File {
+                return Err(RunError::File {
                     path: file,
                     source: e,
                 });

@@ -1,16 +1,15 @@
-//! What a file says about its state.
+//! The JSON header in the file of a state.
 
+use super::Layout;
 use super::file::{BLANK, FORMAT};
 use super::{Array, SavedState, SavedStateError};
 use crate::activation::Direction;
 use crate::spline::Refinement;
-use crate::study::Layout;
 use crate::tube::{EndMotion, Load, Mesh, Pressure};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What is written about a state, as JSON. The checksum comes first, so that nothing that a user
-/// names can be taken for it.
+/// The JSON header. The checksum comes first, so that no name chosen by a user can be mistaken for it.
 #[derive(Debug, Deserialize, Serialize)]
 pub(super) struct Header {
     format: u32,
@@ -91,7 +90,7 @@ struct RefineHeader {
 }
 
 impl SavedState {
-    /// What its file says about it, the checksum left blank.
+    /// Returns the header, with a blank checksum.
     pub(super) fn header(&self) -> Header {
         let muscle = |((name, direction), &ratio): (&(String, Direction), &f64)| MuscleHeader {
             name: name.clone(),
@@ -151,7 +150,7 @@ impl SavedState {
         }
     }
 
-    /// Of a header and the arrays beside it, if they go together.
+    /// Makes a state from a header and arrays, if they are consistent.
     pub(super) fn new(
         header: Header,
         u: Array,
@@ -188,7 +187,7 @@ impl SavedState {
         }
         if u.shape != layout.shape() {
             let what = format!(
-                "has shape {:?}, and its mesh needs {:?}",
+                "has shape {:?} and needs {:?} on its mesh",
                 u.shape,
                 layout.shape()
             );

@@ -1,12 +1,26 @@
-//! What a run leaves on disk.
+//! The run directory: a study's states on disk, and how a run is resumed.
+//!
+//! [`Run`] is a [`crate::study::Study`] that writes every state; [`RunDirectory`] reads and writes the files.
 
-mod former;
-mod going_on;
-mod writing;
+mod checkpoint;
+mod clear;
+mod error;
+mod lock;
+mod manifest;
+mod resume;
+mod run;
+mod summary;
+mod write;
 
-use super::lock::{LOCK, Lock};
-use super::{Row, StudyError};
-use former::{clear, files, modes, remove, stability_files};
+pub use checkpoint::Checkpoint;
+pub use error::RunError;
+pub use run::{Run, run};
+pub use summary::{Snapshot, Summary};
+
+use crate::study::Row;
+use clear::{clear, files, modes, remove, stability_files};
+use lock::{LOCK, Lock};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -19,33 +33,58 @@ use std::path::{Path, PathBuf};
 /// | `manifest.json` | version, hash of the case, machine, threads, start and end, verdict |
 /// | `history.csv` | one row per accepted state, see [`Row`] |
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
-/// | `states/state-NNNN.safetensors` | a state in full, see [`super::SavedState`] |
-/// | `checkpoint.safetensors`, `checkpoint-before.safetensors` | the last accepted state and the one before, with what it takes to go on, see [`super::Checkpoint`] |
-/// | `spare/` | states that are not saved, until pictures are drawn |
-/// | `lock` | held by the process that runs it |
+/// | `states/state-NNNN.safetensors` | a state in full, see [`crate::saved_state::SavedState`] |
+/// | `checkpoint.safetensors`, `checkpoint-before.safetensors` | the last accepted state and the one before, with all that it takes to resume, see [`Checkpoint`] |
+/// | `temporary/` | states that are not saved, until pictures are drawn |
+/// | `lock` | locked by the process that works in the directory |
 /// | `*.png` | pictures |
-/// | `pictures/` | states and paths drawn on request |
-/// | `report.html` | the run as a page, on request |
-/// | `vtk/` | states as files of VTK, in a folder and a collection for each kind |
-/// | `start.safetensors` | the state that the run began from, if not from rest |
-/// | `imperfections/mode-NN.safetensors` | a mode that imperfection NN has the shape of |
-/// | `stability.csv`, `eigenvalues.csv`, `eigenpairs.csv`, `modes/` | what a test of stability found |
+/// | `pictures/` | pictures drawn on request |
+/// | `report.html` | the page of the run, on request |
+/// | `vtk/` | VTK files, on request |
+/// | `start.safetensors` | the state that the run started from, if not from rest |
+/// | `imperfections/mode-NN.safetensors` | the mode that gives imperfection NN its shape |
+/// | `stability.csv`, `eigenvalues.csv`, `eigenpairs.csv`, `modes/` | results of `stability` |
 #[derive(Debug)]
 pub struct RunDirectory {
     path: PathBuf,
     case_hash: String,
     history: Option<File>,
-    /// Held by whoever writes a run.
+    /// Held by the process that writes the run.
     lock: Option<Lock>,
 }
 
-/// What a manifest says of a run that is being replaced.
+/// How a run ended, as its manifest says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The run has not ended, or was killed.
+    Running,
+    /// Every stage was completed.
+    Complete,
+    /// The run was cancelled.
+    Stopped,
+    /// The tube could not be followed further.
+    Lost,
+}
+
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Running => "running",
+            Self::Complete => "complete",
+            Self::Stopped => "stopped",
+            Self::Lost => "lost",
+        })
+    }
+}
+
+/// Key in the manifest of a run that is being replaced.
 const REPLACED: &str = "replaced";
 
-/// What a manifest names as its program.
-pub const PROGRAM: &str = "plica";
+/// Name of the program in a manifest.
+const PROGRAM: &str = "plica";
 
-/// Name of the file by which a directory is known to be a run.
+/// Name of the file that marks a directory as a run.
 const MANIFEST: &str = "manifest.json";
 
 /// Name of the table of states.
@@ -54,58 +93,61 @@ const HISTORY: &str = "history.csv";
 /// Name of the case as it was run.
 const CASE: &str = "case.toml";
 
-/// Folders of walls, of saved states, and of states that are kept only until pictures are drawn.
+/// Folders of walls, of saved states, and of states that are kept only until the pictures are drawn.
 const PROFILES: &str = "profiles";
 const STATES: &str = "states";
-const SPARE: &str = "spare";
+const TEMPORARY: &str = "temporary";
 
 /// The newest checkpoint, and the one before it.
 const CHECKPOINTS: [&str; 2] = ["checkpoint.safetensors", "checkpoint-before.safetensors"];
 
-/// The state that a run began from.
+/// Name of the state that a run started from.
 const START: &str = "start.safetensors";
 
-/// Folder of the modes that imperfections have the shape of.
+/// Folder of the modes that give imperfections their shapes.
 const IMPERFECTIONS: &str = "imperfections";
 
-/// Ending of the files of saved states.
+/// Extension of the files of saved states.
 const STATE_ENDING: &str = "safetensors";
 
-/// The folders that hold a file of every state, or of some, and the ending of those.
+/// Folders with one file per state, and the extension of these files.
 const OF_STATES: [(&str, &str); 3] = [
     (PROFILES, "csv"),
     (STATES, STATE_ENDING),
-    (SPARE, STATE_ENDING),
+    (TEMPORARY, STATE_ENDING),
 ];
 
 impl RunDirectory {
-    /// Makes the directory and writes the case into it, and its title beside. A directory that holds anything is left
-    /// alone, unless it is that of a former run and `overwrite` is given.
+    /// Creates the directory and writes the case and its title.
+    ///
+    /// # Errors
+    /// [`RunError::NotARun`] if the directory holds anything that is not a run, [`RunError::Occupied`] if it holds a run and
+    /// `overwrite` is false, [`RunError::Busy`] if another process works in it.
     pub fn create(
         path: &Path,
         case_text: &str,
         title: &str,
         overwrite: bool,
-    ) -> Result<Self, StudyError> {
-        let trouble = |source| StudyError::File {
+    ) -> Result<Self, RunError> {
+        let error_at = |source| RunError::File {
             path: path.to_owned(),
             source,
         };
         match fs::read_dir(path) {
             Ok(_) => {
-                if files(path).any(|file| !is_left_over(&file)) {
-                    if !is_a_run(path) {
-                        return Err(StudyError::NotARun(path.to_owned()));
+                if files(path).any(|file| !is_leftover(&file)) {
+                    if !is_run(path) {
+                        return Err(RunError::NotARun(path.to_owned()));
                     }
-                    if !overwrite && !is_unborn(path) {
-                        return Err(StudyError::Occupied(path.to_owned()));
+                    if !overwrite && !is_unwritten(path) {
+                        return Err(RunError::Occupied(path.to_owned()));
                     }
                 }
             }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                fs::create_dir_all(path).map_err(trouble)?;
+                fs::create_dir_all(path).map_err(error_at)?;
             }
-            Err(e) => return Err(trouble(e)),
+            Err(e) => return Err(error_at(e)),
         }
         let lock = Some(Lock::take(path)?);
         let mut directory = Self {
@@ -114,7 +156,7 @@ impl RunDirectory {
             history: None,
             lock,
         };
-        // First of all, so that whatever becomes of the rest it is known as a run: as the former one while that has its case.
+        // First, so that the directory stays a run whatever happens next: the previous one, as long as its case is there.
         let mut about = directory.about();
         about.insert(REPLACED.into(), true.into());
         directory.write_manifest(&about)?;
@@ -124,14 +166,14 @@ impl RunDirectory {
         Ok(directory)
     }
 
-    /// Takes it for this process, until it is dropped.
+    /// Locks the directory for this process, until `self` is dropped.
     ///
     /// # Errors
-    /// [`StudyError::Busy`] if another process has it; else as [`RunDirectory::open`].
-    pub fn own(&mut self) -> Result<(), StudyError> {
+    /// [`RunError::Busy`] if another process works in it; else as [`RunDirectory::open`].
+    pub fn lock(&mut self) -> Result<(), RunError> {
         if self.lock.is_none() {
             let lock = Some(Lock::take(&self.path)?);
-            // Whoever had it may have changed it since.
+            // Another process may have changed it since it was opened.
             *self = Self {
                 lock,
                 ..Self::open(&self.path)?
@@ -140,27 +182,27 @@ impl RunDirectory {
         Ok(())
     }
 
-    /// Opens the directory of a former run, finished or not.
+    /// Opens the directory of a run, complete or not.
     ///
     /// # Errors
-    /// [`StudyError::File`] if it is not there, [`StudyError::NoRun`] if it holds none, and
-    /// [`StudyError::CaseChanged`] if its case is not the one that was run.
-    pub fn open(path: &Path) -> Result<Self, StudyError> {
+    /// [`RunError::File`] if it does not exist, [`RunError::NoRun`] if it holds no run, and
+    /// [`RunError::CaseChanged`] if its case is not the one that was run.
+    pub fn open(path: &Path) -> Result<Self, RunError> {
         let read = |name: &str| {
-            fs::read(path.join(name)).map_err(|source| StudyError::File {
+            fs::read(path.join(name)).map_err(|source| RunError::File {
                 path: path.join(name),
                 source,
             })
         };
         if path.exists() && !path.is_dir() {
-            return Err(StudyError::NoDirectory(path.to_owned()));
+            return Err(RunError::NoDirectory(path.to_owned()));
         }
-        fs::read_dir(path).map_err(|source| StudyError::File {
+        fs::read_dir(path).map_err(|source| RunError::File {
             path: path.to_owned(),
             source,
         })?;
-        if !is_a_run(path) {
-            return Err(StudyError::NoRun(path.to_owned()));
+        if !is_run(path) {
+            return Err(RunError::NoRun(path.to_owned()));
         }
         let manifest: serde_json::Value =
             serde_json::from_slice(&read(MANIFEST)?).unwrap_or_default();
@@ -169,7 +211,7 @@ impl RunDirectory {
             .as_str()
             .is_some_and(|hash| hash != case_hash)
         {
-            return Err(StudyError::CaseChanged(path.join(CASE)));
+            return Err(RunError::CaseChanged(path.join(CASE)));
         }
         Ok(Self {
             path: path.to_owned(),
@@ -179,24 +221,23 @@ impl RunDirectory {
         })
     }
 
-    /// How the run ended, as its manifest says: `complete`, `stopped`, `lost`, or `running` if it
-    /// has not, or was killed.
-    pub fn verdict(&self) -> String {
-        let verdict = manifest(&self.path)["verdict"].as_str().map(String::from);
-        verdict.unwrap_or_else(|| "running".into())
+    /// Returns the verdict in the manifest.
+    pub fn verdict(&self) -> Verdict {
+        let verdict = &manifest(&self.path)["verdict"];
+        Verdict::deserialize(verdict).unwrap_or(Verdict::Running)
     }
 
-    /// What `manifest.json` says; null where there is none.
+    /// Returns the content of `manifest.json`; null if there is none.
     pub fn manifest(&self) -> serde_json::Value {
         manifest(&self.path)
     }
 
-    /// The bytes of one of its files; none if it is not there.
+    /// Returns the bytes of one of its files; none if it cannot be read.
     pub fn read(&self, name: &str) -> Option<Vec<u8>> {
         fs::read(self.path.join(name)).ok()
     }
 
-    /// The rows of one of its tables as texts, the names of the columns first; none if it is not there, or broken.
+    /// Returns the rows of one of its tables as texts, starting with the names of the columns; none if it cannot be read.
     pub fn records(&self, name: &str) -> Option<Vec<Vec<String>>> {
         let mut table = csv::ReaderBuilder::new();
         let mut table = table
@@ -209,81 +250,81 @@ impl RunDirectory {
         rows.collect()
     }
 
-    /// The version of the program that wrote it; empty if its manifest does not say.
-    pub fn written_by(&self) -> String {
+    /// Returns the version of the program that wrote it; empty if the manifest does not say.
+    pub fn version(&self) -> String {
         let version = manifest(&self.path)["version"].as_str().map(String::from);
         version.unwrap_or_default()
     }
 
-    /// How many accepted states its manifest tells of; none if it does not say.
-    pub fn states_told(&self) -> Option<usize> {
+    /// Returns the number of accepted states in the manifest; none if it does not say.
+    pub fn state_count(&self) -> Option<usize> {
         manifest(&self.path)["states"].as_u64().map(|n| n as usize)
     }
 
-    /// The rows of `history.csv`.
+    /// Returns the rows of `history.csv`.
     ///
     /// # Errors
-    /// [`StudyError::File`] if it is not there, or not one of this version's.
-    pub fn history(&self) -> Result<Vec<Row>, StudyError> {
-        match self.history_so_far()? {
+    /// [`RunError::File`] if it cannot be read, is damaged or has other columns.
+    pub fn history(&self) -> Result<Vec<Row>, RunError> {
+        match self.readable_history()? {
             (rows, None) => Ok(rows),
-            (_, Some(broken)) => Err(StudyError::File {
+            (_, Some(broken)) => Err(RunError::File {
                 path: self.path.join(HISTORY),
                 source: std::io::Error::other(broken),
             }),
         }
     }
 
-    /// The rows of `history.csv` up to the first that is broken, as power that fails or a full disk may leave one; and what is
-    /// wrong with that, if there is one.
+    /// Returns the rows of `history.csv` before the first damaged one, and the fault of that one, if there is one. A power failure or a
+    /// full disk can leave a damaged row.
     ///
     /// # Errors
-    /// [`StudyError::File`] if it is not there, or not one of this version's: if already its first row is none.
-    pub fn history_so_far(&self) -> Result<(Vec<Row>, Option<String>), StudyError> {
+    /// [`RunError::File`] if it cannot be read, or if its first row is damaged or has other columns.
+    pub fn readable_history(&self) -> Result<(Vec<Row>, Option<String>), RunError> {
         let path = self.path.join(HISTORY);
-        let trouble = |error: csv::Error| StudyError::File {
+        let error_at = |error: csv::Error| RunError::File {
             path: path.clone(),
             source: std::io::Error::other(error),
         };
         if path.exists() && !path.is_file() {
-            let what = std::io::Error::other("not a plain file");
-            return Err(trouble(what.into()));
+            let what = std::io::Error::other("not a regular file");
+            return Err(error_at(what.into()));
         }
-        let mut table = csv::Reader::from_path(&path).map_err(trouble)?;
+        let mut table = csv::Reader::from_path(&path).map_err(error_at)?;
         let mut rows: Vec<Row> = vec![];
         for row in table.deserialize() {
             match row {
                 Ok(row) => rows.push(row),
-                Err(error) if rows.is_empty() => return Err(trouble(error)),
+                Err(error) if rows.is_empty() => return Err(error_at(error)),
                 Err(error) => return Ok((rows, Some(error.to_string()))),
             }
         }
         Ok((rows, None))
     }
 
-    /// The files of the saved states, in the order of their numbers.
+    /// Returns the files of the saved states, in the order of their numbers.
     ///
     /// # Errors
-    /// [`StudyError::File`] if they cannot be listed; none are no error.
-    pub fn states(&self) -> Result<Vec<PathBuf>, StudyError> {
+    /// [`RunError::File`] if they cannot be listed.
+    pub fn states(&self) -> Result<Vec<PathBuf>, RunError> {
         Ok(self.numbered(STATES, STATE_ENDING)?.into_values().collect())
     }
 
-    /// The files `state-N` with an ending in a folder, by their numbers.
+    /// Returns the files `state-N` with an extension in a folder, by their numbers; an absent folder has none.
     ///
     /// # Errors
-    /// [`StudyError::File`] if they cannot be listed; none are no error.
+    /// [`RunError::File`] if they cannot be listed.
     pub fn numbered(
         &self,
         folder: &str,
         ending: &str,
-    ) -> Result<BTreeMap<usize, PathBuf>, StudyError> {
+    ) -> Result<BTreeMap<usize, PathBuf>, RunError> {
         let folder = self.path.join(folder);
         let entries = match fs::read_dir(&folder) {
             Ok(entries) => entries,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(BTreeMap::new()),
             Err(source) => {
-                return Err(StudyError::File {
+                return Err(RunError::File {
                     path: folder,
                     source,
                 });
@@ -295,63 +336,62 @@ impl RunDirectory {
             .collect())
     }
 
-    /// The relative path of the file of a saved state, by the number of its row.
+    /// Returns the relative path of the file of a saved state, by the number of its row.
     pub fn name_of_state(row: usize) -> String {
         format!("{STATES}/state-{row:04}.{STATE_ENDING}")
     }
 
-    /// The files that keep what the run began with: its first state, if that is not rest, and modes.
-    pub fn kept(&self) -> Vec<PathBuf> {
+    /// Returns the files that the run started from: its start state and the modes of its imperfections.
+    pub fn inputs(&self) -> Vec<PathBuf> {
         let start = Some(self.start()).filter(|start| start.exists());
         let modes = modes(&self.path.join(IMPERFECTIONS));
         start.into_iter().chain(modes).collect()
     }
 
-    /// Where it is.
+    /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The hash (BLAKE3) of the case text.
+    /// Returns the hash (BLAKE3) of the text of the case.
     pub fn case_hash(&self) -> &str {
         &self.case_hash
     }
 
-    /// Whether there is a run at a path: a case, at least, that is to be run.
-    pub fn is_there(path: &Path) -> bool {
-        is_a_run(path) && !is_unborn(path)
+    /// Returns whether there is a run at a path, with a case at least.
+    pub fn exists(path: &Path) -> bool {
+        is_run(path) && !is_unwritten(path)
     }
 
-    /// Where the mode is kept that an imperfection has the shape of; they are counted from 1.
+    /// Returns the path of the mode that gives an imperfection its shape; imperfections are counted from 1.
     pub fn imperfection(&self, number: usize) -> PathBuf {
         self.path.join(imperfection(number))
     }
 
-    /// Where the state is kept that the run began from, if not from rest.
+    /// Returns the path of the state that the run started from, if not from rest.
     pub fn start(&self) -> PathBuf {
         self.path.join(START)
     }
 
-    /// Takes out what a test of stability wrote before.
-    pub fn clear_stability(&self) -> Result<(), StudyError> {
+    /// Removes the results of a stability analysis.
+    pub fn clear_stability(&self) -> Result<(), RunError> {
         remove(stability_files(&self.path))
     }
 }
 
-/// What the manifest in a directory says; nothing if there is none.
+/// Reads the manifest in a directory; null if there is none.
 fn manifest(path: &Path) -> serde_json::Value {
     let bytes = fs::read(path.join(MANIFEST)).unwrap_or_default();
     serde_json::from_slice(&bytes).unwrap_or_default()
 }
 
-/// Whether a directory is that of a former run: its manifest says so.
-fn is_a_run(path: &Path) -> bool {
+/// Returns whether a directory holds a run, by its manifest.
+fn is_run(path: &Path) -> bool {
     manifest(path)["program"] == PROGRAM
 }
 
-/// Whether a directory is that of a run that was killed before its case was there: while it replaced another, maybe. Its manifest
-/// says no more than whose it is.
-fn is_unborn(path: &Path) -> bool {
+/// Returns whether a directory holds a run that was killed before its case was written, perhaps while it replaced another run.
+fn is_unwritten(path: &Path) -> bool {
     let manifest = manifest(path);
     let no_more = |about: &serde_json::Map<String, serde_json::Value>| {
         about
@@ -359,28 +399,28 @@ fn is_unborn(path: &Path) -> bool {
             .all(|key| ["program", "title"].contains(&key.as_str()))
     };
     let begins = manifest[REPLACED] == true || manifest.as_object().is_some_and(no_more);
-    begins && is_a_run(path) && !path.join(CASE).exists()
+    begins && is_run(path) && !path.join(CASE).exists()
 }
 
-/// Whether a file is what is left of a run that could not even begin.
-fn is_left_over(file: &Path) -> bool {
+/// Returns whether a file was left by a run that could not begin.
+fn is_leftover(file: &Path) -> bool {
     let name = file.file_name().and_then(|name| name.to_str());
     ["manifest.part", "case.part", LOCK]
         .map(Some)
         .contains(&name)
 }
 
-/// The relative path of a state that is kept for pictures.
-fn name_of_spare(row: usize) -> String {
-    format!("{SPARE}/state-{row:04}.{STATE_ENDING}")
+/// Returns the relative path of a state that is kept until the pictures are drawn.
+fn name_of_temporary_state(row: usize) -> String {
+    format!("{TEMPORARY}/state-{row:04}.{STATE_ENDING}")
 }
 
-/// The relative path of the mode that an imperfection has the shape of.
+/// Returns the relative path of the mode that gives an imperfection its shape.
 fn imperfection(number: usize) -> String {
     format!("{IMPERFECTIONS}/mode-{number:02}.{STATE_ENDING}")
 }
 
-/// The number N of a file that is called `state-N` with an ending.
+/// Returns the number N of a file `state-N` with an extension.
 fn number_of_state(file: &Path, ending: &str) -> Option<usize> {
     let name = file.file_name()?.to_str()?;
     let number = name.strip_prefix("state-")?.strip_suffix(ending)?;
@@ -389,7 +429,7 @@ fn number_of_state(file: &Path, ending: &str) -> Option<usize> {
     digits.then(|| number.parse().ok())?
 }
 
-/// A directory of its own for a test, empty.
+/// Makes an empty directory for a test.
 #[cfg(test)]
 fn scratch(name: &str) -> PathBuf {
     let path = std::env::temp_dir().join(format!("plica-{name}-{}", std::process::id()));
@@ -403,28 +443,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_a_run_is_never_touched() {
+    fn a_directory_that_holds_no_run_is_not_changed() {
         let path = scratch("not-a-run");
         fs::write(path.join(MANIFEST), r#"{"name": "my web app"}"#).unwrap();
         fs::write(path.join("logo.png"), "logo").unwrap();
         let refused = RunDirectory::create(&path, "case", "", true);
-        assert!(matches!(refused, Err(StudyError::NotARun(_))));
+        assert!(matches!(refused, Err(RunError::NotARun(_))));
         assert_eq!(fs::read(path.join("logo.png")).unwrap(), b"logo");
         fs::remove_dir_all(path).unwrap();
     }
 
     #[test]
-    fn what_is_left_of_a_run_that_could_not_begin_is_no_hindrance() {
+    fn leftovers_of_a_run_that_could_not_begin_are_replaced() {
         let path = scratch("left-over");
         fs::write(path.join("manifest.part"), "{").unwrap();
         RunDirectory::create(&path, "case", "", false).unwrap();
         assert_eq!(fs::read(path.join("case.toml")).unwrap(), b"case");
-        // Cut off while it replaced a run, it begins.
+        // Killed while it replaced a run.
         fs::remove_file(path.join("case.toml")).unwrap();
         fs::write(path.join(HISTORY), "of before").unwrap();
         RunDirectory::create(&path, "again", "", false).unwrap();
         assert!(!path.join(HISTORY).exists());
-        // One that has lost its case is a run still.
+        // A run without its case is still a run.
         fs::remove_file(path.join("case.toml")).unwrap();
         fs::write(
             path.join(MANIFEST),
@@ -432,13 +472,13 @@ mod tests {
         )
         .unwrap();
         let refused = RunDirectory::create(&path, "again", "", false);
-        assert!(matches!(refused, Err(StudyError::Occupied(_))));
+        assert!(matches!(refused, Err(RunError::Occupied(_))));
         RunDirectory::create(&path, "again", "", true).unwrap();
         fs::remove_dir_all(path).unwrap();
     }
 
     #[test]
-    fn a_former_run_is_replaced_when_asked_and_other_files_stay() {
+    fn a_previous_run_is_replaced_on_request_and_other_files_stay() {
         let path = scratch("former-run");
         RunDirectory::create(&path, "first", "", false).unwrap();
         for folder in ["profiles", "states", "vtk/walls", "pictures"] {
@@ -463,7 +503,7 @@ mod tests {
             fs::write(path.join(name), name).unwrap();
         }
         let again = RunDirectory::create(&path, "second", "", false);
-        assert!(matches!(again, Err(StudyError::Occupied(_))));
+        assert!(matches!(again, Err(RunError::Occupied(_))));
         RunDirectory::create(&path, "second", "", true).unwrap();
         assert_eq!(fs::read(path.join("case.toml")).unwrap(), b"second");
         let stays = |name: &str| path.join(name).exists();

@@ -1,8 +1,8 @@
-//! A state in a file: `states/state-NNNN.safetensors`.
+//! The file of a state, `states/state-NNNN.safetensors`.
 //!
 //! The format is [safetensors](https://github.com/huggingface/safetensors): the length of a header,
-//! the header (JSON), then raw arrays, little-endian. Our own words are one JSON object under
-//! `__metadata__.plica`; the arrays are `u` and whatever else goes with the state. The checksum is
+//! the header (JSON), then raw arrays, little-endian. Plica's header is one JSON object under
+//! `__metadata__.plica`; the arrays are `u` and further arrays of the state. The checksum is
 //! BLAKE3 of the whole file with its own 64 digits written as zeros. docs/run-directory.md
 //! describes the file for readers in other languages.
 
@@ -15,21 +15,21 @@ use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
-/// Version of the format that is written, and the newest that is read.
+/// Version of the format that is written, and the newest that can be read.
 pub(super) const FORMAT: u32 = 1;
-/// The checksum before it is known.
+/// Placeholder of the checksum while it is computed.
 pub(super) const BLANK: &str = "0000000000000000000000000000000000000000000000000000000000000000";
 
 impl SavedState {
-    /// The content of its file.
+    /// Returns the content of the file of the state.
     ///
     /// # Errors
-    /// [`SavedStateError::Array`] if an array does not have the length that its shape says, or a number in it is none.
+    /// [`SavedStateError::Array`] if an array does not have the length that its shape says, or a number in it is not finite.
     pub fn to_bytes(&self) -> Result<Vec<u8>, SavedStateError> {
         let header = serde_json::to_string(&self.header()).map_err(Error::other)?;
-        only_numbers("u", &self.u)?;
+        check_finite("u", &self.u)?;
         for (name, array) in &self.arrays {
-            only_numbers(name, &array.values)?;
+            check_finite(name, &array.values)?;
         }
         let u = Array {
             shape: self.layout.shape().to_vec(),
@@ -64,18 +64,18 @@ impl SavedState {
         Ok(bytes)
     }
 
-    /// A state from the content of its file.
+    /// Reads a state from the content of its file.
     ///
     /// # Errors
-    /// Whatever is wrong with it; no content makes this panic, or take much more memory than the
-    /// content itself.
+    /// Any [`SavedStateError`]. No content makes this panic or allocate much more memory than the content itself.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, SavedStateError> {
-        let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|e| unreadable(bytes, &e))?;
-        let file = SafeTensors::deserialize(bytes).map_err(|e| unreadable(bytes, &e))?;
+        let (_, metadata) =
+            SafeTensors::read_metadata(bytes).map_err(|e| format_error(bytes, &e))?;
+        let file = SafeTensors::deserialize(bytes).map_err(|e| format_error(bytes, &e))?;
         let text = metadata.metadata().as_ref().and_then(|m| m.get("plica"));
         let foreign = |what: &str| SavedStateError::Foreign(what.to_owned());
-        let text = text.ok_or_else(|| foreign("its header does not speak of plica"))?;
-        // A later format may look otherwise; its number must be found all the same.
+        let text = text.ok_or_else(|| foreign("its header has no entry `plica`"))?;
+        // The number of a later format must be found even if the rest of its header differs.
         let about: serde_json::Value =
             serde_json::from_str(text).map_err(|e| foreign(&e.to_string()))?;
         let format = about["format"].as_u64().unwrap_or(0);
@@ -99,12 +99,12 @@ impl SavedState {
         Self::new(header, u, arrays)
     }
 
-    /// Reads a file.
+    /// Reads the file of a state.
     ///
     /// # Errors
-    /// As [`SavedState::from_bytes`]; and if it cannot be read, or is no plain file.
+    /// As [`SavedState::from_bytes`]; also if the file cannot be read or is not a regular file.
     pub fn read(path: &Path) -> Result<Self, SavedStateError> {
-        // Before it is opened, which a pipe without a writer never is.
+        // Opening a pipe without a writer would block.
         let about = std::fs::metadata(path)?;
         if !about.is_file() {
             let what = "not a plain file";
@@ -117,36 +117,39 @@ impl SavedState {
     }
 }
 
-/// An array of a file.
+/// Reads an array of a file.
 fn array(name: &str, view: &TensorView<'_>) -> Result<Array, SavedStateError> {
     let wrong = |what: String| SavedStateError::Array {
         name: name.to_owned(),
         what,
     };
     if view.dtype() != Dtype::F64 {
-        return Err(wrong(format!("is of type {:?}, and not F64", view.dtype())));
+        return Err(wrong(format!(
+            "is of type {:?} instead of F64",
+            view.dtype()
+        )));
     }
     let (words, _) = view.data().as_chunks::<8>();
     let values: Vec<f64> = words.iter().map(|&word| f64::from_le_bytes(word)).collect();
-    only_numbers(name, &values)?;
+    check_finite(name, &values)?;
     Ok(Array {
         shape: view.shape().to_vec(),
         values,
     })
 }
 
-/// Refuses an array in which a number is none.
-fn only_numbers(name: &str, values: &[f64]) -> Result<(), SavedStateError> {
+/// Refuses an array with a number that is not finite.
+fn check_finite(name: &str, values: &[f64]) -> Result<(), SavedStateError> {
     match values.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
         Some(at) => Err(SavedStateError::Array {
             name: name.to_owned(),
-            what: format!("is {} at {at}, and not finite", values[at]),
+            what: format!("is {} at {at}, not finite", values[at]),
         }),
     }
 }
 
-/// Holds the checksum that a file carries against its content.
+/// Compares the checksum in a file with its content.
 fn verify(bytes: &[u8], expected: &str) -> Result<(), SavedStateError> {
     let mut hasher = blake3::Hasher::new();
     match position(bytes, expected.as_bytes()) {
@@ -169,13 +172,13 @@ fn verify(bytes: &[u8], expected: &str) -> Result<(), SavedStateError> {
     })
 }
 
-/// Where a text first occurs.
+/// Returns the position of the first occurrence of a text.
 fn position(bytes: &[u8], text: &[u8]) -> Option<usize> {
     (!text.is_empty()).then(|| bytes.windows(text.len()).position(|window| window == text))?
 }
 
-/// Why a file is not even in the format.
-fn unreadable(bytes: &[u8], error: &SafeTensorError) -> SavedStateError {
+/// Converts an error of the file format.
+fn format_error(bytes: &[u8], error: &SafeTensorError) -> SavedStateError {
     use SafeTensorError as E;
     match error {
         E::HeaderTooSmall | E::InvalidHeaderLength | E::MetadataIncompleteBuffer => {
@@ -189,8 +192,8 @@ fn unreadable(bytes: &[u8], error: &SafeTensorError) -> SavedStateError {
 mod tests {
     use super::*;
     use crate::activation::Direction;
+    use crate::saved_state::Layout;
     use crate::spline::Refinement;
-    use crate::study::Layout;
     use crate::tube::{EndMotion, Load, Mesh, Pressure};
 
     /// A state whose numbers use all their bits.

@@ -1,14 +1,13 @@
-//! `manifest.json`: what was run, where, and how it ended.
+//! `manifest.json`: the case, the machine, and how the run ended.
 
-use super::summary::Ending;
-use super::units::Scale;
-use super::{Plan, Row, RunDirectory, StudyError};
+use super::{PROGRAM, RunDirectory, RunError, Verdict};
+use crate::study::{Ending, Plan, Row, Scale};
 use serde::Serialize;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The content of `manifest.json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Manifest {
+pub(super) struct Manifest {
     /// Always `plica`.
     pub program: &'static str,
     /// Version of the program.
@@ -17,13 +16,13 @@ pub struct Manifest {
     pub title: String,
     /// BLAKE3 of `case.toml`.
     pub case_hash: String,
-    /// The state that the run began from, as the case names it; none at rest.
+    /// File of the state that the run started from, as the case names it; none at rest.
     pub start_state: Option<String>,
-    /// The modes that imperfections have the shape of, as the case names them.
+    /// Files of the modes that give imperfections their shapes, as the case names them.
     pub imperfection_modes: Vec<String>,
     /// Architecture and operating system.
     pub machine: String,
-    /// Threads of the run.
+    /// Number of threads.
     pub threads: usize,
     /// Unit of lengths in the tables.
     pub length_unit: String,
@@ -33,31 +32,31 @@ pub struct Manifest {
     pub stress_unit: String,
     /// Seconds since 1970 at the start.
     pub started_unix: u64,
-    /// When and by what it was taken up again, each time.
+    /// Time, version and machine of every resumption.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub resumed: Vec<serde_json::Value>,
     /// Seconds since 1970 at the end; none while it runs.
     pub ended_unix: Option<u64>,
-    /// running, complete, stopped or lost.
-    pub verdict: String,
+    /// How the run ended.
+    pub verdict: Verdict,
     /// The verdict in a sentence.
     pub verdict_text: String,
-    /// Accepted states, rest included.
+    /// Number of accepted states, rest included.
     pub states: usize,
-    /// States that are not in equilibrium (a pseudo-time scheme may accept such).
+    /// Number of states out of equilibrium, which a pseudo-time scheme may accept.
     pub states_out_of_equilibrium: usize,
-    /// States that are unstable.
+    /// Number of unstable states.
     pub states_unstable: usize,
-    /// Whether its pictures are drawn, and what only a run needs that goes on is not.
+    /// Whether the pictures are drawn and temporary files are removed.
     pub closed: bool,
 }
 
 impl Manifest {
-    /// At the start of a run.
+    /// Returns the manifest at the start of a run.
     pub fn begin(plan: &Plan, directory: &RunDirectory) -> Self {
         let scale = Scale::of(plan.units.as_ref());
         Self {
-            program: super::directory::PROGRAM,
+            program: PROGRAM,
             version: env!("CARGO_PKG_VERSION").into(),
             title: plan.title.clone(),
             case_hash: directory.case_hash().to_owned(),
@@ -71,7 +70,7 @@ impl Manifest {
             started_unix: now(),
             resumed: vec![],
             ended_unix: None,
-            verdict: "running".into(),
+            verdict: Verdict::Running,
             verdict_text: "the run has not ended (or was killed)".into(),
             states: 0,
             states_out_of_equilibrium: 0,
@@ -80,8 +79,8 @@ impl Manifest {
         }
     }
 
-    /// Where a run is taken up again: by what it was begun stays.
-    pub fn again(plan: &Plan, directory: &RunDirectory) -> Self {
+    /// Returns the manifest of a resumed run; the entries of its first start stay.
+    pub fn resume(plan: &Plan, directory: &RunDirectory) -> Self {
         let now = Self::begin(plan, directory);
         let before = directory.manifest();
         let mut resumed = before["resumed"].as_array().cloned().unwrap_or_default();
@@ -103,25 +102,33 @@ impl Manifest {
         }
     }
 
-    /// At its end.
+    /// Closes the manifest at the end of a run.
     pub fn end(&mut self, ending: &Ending, rows: &[Row]) {
-        self.close(ending.name(), ending.to_string(), rows);
+        let (verdict, text) = match ending {
+            Ending::Complete => (Verdict::Complete, "every stage was completed".into()),
+            Ending::Stopped => (
+                Verdict::Stopped,
+                "stopped on request; every state so far is kept".into(),
+            ),
+            Ending::Lost(lost) => (Verdict::Lost, lost.to_string()),
+        };
+        self.close(verdict, text, rows);
     }
 
-    /// At an end that is a fault of the program: a number of a state is none.
-    pub fn fail(&mut self, error: &StudyError, rows: &[Row]) {
-        self.close("lost", error.to_string(), rows);
+    /// Closes the manifest after an error of the program: a result is not finite.
+    pub fn fail(&mut self, error: &RunError, rows: &[Row]) {
+        self.close(Verdict::Lost, error.to_string(), rows);
     }
 
-    fn close(&mut self, verdict: &str, text: String, rows: &[Row]) {
+    fn close(&mut self, verdict: Verdict, text: String, rows: &[Row]) {
         self.ended_unix = Some(now());
-        self.verdict = verdict.into();
+        self.verdict = verdict;
         self.verdict_text = text;
         self.states = rows.len();
-        self.states_out_of_equilibrium = rows.iter().filter(|r| r.equilibrium == "no").count();
+        self.states_out_of_equilibrium = rows.iter().filter(|row| !row.in_equilibrium).count();
         self.states_unstable = rows
             .iter()
-            .filter(|r| !["none", "unknown"].contains(&r.unstable_modes.as_str()))
+            .filter(|row| row.stability.is_unstable())
             .count();
     }
 }

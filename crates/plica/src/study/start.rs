@@ -1,0 +1,71 @@
+//! The first state of a study that starts from a saved state, and tubes that their imperfections turn inside out.
+
+use super::{Plan, Start};
+use crate::assembly::{Inverted, SplineTube};
+use crate::equilibrium::{TubeProblem, prolong};
+use crate::monitor::Monitor;
+use crate::saved_state::Layout;
+use crate::solve::{Effort, Equilibrium, Method, PathError, Solution, Step, newton, relaxation};
+use crate::tube::{Mesh, Symmetry, Tube};
+
+/// Transfers a saved state to the mesh of a problem and brings it to equilibrium.
+pub(super) fn equilibrate(
+    plan: &Plan,
+    problem: &TubeProblem,
+    start: &Start,
+    monitor: &mut dyn Monitor,
+) -> Result<(Vec<f64>, Step), PathError<Inverted>> {
+    let Layout { mesh, rings, .. } = &start.state.layout;
+    let from = SplineTube::new(&perfect(&plan.tube), mesh, *rings);
+    let mut u = prolong(&from, &problem.tube, &start.state.u);
+    problem.apply_prescribed(&start.load, &mut u);
+    let (load, settings) = (&start.load, &plan.solver);
+    let mut effort = Effort::default();
+    let newton_failed = match newton(problem, load, u.clone(), settings, &mut effort, monitor) {
+        Ok(solution) => return Ok(step(Method::Newton, solution, effort)),
+        Err(failed) => failed,
+    };
+    // The iterations of the failed attempt count, its linear solves do not.
+    effort.linear_solves = 0;
+    match relaxation(problem, load, u, settings, &mut effort, monitor) {
+        Ok(solution) => Ok(step(Method::Relaxation, solution, effort)),
+        Err(failed) => Err(PathError {
+            attempts: vec![
+                (Method::Newton, newton_failed),
+                (Method::Relaxation, failed),
+            ],
+            step: Step {
+                method: Method::Relaxation,
+                effort: Effort {
+                    linear_solves: 0,
+                    ..effort
+                },
+                damping_work: 0.0,
+            },
+        }),
+    }
+}
+
+/// Returns the unknowns and the step of a solution.
+fn step(method: Method, solution: Solution, effort: Effort) -> (Vec<f64>, Step) {
+    let step = Step {
+        method,
+        effort,
+        damping_work: solution.damping_work,
+    };
+    (solution.u, step)
+}
+
+/// Returns an element that the imperfections of a tube turn inside out, if there is one.
+pub fn inverted_by_imperfections(tube: &Tube, mesh: &Mesh, symmetry: Symmetry) -> Option<Inverted> {
+    let perfect = SplineTube::new(&perfect(tube), mesh, mesh.rings(symmetry));
+    perfect.can_have(&tube.imperfections).err()
+}
+
+/// Returns a tube without its imperfections.
+fn perfect(tube: &Tube) -> Tube {
+    Tube {
+        imperfections: vec![],
+        ..tube.clone()
+    }
+}

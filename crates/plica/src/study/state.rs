@@ -1,0 +1,127 @@
+//! An accepted state of a study.
+
+use super::Plan;
+use crate::equilibrium::{Stability, TubeProblem};
+use crate::measure::Measures;
+use crate::solve::{Method, Step};
+use crate::tube::Load;
+
+/// An accepted state of a study. Lengths in D, energies in E·D³, stresses in E.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Number of the state, from 0 (the tube at rest, or the state the study starts from).
+    pub number: usize,
+    /// Name of the stage; `rest` or `start` for state 0.
+    pub stage: String,
+    /// Whether the state is the last of its stage, as planned or because the tube could not be followed further.
+    pub ends_stage: bool,
+    /// Fraction of the stage that is completed, 0 to 1.
+    pub stage_fraction: f64,
+    /// The load.
+    pub load: Load,
+    /// Displacements of the control points of the cyclic sector, in D; [`crate::saved_state::Layout::shape`] has
+    /// the order of the indices.
+    pub unknowns: Vec<f64>,
+    /// Strain energy W = ∫ w det Fp dV₀ of the whole tube, over the grown volume.
+    pub energy: f64,
+    /// Strain energy ∫ w dV₀ of the whole tube, over the ungrown volume, as some other programs report it.
+    pub energy_ungrown_volume: f64,
+    /// Strain energy plus the potential of the pressures, which is zero at rest.
+    pub potential: f64,
+    /// Relative residual without damping.
+    pub relative_residual: f64,
+    /// Method by which the state was found.
+    pub method: Method,
+    /// Whether the relative residual without damping meets the tolerance.
+    pub in_equilibrium: bool,
+    /// Linear solves since the previous state, including those of rejected attempts.
+    pub linear_solves: usize,
+    /// Iterations inside these linear solves; 0 for a direct solver.
+    pub inner_iterations: usize,
+    /// Wall time since the previous state, in seconds.
+    pub seconds: f64,
+    /// Measures of the deformed walls.
+    pub measures: Measures,
+    /// Smallest det Fe at any quadrature point.
+    pub min_det_fe: f64,
+    /// Stability of the state.
+    pub stability: Stability,
+    length_ratio: f64,
+    diameter_ratio: f64,
+    /// Damping work of one cyclic sector.
+    pub(super) sector_damping_work: f64,
+    /// Number of cyclic sectors of the tube.
+    pub(super) sectors: f64,
+}
+
+/// A point of a stage at which a state is accepted.
+pub(super) struct Milestone<'a> {
+    pub number: usize,
+    pub stage: &'a str,
+    pub ends_stage: bool,
+    pub stage_fraction: f64,
+}
+
+impl State {
+    /// Returns the grown length over the length, Lmax/L.
+    pub fn length_ratio(&self) -> f64 {
+        self.length_ratio
+    }
+
+    /// Returns the narrowest grown diameter over the diameter, Dmin/D.
+    pub fn diameter_ratio(&self) -> f64 {
+        self.diameter_ratio
+    }
+
+    /// Returns the work done against damping since the previous state, in E·D³.
+    pub fn damping_work(&self) -> f64 {
+        self.sectors * self.sector_damping_work
+    }
+
+    /// Evaluates an equilibrium that the solver has accepted.
+    pub(super) fn evaluate(
+        plan: &Plan,
+        problem: &TubeProblem,
+        at: &Milestone<'_>,
+        accepted: &crate::solve::State<Load>,
+        step: &Step,
+        stability: Stability,
+        seconds: f64,
+    ) -> Self {
+        let tube = &problem.tube;
+        // The solver has evaluated the energy of this state already.
+        let Ok(forces) = tube.forces(&accepted.load, &accepted.u) else {
+            unreachable!("an accepted state is not inverted")
+        };
+        let above_rounding = |energy: f64| {
+            let tube = &plan.tube;
+            let rounding =
+                1e-15 * tube.material.longitudinal_modulus() * tube.thickness * tube.length;
+            if energy.abs() < rounding { 0.0 } else { energy }
+        };
+        Self {
+            number: at.number,
+            stage: at.stage.to_owned(),
+            ends_stage: at.ends_stage,
+            stage_fraction: at.stage_fraction,
+            energy: above_rounding(forces.energy),
+            energy_ungrown_volume: above_rounding(forces.energy_ungrown),
+            potential: above_rounding(forces.potential),
+            relative_residual: accepted.relative_residual,
+            method: step.method,
+            in_equilibrium: accepted.in_equilibrium() || step.method == Method::Rest,
+            linear_solves: step.effort.linear_solves,
+            inner_iterations: step.effort.inner_iterations,
+            seconds,
+            measures: Measures::of(tube, &accepted.load, &accepted.u),
+            min_det_fe: forces.smallest_jacobian,
+            stability,
+            length_ratio: plan.tube.length_ratio(&accepted.load),
+            diameter_ratio: plan.tube.diameter_ratio(&accepted.load),
+            sector_damping_work: step.damping_work,
+            sectors: tube.sector.repeats(),
+            load: accepted.load.clone(),
+            unknowns: accepted.u.clone(),
+        }
+    }
+}

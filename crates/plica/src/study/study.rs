@@ -1,0 +1,382 @@
+//! The iterator of states.
+
+use super::start::equilibrate;
+use super::state::Milestone;
+use super::{Lost, Phase, Plan, State, StudyError, check_memory};
+use crate::assembly::SplineTube;
+use crate::equilibrium::{TubeProblem, test_stability};
+use crate::monitor::{Monitor, Part};
+use crate::solve::{ContinuationState, Effort, Failure, Method, Path, PathError, Step};
+use crate::tube::Load;
+use std::time::Instant;
+
+/// A tube that is followed through the stages of a plan: an iterator of accepted states.
+///
+/// The first state is the tube at rest, with its imperfections, or the state that the plan starts
+/// from. Then every step of every stage ends in one state. The iterator ends after the last stage,
+/// when it is cancelled, or with an error when the tube cannot be followed further.
+pub struct Study {
+    plan: Plan,
+    problem: TubeProblem,
+    /// The path at the last accepted state; none before the first.
+    path: Option<Path<TubeProblem>>,
+    /// Stage that the path is in; none before the first.
+    stage: Option<usize>,
+    /// Completed steps of that stage.
+    completed_steps: usize,
+    /// Number of the next state.
+    next_number: usize,
+    ending: Option<Ending>,
+    /// Whether the caller has received the error of a lost tube.
+    error_returned: bool,
+    since: Instant,
+}
+
+/// How a study ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// Every stage was completed.
+    Complete,
+    /// A monitor cancelled it.
+    Stopped,
+    /// The tube could not be followed further.
+    Lost(Box<Lost>),
+}
+
+/// What it takes to resume a study after one of its states, bit for bit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Continuation {
+    /// Number of the state.
+    pub number: usize,
+    /// Stage that the path is in, from 0; none before the first.
+    pub stage: Option<usize>,
+    /// Load of the state.
+    pub load: Load,
+    /// Unknowns of the state.
+    pub unknowns: Vec<f64>,
+    /// What the path remembers of the steps before.
+    pub path: ContinuationState,
+}
+
+impl Continuation {
+    /// Returns the loads at both ends of the load segment that the path is in; none if the plan has no such stage.
+    pub fn segment(&self, plan: &Plan) -> Option<[Load; 2]> {
+        let first = plan.first_load();
+        let end = |stage: usize| Some(plan.stages.get(stage)?.load.clone());
+        match self.stage {
+            None => Some([first.clone(), first]),
+            Some(0) => Some([first, end(0)?]),
+            Some(stage) => Some([end(stage - 1)?, end(stage)?]),
+        }
+    }
+}
+
+impl Study {
+    /// Prepares a study; its first state is computed when it is asked for.
+    ///
+    /// # Errors
+    /// [`StudyError::OutOfMemory`] if the machine has too little free memory, where the system reports it.
+    pub fn new(plan: &Plan) -> Result<Self, StudyError> {
+        check_memory(plan)?;
+        let rings = plan.mesh.rings(plan.symmetry);
+        Ok(Self {
+            plan: plan.clone(),
+            problem: TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings)),
+            path: None,
+            stage: None,
+            completed_steps: 0,
+            next_number: 0,
+            ending: None,
+            error_returned: false,
+            since: Instant::now(),
+        })
+    }
+
+    /// Resumes a study after one of its states; the next state is the one after it, the same to the
+    /// bit as without the interruption.
+    ///
+    /// # Errors
+    /// [`StudyError::Resume`] if the state does not belong to the plan; else as [`Study::new`].
+    pub fn resume(plan: &Plan, from: Continuation) -> Result<Self, StudyError> {
+        let mut study = Self::new(plan)?;
+        let unknown_stage = || StudyError::Resume("the case has no such stage".into());
+        let segment = from.segment(plan).ok_or_else(unknown_stage)?;
+        let path = Path::resume(
+            study.problem.clone(),
+            segment,
+            from.load,
+            from.unknowns,
+            from.path,
+            plan.solver.clone(),
+        );
+        let path =
+            path.map_err(|error| StudyError::Resume(format!("its state is not a wall: {error}")))?;
+        if let Some(stage) = from.stage {
+            study.completed_steps = completed_steps(plan.stages[stage].steps, path.reached());
+        }
+        study.stage = from.stage;
+        study.next_number = from.number + 1;
+        study.path = Some(path);
+        Ok(study)
+    }
+
+    /// Returns the plan.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Returns the discretised tube.
+    pub fn tube(&self) -> &SplineTube {
+        &self.problem.tube
+    }
+
+    /// Returns how the study ended; none while it has not.
+    pub fn ending(&self) -> Option<&Ending> {
+        self.ending.as_ref()
+    }
+
+    /// Ends the study after the last state.
+    pub fn stop(&mut self) {
+        self.ending.get_or_insert(Ending::Stopped);
+    }
+
+    /// Returns what it takes to resume the study after its last state; none before the first and once the study has
+    /// ended early.
+    pub fn continuation(&self) -> Option<Continuation> {
+        if !matches!(self.ending, None | Some(Ending::Complete)) {
+            return None;
+        }
+        let path = self.path.as_ref()?;
+        Some(Continuation {
+            number: self.next_number - 1,
+            stage: self.stage,
+            load: path.state().load.clone(),
+            unknowns: path.state().u.clone(),
+            path: path.continuation_state(),
+        })
+    }
+
+    /// Computes the next state and reports progress to a monitor, which may cancel.
+    ///
+    /// Returns none after the last state and after a cancellation.
+    pub fn next_state(&mut self, monitor: &mut dyn Monitor) -> Option<Result<State, StudyError>> {
+        let state = match self.ending {
+            Some(_) => None,
+            None if self.path.is_none() => self.first_state(monitor),
+            None if monitor.is_cancelled() => {
+                self.stop();
+                None
+            }
+            None => self.advance(monitor),
+        };
+        if let Some(state) = state {
+            return Some(Ok(state));
+        }
+        match &self.ending {
+            Some(Ending::Lost(lost)) if !self.error_returned => {
+                self.error_returned = true;
+                Some(Err(StudyError::Lost(lost.clone())))
+            }
+            _ => None,
+        }
+    }
+
+    /// Computes the tube at rest with its imperfections, or the state that the plan starts from.
+    fn first_state(&mut self, monitor: &mut dyn Monitor) -> Option<State> {
+        let name = if self.plan.start.is_some() {
+            "start"
+        } else {
+            "rest"
+        };
+        let found = {
+            let monitor = &mut Part::new(monitor, name, 0.0, 0.0);
+            match &self.plan.start {
+                Some(start) => {
+                    equilibrate(&self.plan, &self.problem, start, monitor).map(|(u, step)| {
+                        match self.begin(start.load.clone(), u) {
+                            Ok(path) => (path, step),
+                            Err(error) => unreachable!("an equilibrium is not inverted: {error}"),
+                        }
+                    })
+                }
+                None => self.rest(monitor),
+            }
+        };
+        match found {
+            Ok((path, step)) => {
+                self.path = Some(path);
+                Some(self.accept(name, &step, true, monitor))
+            }
+            Err(error) => {
+                let phase = match self.plan.start {
+                    Some(_) => Phase::Start,
+                    None => Phase::Rest,
+                };
+                self.end(phase, error, false);
+                None
+            }
+        }
+    }
+
+    fn begin(
+        &self,
+        load: Load,
+        u: Vec<f64>,
+    ) -> Result<Path<TubeProblem>, crate::assembly::Inverted> {
+        Path::begin(self.problem.clone(), load, u, self.plan.solver.clone())
+    }
+
+    /// Brings the tube to rest, which takes a solve if it has imperfections.
+    fn rest(
+        &self,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(Path<TubeProblem>, Step), PathError<crate::assembly::Inverted>> {
+        let rest = self.plan.tube.rest();
+        let step = Step {
+            method: Method::Rest,
+            effort: Effort {
+                linear_solves: 1,
+                inner_iterations: 0,
+            },
+            damping_work: 0.0,
+        };
+        let mut path = self
+            .begin(rest.clone(), self.problem.tube.start())
+            .map_err(|error| PathError {
+                attempts: vec![(Method::Rest, Failure::Evaluation(error))],
+                step,
+            })?;
+        if self.plan.tube.imperfections.is_empty() {
+            return Ok((path, step));
+        }
+        path.begin_segment(rest);
+        let step = path.advance(1.0, monitor)?;
+        Ok((path, step))
+    }
+
+    /// Computes the next step of the stage, or the first of the next stage.
+    fn advance(&mut self, monitor: &mut dyn Monitor) -> Option<State> {
+        let path = self.path.as_mut()?;
+        let ended = |stage: usize| self.completed_steps >= self.plan.stages[stage].steps;
+        let stage = match self.stage {
+            Some(stage) if !ended(stage) => stage,
+            before => {
+                let next = before.map_or(0, |stage| stage + 1);
+                let Some(stage) = self.plan.stages.get(next) else {
+                    self.ending = Some(Ending::Complete);
+                    return None;
+                };
+                path.begin_segment(stage.load.clone());
+                (self.stage, self.completed_steps) = (Some(next), 0);
+                next
+            }
+        };
+        let (name, steps) = {
+            let stage = &self.plan.stages[stage];
+            (stage.name.clone(), stage.steps)
+        };
+        let step = self.completed_steps + 1;
+        let before: usize = self.plan.stages[..stage].iter().map(|s| s.steps).sum();
+        let done = before + self.completed_steps;
+        let (from, all) = (path.reached(), self.plan.steps());
+        let advanced = {
+            let activity = format!("{name}, step {step} of {steps}");
+            let fraction = |steps: usize| steps as f64 / all as f64;
+            let monitor = &mut Part::new(monitor, activity, fraction(done), 0.0);
+            path.advance(step as f64 / steps as f64, monitor)
+        };
+        match advanced {
+            Ok(found) => {
+                self.completed_steps = step;
+                Some(self.accept(&name, &found, step == steps, monitor))
+            }
+            Err(error) => {
+                // A state that was reached on the way is a good state, too.
+                let reached_more = path.reached() > from;
+                let found = error.step;
+                let phase = Phase::Stage {
+                    name: name.clone(),
+                    step,
+                    steps,
+                };
+                let state = reached_more.then(|| self.accept(&name, &found, true, monitor));
+                self.end(phase, error, true);
+                state
+            }
+        }
+    }
+
+    /// Tests and measures the state that the path has reached.
+    fn accept(
+        &mut self,
+        stage: &str,
+        step: &Step,
+        ends_stage: bool,
+        monitor: &mut dyn Monitor,
+    ) -> State {
+        let Some(path) = &mut self.path else {
+            unreachable!("a state is accepted on a path")
+        };
+        let modes = self.plan.output.stability_modes;
+        let stability = {
+            let fraction = self.next_number as f64 / (1 + self.plan.steps()) as f64;
+            let monitor = &mut Part::new(monitor, "testing stability", fraction, 0.0);
+            test_stability(&self.problem, path, modes, monitor)
+        };
+        let milestone = Milestone {
+            number: self.next_number,
+            stage,
+            ends_stage,
+            stage_fraction: path.reached(),
+        };
+        let seconds = self.since.elapsed().as_secs_f64();
+        let state = State::evaluate(
+            &self.plan,
+            &self.problem,
+            &milestone,
+            path.state(),
+            step,
+            stability,
+            seconds,
+        );
+        self.next_number += 1;
+        self.since = Instant::now();
+        state
+    }
+
+    /// Ends the study because no next state was found.
+    fn end(
+        &mut self,
+        phase: Phase,
+        error: PathError<crate::assembly::Inverted>,
+        has_good_state: bool,
+    ) {
+        self.ending = Some(if error.is_cancelled() {
+            Ending::Stopped
+        } else {
+            let path = self.path.as_ref().filter(|_| has_good_state);
+            let last = path.map(|path| (&path.state().load, path.state().u.as_slice()));
+            Ending::Lost(Box::new(Lost::new(
+                &self.plan,
+                self.tube(),
+                phase,
+                error,
+                last,
+            )))
+        });
+    }
+}
+
+impl Iterator for Study {
+    type Item = Result<State, StudyError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.next_state(&mut ())
+    }
+}
+
+/// Returns how many of a stage's equal steps are completed at a fraction of the stage.
+fn completed_steps(steps: usize, reached: f64) -> usize {
+    let completed = |n: &usize| *n as f64 / steps as f64 <= reached;
+    (1..=steps).take_while(completed).count()
+}
