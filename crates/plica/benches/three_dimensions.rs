@@ -58,7 +58,7 @@ fn far_from_round() {
         let mut plan = plica::case::read(text, name).expect("the case is sound");
         [plan.mesh.axial, plan.mesh.around, plan.mesh.thickness] = mesh;
         let whole = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, mesh[1]));
-        let start = whole.tube.start();
+        let start = whole.tube.initial_guess();
         let mut path = Path::begin(&whole, plan.tube.rest(), start, plan.solver.clone())
             .expect("a tube at rest is not inverted");
         for (number, stage) in (1..).zip(&plan.stages) {

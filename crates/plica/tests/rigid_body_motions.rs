@@ -36,7 +36,7 @@ fn contracted(plan: &Plan) -> Load {
 /// Returns the energies of two states and the effort of finding them.
 fn states(plan: &Plan, rings: usize) -> Vec<(f64, Effort)> {
     let problem = problem(plan, rings);
-    let rest = problem.tube.start();
+    let rest = problem.tube.initial_guess();
     let mut path = Path::begin(&problem, plan.tube.rest(), rest, plan.solver.clone()).unwrap();
     path.begin_segment(contracted(plan));
     [0.5, 1.0]
@@ -110,7 +110,7 @@ fn uneven_contraction(
     });
     let problem = problem(&plan, rings);
     let (tube, rest) = (&problem.tube, plan.tube.rest());
-    let mut start = tube.control_values(|_, _, ring| {
+    let mut start = tube.control_values_from(|_, _, ring| {
         let (sin, cos) = tube.sector.ring_angle(ring).sin_cos();
         [shift, shift * cos, -shift * sin]
     });

@@ -47,7 +47,7 @@ fn the_tangent_of_every_case_is_the_derivative_of_its_residual() {
         let load = plan.tube.rest().towards(&plan.stages[0].load, 0.5);
         let field = |seed| {
             let waves = waves(seed);
-            tube.control_values(|z, r, ring| waves(z, r, ring as f64 / rings as f64))
+            tube.control_values_from(|z, r, ring| waves(z, r, ring as f64 / rings as f64))
         };
         // The displacement is smaller than an eighth of the thickness, because control points next to a fixed end
         // move while the end does not.

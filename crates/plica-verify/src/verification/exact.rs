@@ -60,7 +60,7 @@ pub fn objectivity(found: &mut Findings<'_>) -> Result<(), Trouble> {
     let turned = |[z, x, y]: [f64; 3]| [cos * z - sin * x + 0.3, sin * z + cos * x - 0.2, y + 0.1];
     let control = tube.circle.control_radius;
     let displaced = |whole: bool| {
-        tube.control_values(|z, r, ring| {
+        tube.control_values_from(|z, r, ring| {
             let phi = tube.sector.ring_angle(ring);
             let (s, c) = phi.sin_cos();
             let [along, outwards, around] = wavy(z, r, phi);
@@ -216,7 +216,7 @@ pub fn rest(found: &mut Findings<'_>) -> Result<(), Trouble> {
         .fold(0.0_f64, |most, r| most.max(r.abs()));
     found.nothing(1e-15, "largest residual", largest, "no stress");
     // ∫ N N dV₀ on a displacement of one along the axis, twice.
-    let along = tube.control_values(|_, _, _| [1.0, 0.0, 0.0]);
+    let along = tube.control_values_from(|_, _, _| [1.0, 0.0, 0.0]);
     let mut weighed = vec![0.0; along.len()];
     tube.damping().multiply_add(1.0, &along, &mut weighed);
     let volume: f64 = along.iter().zip(&weighed).map(|(u, m)| u * m).sum();

@@ -199,7 +199,7 @@ impl Manufactured {
         let spline = &self.problem.tube;
         let circle = 1.0 / spline.circle.control_radius;
         // From u* at Greville's abscissae, which is near.
-        let mut start = spline.control_values(|z, r, _| {
+        let mut start = spline.control_values_from(|z, r, _| {
             let ([along, outwards], _) = chosen(z, r);
             [along, outwards / circle, 0.0]
         });

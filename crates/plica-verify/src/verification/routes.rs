@@ -36,7 +36,7 @@ fn driven(specimen: &Specimen, diameter: f64, length: f64) -> Load {
 /// A sum of waves, of no symmetry.
 fn waves(problem: &TubeProblem, seed: f64) -> Vec<f64> {
     let tube = &problem.tube;
-    tube.control_values(|z, r, ring| {
+    tube.control_values_from(|z, r, ring| {
         let phi = tube.sector.ring_angle(ring) * tube.sector.repeats();
         [0.0, 1.0, 2.0].map(|i| (2.3 * z + 5.0 * r + (1.0 + i) * phi + seed * (1.0 + i)).sin())
     })

@@ -92,7 +92,7 @@ impl PointData {
         let E = |i: usize, j: usize| 0.5 * (C[i][j] - f64::from(u8::from(i == j)));
         let (position, reference) = (reorder(sample.position), reorder(sample.reference));
         // Stress and energy do not exist in an inverted element and are set to zero; det Fe shows the reason.
-        let inverted = sample.is_turned_over();
+        let inverted = sample.is_inverted();
         let existing = |x: f64| if inverted { 0.0 } else { x };
         let jacobian = if inverted {
             sample.jacobian.min(Fe.determinant())
@@ -148,7 +148,7 @@ mod tests {
                 };
                 let tube = SplineTube::new(&tube, &mesh, 1);
                 // In the middle of the tube the inner face moves beyond the outer one.
-                let u = tube.control_values(|z, r, _| {
+                let u = tube.control_values_from(|z, r, _| {
                     [
                         0.0,
                         4.0 * (0.45 - r) * (-40.0 * (z - 0.5).powi(2)).exp(),
@@ -177,7 +177,7 @@ mod tests {
                         ];
                         let all = stresses.as_flattened();
                         assert!(all.iter().all(|x| x.is_finite()));
-                        if sample.is_turned_over() {
+                        if sample.is_inverted() {
                             inverted += 1;
                             assert!(point.jacobian <= 0.0);
                             assert!(all.iter().all(|x| *x == 0.0));

@@ -106,7 +106,7 @@ mod tests {
 
     fn points(tube: &SplineTube, lattice: Lattice) -> Vec<PointData> {
         // Wider along the tube, and twisted.
-        let u = tube.control_values(|z, r, _| [0.1 * z * z, 0.2 * z * r, 0.3 * z * r]);
+        let u = tube.control_values_from(|z, r, _| [0.1 * z * z, 0.2 * z * r, 0.3 * z * r]);
         let points = Points::sample(tube, &tube.tube.rest(), &u, lattice);
         let rotated = points.map(|point, rotation| PointData {
             position: rotation.vector(point.position),

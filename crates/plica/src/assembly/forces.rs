@@ -1,195 +1,174 @@
-//! Energy and residual of a slab: W and R = ∂W/∂u_cp.
+//! Energy and residual of a tube.
 
-use super::kinematics::{Vector, turn_back};
-use super::slab::{SlabInput, contract_along, contract_through, gradients};
-use super::tables::Layer;
-use crate::material::Law;
-use crate::tensor::{Lanes, Real};
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f64x8};
+use super::axial::{self, BatchForces, SmallestJacobian};
+use super::batch_input::CIRCUMFERENTIAL_BATCH_RINGS;
+use super::circumferential;
+use super::dispatch::{with_degree, with_law_and_degree};
+use super::tables::AxialBatch;
+use super::{Place, SplineTube};
+use crate::material::Material;
+use crate::tube::Load;
+use rayon::prelude::*;
 
-/// What a slab adds to the energy and the residual.
-#[derive(Clone, Debug, Default)]
-pub struct SlabForces {
-    /// ∫ w det Fp dV₀.
+/// Energy and residual at a state.
+#[derive(Clone, Debug)]
+pub struct Forces {
+    /// ∫ w det Fp dV₀ of the whole tube: the paper's W, in E·D³.
     pub energy: f64,
-    /// ∫ w dV₀.
+    /// ∫ w dV₀ of the whole tube, over the ungrown volume.
     pub energy_ungrown: f64,
-    /// The smallest det Fe.
-    pub worst: Worst,
-    /// R, row by row as the displacements.
+    /// Π of the whole tube: W plus the potential of the pressures, zero at rest.
+    pub potential: f64,
+    /// R of the sector, in E·D²: ∂Π/∂u_cp of the whole tube over the number of repeats.
     pub residual: Vec<f64>,
-    /// Sum of the squares of what the elements add to each entry of R.
-    pub squares: f64,
+    /// Residual scale: root of the sum of squares of the element contributions to R, before they
+    /// cancel.
+    pub residual_scale: f64,
+    /// Smallest det Fe at any quadrature point; of the volumetric points, if the volumetric part of
+    /// the law has its own.
+    pub smallest_jacobian: f64,
 }
 
-/// Where det Fe is smallest.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Worst {
-    /// det Fe there; NaN where Fe is not a number.
-    pub jacobian: f64,
-    /// Element along the slab (its lane; 0 in a pencil), layer and element around.
+/// An inverted element: det Fe is not positive, or NaN.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the wall is inverted (det Fe = {jacobian:.3e}, element {element:?})")]
+pub struct Inverted {
+    /// Element along the tube, through the wall and around the sector.
     pub element: [usize; 3],
-    /// Quadrature point through the wall.
-    pub qr: usize,
+    /// Middle of the element along and around, at the depth of the point with the smallest det Fe.
+    pub place: Place,
+    /// det Fe there.
+    pub jacobian: f64,
 }
 
-impl Worst {
-    /// Keeps the smallest det Fe, and its point; one that is not a number counts as smallest.
-    /// `element` names the element of a lane.
-    #[inline(always)]
-    pub fn note<S: Simd>(&mut self, J: f64x8<S>, element: impl Fn(usize) -> [usize; 3], qr: usize) {
-        // Hardly ever is there a smaller one; what is not a number is not greater either.
-        if J.simd_ge(J.like(self.jacobian)).all_true() {
-            return;
+impl SplineTube {
+    /// Assembles energy and residual of a state `u` under a load.
+    ///
+    /// # Errors
+    /// [`Inverted`] if det Fe is not positive at a quadrature point.
+    pub fn forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
+        let mut forces = self.elastic_forces(load, u)?;
+        if let Some(part) = &self.volumetric {
+            let volumetric = part.elastic_forces(load, u)?;
+            forces.energy += volumetric.energy;
+            forces.energy_ungrown += volumetric.energy_ungrown;
+            forces.residual_scale = forces.residual_scale.hypot(volumetric.residual_scale);
+            // At the points of the deviatoric part det Fe only has to be positive.
+            forces.smallest_jacobian = volumetric.smallest_jacobian;
+            for (sum, part) in forces.residual.iter_mut().zip(&volumetric.residual) {
+                *sum += part;
+            }
         }
-        let J = Lanes::store(J);
-        let smallest = J.min();
-        if smallest >= self.jacobian || self.jacobian.is_nan() {
-            return;
-        }
-        let is_worst = |x: &f64| *x == smallest || x.is_nan();
-        let lane = J.0.iter().position(is_worst).unwrap_or(0);
-        *self = Self {
-            jacobian: smallest,
-            element: element(lane),
-            qr,
+        forces.potential = forces.energy;
+        self.add_pressure(load, u, &mut forces);
+        Ok(forces)
+    }
+
+    /// Assembles energy and residual of the wall, without pressures and without the volumetric
+    /// part.
+    fn elastic_forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
+        let batches: Vec<BatchForces> = if self.sector.rings < CIRCUMFERENTIAL_BATCH_RINGS {
+            let forces = |(number, batch): (usize, &AxialBatch)| {
+                let stretch = self.inverse_stretch(batch, load);
+                let shape = self.stress_free_in_axial_batch(number);
+                let input = self.axial_input(batch, (&stretch, shape.as_deref()), u);
+                with_law_and_degree!(self, self.law, axial::forces, &input)
+            };
+            self.batches.par_iter().enumerate().map(forces).collect()
+        } else {
+            let u = self.padded_rings.pad(u);
+            let forces = |number| self.circumferential_forces(number, load, &u);
+            (0..self.batches.len())
+                .into_par_iter()
+                .map(forces)
+                .collect()
         };
-    }
-}
 
-/// Energy and residual of one slab. `N` is the degree plus one.
-pub fn slab_forces<L: Law, const N: usize>(law: &L, input: &SlabInput<'_>) -> SlabForces {
-    dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input))
-}
-
-#[inline(always)]
-fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &SlabInput<'_>) -> SlabForces {
-    let SlabInput {
-        slab,
-        layers,
-        around,
-        ..
-    } = *input;
-    let slots = input.slots();
-    let nil = f64x8::splat(simd, 0.0);
-    let zero = [nil; 3];
-
-    let mut worst = Worst {
-        jacobian: f64::INFINITY,
-        ..Worst::default()
-    };
-    let mut residual = vec![0.0; input.u.len()];
-    let (mut energy, mut energy_ungrown, mut squares) = (nil, nil, nil);
-
-    // Displacements and forces of the control points of the elements at hand, per (a, c, r); the
-    // same contracted along the tube, per (c, r): value, slope over ζ; and through the wall, per
-    // r: value, slope over ζ, slope over R.
-    let mut u = vec![zero; N * N * slots];
-    let mut force = vec![zero; N * N * slots];
-    let mut along = vec![[zero; 2]; N * slots];
-    let mut along_force = vec![[zero; 2]; N * slots];
-    let mut through = vec![[zero; 3]; slots];
-    let mut through_force = vec![[zero; 3]; slots];
-
-    for (t, layer) in layers.iter().enumerate() {
-        for element in 0..input.rings {
-            input.gather::<S, N>(simd, layer, element, &mut u);
-            force.fill(zero);
-            for qz in 0..N {
-                let (inverse_along, inverse_around) = input.inverse_stretch[qz];
-                let inverse_along = inverse_along.load(simd);
-                let inverse_around = inverse_around.load(simd);
-                let along_point = (qz, [inverse_along, inverse_around]);
-                let growth = nil.like(1.0) / (inverse_along * inverse_around); // det Fp
-                let weight = slab.weight[qz].load(simd);
-                contract_along::<S, N>(simd, slab, qz, &u, &mut along);
-                along_force.fill([zero; 2]);
-                for qr in 0..N {
-                    let radius = layer.radius[qr];
-                    contract_through::<S, N>(simd, layer, qr, &along, &mut through);
-                    through_force.fill([zero; 3]);
-                    for (qs, point) in around.iter().enumerate() {
-                        let columns = input.columns(simd, along_point, [t, element], [qr, qs]);
-                        let Fe = columns.elastic(point, radius, gradients(simd, point, &through));
-                        worst.note(Fe.determinant(), |lane| [lane, t, element], qr);
-
-                        let volume = weight.times(layer.weight[qr] * point.volume(radius)); // dV₀
-                        let volume = columns.volume(volume);
-                        let grown = volume * growth;
-                        let w = law.energy(&Fe);
-                        energy = Real::mul_add(w, grown, energy);
-                        energy_ungrown = Real::mul_add(w, volume, energy_ungrown);
-
-                        let [zeta, s, r] = columns.pulled_back(&law.stress(&Fe).scaled(grown));
-                        for (slot, f) in point.slots.iter().zip(&mut through_force) {
-                            f[0] = turn_back(slot, 1, s, f[0]); // ∂N : P Fp⁻ᵀ det Fp
-                            f[1] = turn_back(slot, 0, zeta, f[1]);
-                            f[2] = turn_back(slot, 0, r, f[2]);
-                        }
-                    }
-                    for c in 0..N {
-                        let m = nil.like(layer.value[qr * N + c]);
-                        let dm = nil.like(layer.slope[qr * N + c]);
-                        for (r, from) in through_force.iter().enumerate() {
-                            let f = &mut along_force[c * slots + r];
-                            for i in 0..3 {
-                                let sum = Real::mul_add(dm, from[2][i], f[0][i]);
-                                f[0][i] = Real::mul_add(m, from[0][i], sum);
-                                f[1][i] = Real::mul_add(m, from[1][i], f[1][i]);
-                            }
-                        }
-                    }
-                }
-                for a in 0..N {
-                    let n = slab.value[qz * N + a].load(simd);
-                    let dn = slab.slope[qz * N + a].load(simd);
-                    for (k, from) in along_force.iter().enumerate() {
-                        let f = &mut force[a * N * slots + k];
-                        for i in 0..3 {
-                            let sum = Real::mul_add(dn, from[1][i], f[i]);
-                            f[i] = Real::mul_add(n, from[0][i], sum);
-                        }
-                    }
-                }
+        let repeats = self.sector.repeats();
+        let mut forces = Forces {
+            energy: 0.0,
+            energy_ungrown: 0.0,
+            potential: 0.0,
+            residual: vec![0.0; u.len()],
+            residual_scale: 0.0,
+            smallest_jacobian: f64::INFINITY,
+        };
+        for (batch, part) in self.batches.iter().zip(&batches) {
+            let SmallestJacobian {
+                jacobian,
+                element: [lane, layer, around],
+                qr,
+            } = part.smallest;
+            if jacobian.is_nan() || jacobian <= 0.0 {
+                let along = batch.first + batch.row(lane);
+                let (from, to) = self.axial.element(along);
+                return Err(Inverted {
+                    element: [along, layer, around],
+                    place: self.place(
+                        f64::midpoint(from, to),
+                        self.layers[layer].radius[qr],
+                        around,
+                    ),
+                    jacobian,
+                });
             }
-            scatter::<S, N>(input, layer, element, &force, &mut residual);
-            for f in &force {
-                for x in f {
-                    squares = Real::mul_add(*x, *x, squares);
-                }
+            forces.smallest_jacobian = forces.smallest_jacobian.min(jacobian);
+            forces.energy += repeats * part.energy;
+            forces.energy_ungrown += repeats * part.energy_ungrown;
+            forces.residual_scale += part.squares;
+            let rows = &mut forces.residual[batch.first * self.row_size()..];
+            for (sum, part) in rows.iter_mut().zip(&part.residual) {
+                *sum += part;
             }
         }
+        forces.residual_scale = forces.residual_scale.sqrt();
+        Ok(forces)
     }
-    SlabForces {
-        energy: Lanes::store(energy).sum(),
-        energy_ungrown: Lanes::store(energy_ungrown).sum(),
-        squares: Lanes::store(squares).sum(),
-        worst,
-        residual,
-    }
-}
 
-/// Adds the forces of one element per lane to the rows of the slab, lane after lane.
-#[inline(always)]
-fn scatter<S: Simd, const N: usize>(
-    input: &SlabInput<'_>,
-    layer: &Layer,
-    element: usize,
-    force: &[Vector<f64x8<S>>],
-    residual: &mut [f64],
-) {
-    let (size, slots) = (input.row_size(), input.slots());
-    for a in 0..N {
-        for c in 0..N {
-            for r in 0..slots {
-                let ring = (element + r) % input.rings;
-                for i in 0..3 {
-                    let place = input.place(layer.first + c, i, ring);
-                    let lanes = Lanes::store(force[(a * N + c) * slots + r][i]);
-                    for l in 0..input.slab.elements {
-                        residual[(l + a) * size + place] += lanes.0[l];
-                    }
-                }
+    /// Returns the forces of the elements of an axial batch, computed by circumferential batches.
+    fn circumferential_forces(&self, number: usize, load: &Load, u: &[f64]) -> BatchForces {
+        let batch = &self.batches[number];
+        let row = self.padded_row_size();
+        let mut residual = vec![0.0; (batch.elements + self.degree()) * row];
+        let mut sum = BatchForces {
+            smallest: SmallestJacobian {
+                jacobian: f64::INFINITY,
+                ..SmallestJacobian::default()
+            },
+            ..BatchForces::default()
+        };
+        for lane in 0..batch.elements {
+            let stretch = self.inverse_stretch_around(batch, lane, &self.around, load);
+            let input = self.circumferential_input((number, lane), &stretch, u);
+            let residual = &mut residual[lane * row..][..(self.degree() + 1) * row];
+            let part =
+                with_law_and_degree!(self, self.law, circumferential::forces, &input, residual);
+            sum.energy += part.energy;
+            sum.energy_ungrown += part.energy_ungrown;
+            sum.squares += part.squares;
+            let worse =
+                part.smallest.jacobian.is_nan() || part.smallest.jacobian < sum.smallest.jacobian;
+            if worse && !sum.smallest.jacobian.is_nan() {
+                sum.smallest = part.smallest;
+                sum.smallest.element[0] = lane;
+            }
+        }
+        sum.residual = vec![0.0; (batch.elements + self.degree()) * self.row_size()];
+        let alone = AxialBatch {
+            first: 0,
+            ..batch.clone()
+        };
+        self.add_rows(&alone, 1.0, &residual, &mut sum.residual);
+        sum
+    }
+
+    /// Adds the padded rows of a batch, times `factor`, to those of the tube.
+    pub(super) fn add_rows(&self, batch: &AxialBatch, factor: f64, part: &[f64], y: &mut [f64]) {
+        let k = self.sector.rings;
+        let rows = y[batch.first * self.row_size()..].chunks_exact_mut(k);
+        for (y, part) in rows.zip(part.chunks_exact(self.padded_rings.padded)) {
+            for (y, x) in y.iter_mut().zip(part) {
+                *y += factor * x;
             }
         }
     }

@@ -1,38 +1,31 @@
-//! What imperfections displace, as control values: the faces of held ends, and the stress-free
-//! shape of the wall.
+//! Imperfections as control values: displaced faces of the ends, and the stress-free shape of the
+//! wall.
 //!
 //! A wave of harmonic n, ψ = φ − φ₀, displaces a cross-section by
 //!
 //! - radially a cos nψ, circumferentially −(a/n) sin nψ, so that rings keep their length (n = 0:
-//!   radially a); n = 1 is a shift sideways;
+//!   radially a); n = 1 is a sideways shift;
 //! - or axially a (2R/D) cos nψ (n = 0: a); n = 1 is a tilt.
 //!
 //! In the plane of the cross-section, as complex numbers, the first is
 //!
 //! a exp(iφ) (cos nψ − (i/n) sin nψ) = a exp(iφ) (½ (1 − 1/n) exp(inψ) + ½ (1 + 1/n) exp(−inψ)),
 //!
-//! two waves of n + 1 and n − 1 turns. The control points of each are as high as makes the spline
-//! draw it right in the sense of least squares: c_m of [`Sector::control_wave`].
+//! two waves of n + 1 and n − 1 periods. The control values of each are scaled so that the spline
+//! is its best approximation by least squares: c_m of [`Sector::control_wave`].
 
-use super::spline_tube::bases;
-use super::spline_tube::{FEW_RINGS, Imperfect};
-use super::stress_free::{StressFree, slab_stress_free};
-use super::tables::Slab;
-use super::{Inverted, SplineTube};
+use super::tables::bases;
 use crate::rings::Sector;
 use crate::spline::{Basis, Values, through, transfer};
 use crate::tube::{Axial, End, Imperfection, Mode, Part, Push, Shape, Support, Tube, Wave};
-use rayon::prelude::*;
-use std::borrow::Cow;
 use std::f64::consts::PI;
-use std::sync::Arc;
 
-/// Distance from a held end, in D, over which a geometric imperfection that is the same all along
-/// the tube comes in.
+/// Distance from a fixed end, in D, over which a geometric imperfection that is uniform along the
+/// tube rises from zero.
 const RISE: f64 = 0.5;
 
-/// (Axial, radial, circumferential) displacement that the imperfections of an end give its control
-/// points, at the control radii `r`; ring `j` of point `c` is at `c * k + j`.
+/// Returns the (axial, radial, circumferential) displacement of an end's control points by its
+/// imperfections, at the control radii `r`; ring `j` of point `c` is at `c * k + j`.
 pub(super) fn end_face(tube: &Tube, sector: &Sector, end: End, r: &[f64]) -> Vec<[f64; 3]> {
     let k = sector.rings;
     let mut face = vec![[0.0; 3]; r.len() * k];
@@ -45,9 +38,9 @@ pub(super) fn end_face(tube: &Tube, sector: &Sector, end: End, r: &[f64]) -> Vec
         }
         for wave in imperfection.shape.waves() {
             let size = imperfection.amplitude * wave.share;
-            let drawn = Drawn::new(wave, sector);
+            let shape = WaveShape::new(wave, sector);
             for ring in 0..k {
-                let ([radial, around], axial) = (drawn.across(ring), drawn.axial(ring));
+                let ([radial, around], axial) = (shape.across(ring), shape.axial(ring));
                 for (c, &r) in r.iter().enumerate() {
                     let point = &mut face[c * k + ring];
                     match push {
@@ -65,9 +58,9 @@ pub(super) fn end_face(tube: &Tube, sector: &Sector, end: End, r: &[f64]) -> Vec
     face
 }
 
-/// u₀ of the stress-free shape X + u₀(X) of a tube with imperfections: control values numbered as
-/// unknowns are. None if none is of the geometry. `bases` are those along the tube and through the
-/// wall.
+/// Returns u₀ of the stress-free shape X + u₀(X) of a tube with imperfections: control values
+/// numbered like the unknowns. None without imperfections of the geometry. `bases` are those along
+/// the tube and through the wall.
 pub(super) fn geometry(
     tube: &Tube,
     imperfections: &[Imperfection],
@@ -80,7 +73,7 @@ pub(super) fn geometry(
     for imperfection in imperfections.iter().filter(|i| i.of == Part::Geometry) {
         let u = u.get_or_insert_with(|| vec![0.0; axial.functions() * points * 3 * k]);
         for wave in imperfection.shape.waves() {
-            let drawn = Drawn::new(wave, sector);
+            let shape = WaveShape::new(wave, sector);
             let factors = axial
                 .greville()
                 .iter()
@@ -90,7 +83,7 @@ pub(super) fn geometry(
             for (row, factor) in rows.zip(through(axial, factors, 1)) {
                 let size = imperfection.amplitude * wave.share * factor;
                 for ring in 0..k {
-                    let [radial, around] = drawn.across(ring);
+                    let [radial, around] = shape.across(ring);
                     for point in row.chunks_exact_mut(3 * k) {
                         point[k + ring] += size * radial;
                         point[2 * k + ring] += size * around;
@@ -99,9 +92,9 @@ pub(super) fn geometry(
             }
         }
         if let Shape::Mode(mode) = &imperfection.shape {
-            let own = DrawnMode::new(mode, tube);
-            let size = imperfection.amplitude / own.largest();
-            for (point, values) in u.chunks_exact_mut(3 * k).zip(own.on(bases, sector)) {
+            let shape = ModeShape::new(mode, tube);
+            let size = imperfection.amplitude / shape.largest_displacement();
+            for (point, values) in u.chunks_exact_mut(3 * k).zip(shape.on_mesh(bases, sector)) {
                 for ring in 0..k {
                     let (sin, cos) = (mode.harmonic as f64 * sector.ring_angle(ring)).sin_cos();
                     let around = if mode.harmonic == 0 { 1.0 } else { -sin };
@@ -115,126 +108,19 @@ pub(super) fn geometry(
     u
 }
 
-impl SplineTube {
-    /// The tube with a stress-free shape that is displaced from its own.
-    pub(super) fn imperfect(mut self, displacement: Vec<f64>) -> Self {
-        let points = if self.sector.rings < FEW_RINGS {
-            let slabs = self.slabs.par_iter();
-            slabs
-                .map(|slab| self.slab_shape(slab, &displacement))
-                .collect()
-        } else {
-            let u = self.lanes.pad(&displacement);
-            let slabs = self.slabs.par_iter();
-            slabs
-                .map(|slab| {
-                    let pencils = 0..slab.elements;
-                    let shape =
-                        |lane| self.pencil_shape(slab, lane, &self.layers, &self.around, &u);
-                    pencils.flat_map(shape).collect()
-                })
-                .collect()
-        };
-        self.imperfect = Some(Arc::new(Imperfect {
-            displacement,
-            points,
-        }));
-        self
-    }
-
-    /// The stress-free shape as slab kernels read it, under displacements of the perfect tube.
-    fn slab_shape(&self, slab: &Slab, displacement: &[f64]) -> Vec<StressFree> {
-        let perfect = self.input(slab, (&[], None), displacement);
-        match self.degree() {
-            1 => slab_stress_free::<2>(&perfect),
-            2 => slab_stress_free::<3>(&perfect),
-            3 => slab_stress_free::<4>(&perfect),
-            4 => slab_stress_free::<5>(&perfect),
-            5 => slab_stress_free::<6>(&perfect),
-            degree => unreachable!("degree {degree} is refused by SplineTube::new"),
-        }
-    }
-
-    /// The stress-free shape of a slab as slab kernels read it, if it is not the perfect tube's.
-    pub(super) fn shape_of_slab(&self, number: usize) -> Option<Cow<'_, [StressFree]>> {
-        let imperfect = self.imperfect.as_ref()?;
-        Some(if self.sector.rings < FEW_RINGS {
-            Cow::Borrowed(&imperfect.points[number])
-        } else {
-            Cow::Owned(self.slab_shape(&self.slabs[number], &imperfect.displacement))
-        })
-    }
-
-    /// u₀ of the stress-free shape X + u₀(X): control values numbered as unknowns are. None if the
-    /// tube has no imperfection of its geometry.
-    ///
-    /// Waves are zero at fixed ends, and other ends, or modes, are held where u₀ puts them, so that a
-    /// tube that is let go at rest finds its stress-free shape: there u = u₀ is free of stress.
-    pub fn geometric_imperfection(&self) -> Option<&[f64]> {
-        let imperfect = self.imperfect.as_ref();
-        imperfect.map(|imperfect| &imperfect.displacement[..])
-    }
-
-    /// Whether the stress-free shape of a tube with these imperfections is one.
-    ///
-    /// # Errors
-    /// [`Inverted`] where that is folded: det ∂(X + u₀)/∂X is not positive.
-    pub fn can_have(&self, imperfections: &[Imperfection]) -> Result<(), Inverted> {
-        let bases = [&self.axial, &self.wall];
-        let Some(u) = geometry(&self.tube, imperfections, &self.sector, bases) else {
-            return Ok(());
-        };
-        let perfect = Self {
-            imperfect: None,
-            ..self.clone()
-        };
-        perfect.forces(&self.tube.rest(), &u).map(drop)
-    }
-
-    /// Where to look for the tube at rest: nothing, or what imperfections displace, spread along
-    /// the tube. The ends are held as they are at rest.
-    pub fn start(&self) -> Vec<f64> {
-        let mut u = match self.geometric_imperfection() {
-            Some(u) => u.to_vec(),
-            None => vec![0.0; self.unknowns()],
-        };
-        // What ends are displaced from there.
-        let mut held = u.clone();
-        self.apply_prescribed(&self.tube.rest(), &mut held);
-        let (m, z) = (self.row_size(), self.axial.greville());
-        let from_shape = |row: usize| -> Vec<f64> {
-            let row = row * m..(row + 1) * m;
-            held[row.clone()]
-                .iter()
-                .zip(&u[row])
-                .map(|(h, u)| h - u)
-                .collect()
-        };
-        let (first, last) = (from_shape(0), from_shape(z.len() - 1));
-        for (row, z) in z.iter().enumerate() {
-            let x = z / self.tube.length;
-            for i in 0..m {
-                u[row * m + i] += (1.0 - x) * first[i] + x * last[i];
-            }
-        }
-        self.apply_prescribed(&self.tube.rest(), &mut u);
-        u
-    }
-}
-
-/// A mode as the splines of its own mesh draw it.
-struct DrawnMode<'a> {
+/// A buckling mode, represented by the splines of its own mesh.
+struct ModeShape<'a> {
     mode: &'a Mode,
     bases: [Basis; 2],
-    /// What the control values of a wave of n, |n − 1| and n + 1 turns are higher than the wave.
+    /// Ratios of control value to wave for n, |n − 1| and n + 1 periods.
     heights: [f64; 3],
 }
 
-/// Where the displacement of a mode is looked at: so many points to an element along the tube, and
-/// through the wall.
-const LOOKED_AT: [usize; 2] = [8, 4];
+/// Sampling points per element, along the tube and through the wall, for the largest displacement
+/// of a mode.
+const SAMPLES: [usize; 2] = [8, 4];
 
-impl<'a> DrawnMode<'a> {
+impl<'a> ModeShape<'a> {
     fn new(mode: &'a Mode, tube: &Tube) -> Self {
         let sector = Sector::new(mode.mesh.degree, mode.mesh.elements()[1], 1);
         Self {
@@ -244,8 +130,8 @@ impl<'a> DrawnMode<'a> {
         }
     }
 
-    /// The same displacement, by control values for waves of other heights. (r cos nψ, −θ sin nψ) is
-    /// ½ (r − θ) times a wave of n + 1 turns and ½ (r + θ) times one of n − 1, see above.
+    /// Converts control values to other ratios of control value to wave. (r cos nψ, −θ sin nψ) is ½
+    /// (r − θ) times a wave of n + 1 periods and ½ (r + θ) times one of n − 1, see above.
     fn with_heights(&self, [z, r, t]: [f64; 3], to: [f64; 3]) -> [f64; 3] {
         let [axial, back, forth] = [0, 1, 2].map(|i| to[i] / self.heights[i]);
         if self.mode.harmonic == 0 {
@@ -255,8 +141,8 @@ impl<'a> DrawnMode<'a> {
         [z * axial, back + forth, back - forth]
     }
 
-    /// The largest displacement of a point of the wall.
-    fn largest(&self) -> f64 {
+    /// Returns the largest displacement of a point of the wall.
+    fn largest_displacement(&self) -> f64 {
         let [axial, wall] = &self.bases;
         let points = wall.functions();
         let places = |basis: &Basis, count: usize| -> Vec<Values> {
@@ -270,9 +156,9 @@ impl<'a> DrawnMode<'a> {
                 })
                 .collect()
         };
-        let through = places(wall, LOOKED_AT[1]);
+        let through = places(wall, SAMPLES[1]);
         let mut largest = 0.0_f64;
-        for along in places(axial, LOOKED_AT[0]) {
+        for along in places(axial, SAMPLES[0]) {
             for through in &through {
                 let mut u = [0.0; 3];
                 for (a, n) in along.value.iter().enumerate() {
@@ -284,7 +170,7 @@ impl<'a> DrawnMode<'a> {
                     }
                 }
                 let [z, r, t] = self.with_heights(u, [1.0; 3]);
-                // At a crest, or a quarter wave from it; of harmonic 0 all at once.
+                // At a crest, or a quarter wave from it; for harmonic 0 all components together.
                 let size = match self.mode.harmonic {
                     0 => (z * z + r * r + t * t).sqrt(),
                     _ => z.hypot(r).max(t.abs()),
@@ -295,8 +181,8 @@ impl<'a> DrawnMode<'a> {
         largest
     }
 
-    /// (z, r, θ) of the control points of a ring of another mesh.
-    fn on(&self, [axial, wall]: [&Basis; 2], sector: &Sector) -> Vec<[f64; 3]> {
+    /// Returns (z, r, θ) of the control points of a ring of another mesh.
+    fn on_mesh(&self, [axial, wall]: [&Basis; 2], sector: &Sector) -> Vec<[f64; 3]> {
         let width = 3 * self.bases[1].functions();
         let rows = transfer(&self.bases[0], axial, &self.mode.values, width);
         let heights = heights(sector, self.mode.harmonic);
@@ -313,20 +199,20 @@ impl<'a> DrawnMode<'a> {
     }
 }
 
-/// c_n, c_|n − 1| and c_n+1 of [`Sector::control_wave`].
+/// Returns c_n, c_|n − 1| and c_n+1 of [`Sector::control_wave`].
 fn heights(sector: &Sector, n: usize) -> [f64; 3] {
     [n, n.abs_diff(1), n + 1].map(|m| sector.control_wave(m))
 }
 
-/// A wave of unit height as the splines draw it.
-struct Drawn<'a> {
+/// A wave of unit height, represented by splines.
+struct WaveShape<'a> {
     wave: &'a Wave,
     sector: &'a Sector,
-    /// Heights of the control values: radial, circumferential, and axial per control radius.
+    /// Amplitudes of the control values: radial, circumferential, and axial per control radius.
     heights: [f64; 3],
 }
 
-impl<'a> Drawn<'a> {
+impl<'a> WaveShape<'a> {
     fn new(wave: &'a Wave, sector: &'a Sector) -> Self {
         let c = |m| sector.control_wave(m);
         let heights = match wave.harmonic {
@@ -334,7 +220,7 @@ impl<'a> Drawn<'a> {
             n => {
                 let forth = 0.5 * (1.0 - 1.0 / n as f64) * c(n + 1);
                 let back = 0.5 * (1.0 + 1.0 / n as f64) * c(n - 1);
-                // A control radius is c₁ times the radius.
+                // The control radius is c₁ times the radius.
                 [forth + back, forth - back, c(n) / c(1)]
             }
         };
@@ -345,29 +231,29 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// sin nψ and cos nψ at a ring.
-    fn turn(&self, ring: usize) -> (f64, f64) {
+    /// Returns sin nψ and cos nψ at a ring.
+    fn sin_cos(&self, ring: usize) -> (f64, f64) {
         let psi = self.sector.ring_angle(ring) - self.wave.phase;
         (self.wave.harmonic as f64 * psi).sin_cos()
     }
 
-    /// Radial and circumferential control values.
+    /// Returns radial and circumferential control values.
     fn across(&self, ring: usize) -> [f64; 2] {
-        let (sin, cos) = self.turn(ring);
+        let (sin, cos) = self.sin_cos(ring);
         [self.heights[0] * cos, self.heights[1] * sin]
     }
 
-    /// Axial control value, per control radius in D/2 unless n = 0.
+    /// Returns the axial control value, per control radius in D/2 unless n = 0.
     fn axial(&self, ring: usize) -> f64 {
-        self.heights[2] * self.turn(ring).1
+        self.heights[2] * self.sin_cos(ring).1
     }
 }
 
-/// The factor along the tube: that of the wave, and zero at fixed ends.
+/// Returns the factor along the tube: that of the wave, zero at fixed ends.
 fn along(wave: &Wave, tube: &Tube, z: f64) -> f64 {
     let factor = wave.axial.value(z, [0.0, tube.length]);
     if wave.axial != Axial::Uniform {
-        return factor; // zero at both ends as it is
+        return factor; // zero at both ends already
     }
     let rise = RISE.min(0.25 * tube.length);
     let from_end = |end: usize, distance: f64| match tube.ends[end] {

@@ -1,34 +1,40 @@
-//! From control points to the elastic deformation gradient, and back from its stress to forces.
+//! Elastic deformation gradient from displacement gradients, and the transposed map for stresses.
 
-use super::stress_free::Departure;
-use super::tables::Around;
-use crate::rings::SlotValues;
+use super::stress_free::ImperfectionMap;
+use super::tables::CircumferentialPoint;
+use crate::rings::RingValues;
 use crate::tensor::{Real, Tensor2};
 
-/// Components of a displacement in the frame of an element: axial, outwards, around.
+/// Components of a displacement in the frame of an element: (axial, outwards, around).
 pub type Vector<S> = [S; 3];
 
-/// The linear map from gradients over the parameters (ζ, s, R) to the columns (along,
-/// outwards, around) of Fe = F Fp⁻¹ at a point. With θζ, θη grown and ∂X/∂s = R (outwards a + across b):
+/// Linear map from gradients over the parameters (ζ, s, R) to the columns (along, outwards, around)
+/// of Fe = F Fp⁻¹ at a point. With the growth stretches θζ, θη and ∂X/∂s = R (outwards a + across
+/// b):
 ///
 /// - Fe along    = ∂x/∂ζ / θζ
 /// - Fe around   = (∂x/∂s / (R b) − ∂x/∂R a / (b |C|)) / θη
 /// - Fe outwards = ∂x/∂R / |C|
 ///
-/// An imperfect wall's departs from that, see [`Departure`].
+/// In an imperfect wall an [`ImperfectionMap`] follows.
 #[derive(Clone, Copy)]
-pub struct Columns<S> {
+pub struct GradientMap<S> {
     along: S,
     around: S,
     across: S,
     outwards: S,
-    imperfection_map: Option<Departure<S>>,
+    imperfection_map: Option<ImperfectionMap<S>>,
 }
 
-impl<S: Real> Columns<S> {
-    /// At reference radius R, for 1/θζ and 1/θη.
+impl<S: Real> GradientMap<S> {
+    /// Returns the map at reference radius R of a perfect wall, given 1/θζ and 1/θη.
     #[inline(always)]
-    pub fn new(point: &Around, radius: f64, inverse_along: S, inverse_around: S) -> Self {
+    pub fn new(
+        point: &CircumferentialPoint,
+        radius: f64,
+        inverse_along: S,
+        inverse_around: S,
+    ) -> Self {
         let b = point.across;
         Self {
             along: inverse_along,
@@ -39,26 +45,31 @@ impl<S: Real> Columns<S> {
         }
     }
 
-    /// The same of an imperfect wall.
+    /// Returns the map with the correction for an imperfect wall.
     #[inline(always)]
-    pub fn measured_from(mut self, imperfection_map: Option<Departure<S>>) -> Self {
+    pub fn with_imperfection(mut self, imperfection_map: Option<ImperfectionMap<S>>) -> Self {
         self.imperfection_map = imperfection_map;
         self
     }
 
-    /// A volume dV₀ of the perfect tube, as the wall has it where it is free of stress.
+    /// Converts a volume dV₀ of the perfect tube to the stress-free shape of the wall.
     #[inline(always)]
-    pub fn volume(&self, volume: S) -> S {
+    pub fn stress_free_volume(&self, volume: S) -> S {
         match &self.imperfection_map {
-            Some(imperfection_map) => imperfection_map.volume(volume),
+            Some(map) => map.volume(volume),
             None => volume,
         }
     }
 
-    /// Fe from the displacement gradients over ζ, s and R: the reference gradients are added
-    /// here, so that a tube at rest has Fe = Fp⁻¹ to rounding.
+    /// Returns Fe from the displacement gradients over ζ, s and R. The reference gradients are
+    /// added here, so that a tube at rest has Fe = Fp⁻¹ to rounding.
     #[inline(always)]
-    pub fn elastic(&self, point: &Around, radius: f64, [zeta, s, r]: [Vector<S>; 3]) -> Tensor2<S> {
+    pub fn elastic_gradient(
+        &self,
+        point: &CircumferentialPoint,
+        radius: f64,
+        [zeta, s, r]: [Vector<S>; 3],
+    ) -> Tensor2<S> {
         let plain = |x: f64| self.along.like(x);
         let zeta = [zeta[0] + plain(1.0), zeta[1], zeta[2]];
         let (slope, circle) = (point.circle_slope, point.circle);
@@ -68,12 +79,12 @@ impl<S: Real> Columns<S> {
             s[2] + plain(radius * slope.1),
         ];
         let r = [r[0], r[1] + plain(circle.0), r[2] + plain(circle.1)];
-        self.linear([zeta, s, r])
+        self.elastic_gradient_change([zeta, s, r])
     }
 
-    /// The change of Fe with the gradients over ζ, s and R.
+    /// Returns the change of Fe for a change of the gradients over ζ, s and R.
     #[inline(always)]
-    pub fn linear(&self, [zeta, s, r]: [Vector<S>; 3]) -> Tensor2<S> {
+    pub fn elastic_gradient_change(&self, [zeta, s, r]: [Vector<S>; 3]) -> Tensor2<S> {
         let mut Fe = [[self.along; 3]; 3];
         for i in 0..3 {
             Fe[i][0] = zeta[i] * self.along;
@@ -81,16 +92,17 @@ impl<S: Real> Columns<S> {
             Fe[i][2] = s[i].mul_add(self.around, r[i] * self.across);
         }
         match &self.imperfection_map {
-            Some(imperfection_map) => imperfection_map.onto(Tensor2(Fe)),
+            Some(map) => map.apply(Tensor2(Fe)),
             None => Tensor2(Fe),
         }
     }
 
-    /// The transpose of [`Columns::elastic`]: stresses on gradients over ζ, s and R.
+    /// Transpose of [`GradientMap::elastic_gradient_change`]: maps a stress on Fe to gradients over
+    /// ζ, s and R.
     #[inline(always)]
-    pub fn pulled_back(&self, P: &Tensor2<S>) -> [Vector<S>; 3] {
+    pub fn pull_back(&self, P: &Tensor2<S>) -> [Vector<S>; 3] {
         let P = match &self.imperfection_map {
-            Some(imperfection_map) => imperfection_map.back(*P).0,
+            Some(map) => map.apply_transpose(*P).0,
             None => P.0,
         };
         let mut q = P;
@@ -103,15 +115,15 @@ impl<S: Real> Columns<S> {
         q
     }
 
-    /// Moduli on gradients over ζ, s and R: the blocks (ζ,ζ), (ζ,s), (ζ,R), (s,s), (s,R), (R,R)
-    /// of 3×3 numbers, each scaled by `weight`.
+    /// Maps moduli on Fe to gradients over ζ, s and R: returns the 3×3 blocks (ζ,ζ), (ζ,s), (ζ,R),
+    /// (s,s), (s,R), (R,R), each times `weight`.
     #[inline(always)]
-    pub fn moduli(&self, A: &crate::material::Moduli<S>, weight: S) -> [[[S; 3]; 3]; 6] {
-        let seen;
+    pub fn pull_back_moduli(&self, A: &crate::material::Moduli<S>, weight: S) -> [[[S; 3]; 3]; 6] {
+        let pulled_back;
         let A = match &self.imperfection_map {
-            Some(imperfection_map) => {
-                seen = imperfection_map.moduli(A);
-                &seen
+            Some(map) => {
+                pulled_back = map.pull_back_moduli(A);
+                &pulled_back
             }
             None => A,
         };
@@ -120,7 +132,7 @@ impl<S: Real> Columns<S> {
         let mut blocks = [[[weight; 3]; 3]; 6];
         for j in 0..3 {
             for i in 0..3 {
-                // A holds the columns (along, outwards, around) in the order j ≤ i only.
+                // A stores only the columns (along, outwards, around) in the order j ≤ i.
                 let (zz, zo, ze) = (A[j][i], A[j][3 + i], A[j][6 + i]);
                 let (oo, oe, ee) = (A[3 + j][3 + i], A[3 + j][6 + i], A[6 + j][6 + i]);
                 let eo = A[3 + i][6 + j];
@@ -136,11 +148,16 @@ impl<S: Real> Columns<S> {
     }
 }
 
-/// A ring's (axial, radial, circumferential) displacement as one slot adds it in the element's
-/// frame; `d` is 0 for the value, 1 for the slope around.
+/// Adds the displacement `u` of a ring, in (axial, radial, circumferential) components, to a sum in
+/// the element's frame. `d` is 0 for the value, 1 for the slope around.
 #[inline(always)]
-pub fn turn<S: Real>(slot: &SlotValues, d: usize, u: Vector<S>, sum: Vector<S>) -> Vector<S> {
-    let (g, (re, im)) = (u[0].like(slot.axial[d]), slot.turned[d]);
+pub fn to_element_frame<S: Real>(
+    ring: &RingValues,
+    d: usize,
+    u: Vector<S>,
+    sum: Vector<S>,
+) -> Vector<S> {
+    let (g, (re, im)) = (u[0].like(ring.axial[d]), ring.rotated[d]);
     let (re, im, minus_im) = (u[0].like(re), u[0].like(im), u[0].like(-im));
     [
         g.mul_add(u[0], sum[0]),
@@ -149,10 +166,16 @@ pub fn turn<S: Real>(slot: &SlotValues, d: usize, u: Vector<S>, sum: Vector<S>) 
     ]
 }
 
-/// The transpose of [`turn`]: a force in the element's frame on the components of a ring.
+/// Transpose of [`to_element_frame`]: adds a force in the element's frame to the components of a
+/// ring.
 #[inline(always)]
-pub fn turn_back<S: Real>(slot: &SlotValues, d: usize, f: Vector<S>, sum: Vector<S>) -> Vector<S> {
-    let (g, (re, im)) = (f[0].like(slot.axial[d]), slot.turned[d]);
+pub fn to_ring_frame<S: Real>(
+    ring: &RingValues,
+    d: usize,
+    f: Vector<S>,
+    sum: Vector<S>,
+) -> Vector<S> {
+    let (g, (re, im)) = (f[0].like(ring.axial[d]), ring.rotated[d]);
     let (re, im, minus_im) = (f[0].like(re), f[0].like(im), f[0].like(-im));
     [
         g.mul_add(f[0], sum[0]),

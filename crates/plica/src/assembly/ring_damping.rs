@@ -1,13 +1,12 @@
-//! The drag matrix C/η = ∫ N N dV₀ of many rings: a product of three small matrices, one along the
-//! tube, one through the wall, one around.
+//! Damping matrix C/η = ∫ N N dV₀ of many rings, as a product of three small matrices: along the
+//! tube, through the wall, and around it.
 
-use super::tables::{Around, Layer, Slab};
+use super::SplineTube;
 use crate::matrix::BlockBanded;
-use crate::rings::Sector;
 use rayon::prelude::*;
 
-/// C = A ⊗ W ⊗ Q with A along the tube, W through the wall, and Q around, which is the same at
-/// every ring.
+/// Damping matrix C = A ⊗ W ⊗ Q with A along the tube, W through the wall, and Q around, which is
+/// the same at every ring.
 #[derive(Clone, Debug)]
 pub struct RingDamping {
     rings: usize,
@@ -18,8 +17,8 @@ pub struct RingDamping {
     around: Vec<RingProduct>,
 }
 
-/// ∫ N_j N_{j+d} of two rings, each in its own components: of the axial ones, and of the plane as
-/// a complex number (radial + i circumferential).
+/// ∫ N_j N_{j+d} of two rings, each in its own components: of the axial components, and of the
+/// plane as a complex number (radial + i circumferential).
 #[derive(Clone, Copy, Debug)]
 struct RingProduct {
     offset: isize,
@@ -45,7 +44,7 @@ impl Band {
         self.rows[i][j + p - i] += value;
     }
 
-    /// The entries of a row with the rows they belong to.
+    /// Returns the entries of a row and their columns.
     fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (p, size) = (self.rows[i].len() / 2, self.rows.len());
         let entries = self.rows[i].iter().enumerate();
@@ -59,32 +58,26 @@ impl Band {
 }
 
 impl RingDamping {
-    /// Of a tube of `rows` × `points` control points on a sector.
-    pub fn new(
-        slabs: &[Slab],
-        layers: &[Layer],
-        around: &[Around],
-        sector: &Sector,
-        [rows, points]: [usize; 2],
-        p: usize,
-    ) -> Self {
+    fn new(tube: &SplineTube) -> Self {
+        let (sector, p) = (&tube.sector, tube.degree());
+        let (rows, points) = (tube.axial.functions(), tube.wall.functions());
         let n = p + 1;
         let mut along = Band::zeros(rows, p);
-        for slab in slabs {
-            for l in 0..slab.elements {
+        for batch in &tube.batches {
+            for l in 0..batch.elements {
                 for q in 0..n {
-                    let value = |a: usize| slab.value[q * n + a].0[l];
+                    let value = |a: usize| batch.value[q * n + a].0[l];
                     for a in 0..n {
                         for b in 0..n {
-                            let e = slab.first + l;
-                            along.add(e + a, e + b, slab.weight[q].0[l] * value(a) * value(b));
+                            let e = batch.first + l;
+                            along.add(e + a, e + b, batch.weight[q].0[l] * value(a) * value(b));
                         }
                     }
                 }
             }
         }
         let mut wall = Band::zeros(points, p);
-        for layer in layers {
+        for layer in &tube.layers {
             for q in 0..n {
                 let value = |c: usize| layer.value[q * n + c];
                 for c in 0..n {
@@ -105,14 +98,15 @@ impl RingDamping {
                 axial: 0.0,
                 plane: (0.0, 0.0),
             };
-            for point in around {
+            for point in &tube.around {
                 let weight = point.weight * point.across * point.radius;
-                let slots = sector.unfolded_at(point.s);
-                for (b, f) in slots.iter().enumerate() {
-                    let Some(g) = b.checked_add_signed(offset).and_then(|b| slots.get(b)) else {
+                let functions = sector.function_values_at(point.s);
+                for (b, f) in functions.iter().enumerate() {
+                    let Some(g) = b.checked_add_signed(offset).and_then(|b| functions.get(b))
+                    else {
                         continue;
                     };
-                    let ((fr, fi), (gr, gi)) = (f.turned[0], g.turned[0]);
+                    let ((fr, fi), (gr, gi)) = (f.rotated[0], g.rotated[0]);
                     sum.axial += weight * f.axial[0] * g.axial[0];
                     sum.plane.0 += weight * (fr * gr + fi * gi);
                     sum.plane.1 += weight * (fr * gi - fi * gr);
@@ -130,7 +124,7 @@ impl RingDamping {
         }
     }
 
-    /// y += factor · C v.
+    /// Computes y += factor · C v.
     pub fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         let (k, points) = (self.rings, self.wall.rows.len());
         let (point, row) = (3 * k, 3 * k * points);
@@ -139,13 +133,13 @@ impl RingDamping {
             .par_chunks_exact_mut(row)
             .zip(v.par_chunks_exact(row))
             .for_each(|(through, v)| {
-                let mut turned = vec![0.0; row];
-                for (turned, v) in turned.chunks_exact_mut(point).zip(v.chunks_exact(point)) {
-                    self.multiply_around(v, turned);
+                let mut rotated = vec![0.0; row];
+                for (rotated, v) in rotated.chunks_exact_mut(point).zip(v.chunks_exact(point)) {
+                    self.multiply_around(v, rotated);
                 }
                 for (c, through) in through.chunks_exact_mut(point).enumerate() {
                     for (d, entry) in self.wall.row(c) {
-                        add(through, entry, &turned[d * point..][..point]);
+                        add(through, entry, &rotated[d * point..][..point]);
                     }
                 }
             });
@@ -156,7 +150,7 @@ impl RingDamping {
         });
     }
 
-    /// Q times the three components of k rings.
+    /// Multiplies the three components of k rings by Q.
     fn multiply_around(&self, v: &[f64], out: &mut [f64]) {
         let k = self.rings;
         let (axial, plane) = out.split_at_mut(k);
@@ -165,7 +159,7 @@ impl RingDamping {
         for q in &self.around {
             let (re, im) = q.plane;
             let shift = q.offset.rem_euclid(k.cast_signed()).cast_unsigned();
-            // Ring j takes from ring j + shift: in two runs, so that none wraps.
+            // Ring j adds ring j + shift: in two runs, so that neither wraps.
             for (to, from, len) in [(0, shift, k - shift), (k - shift, 0, shift)] {
                 add(
                     &mut axial[to..to + len],
@@ -216,5 +210,12 @@ impl RingDamping {
 fn add(to: &mut [f64], factor: f64, from: &[f64]) {
     for (to, from) in to.iter_mut().zip(from) {
         *to += factor * from;
+    }
+}
+
+impl SplineTube {
+    /// Returns the damping matrix of the sector as a product of three small matrices.
+    pub fn ring_damping(&self) -> RingDamping {
+        RingDamping::new(self)
     }
 }

@@ -1,9 +1,9 @@
 //! Fields at a point of the wall.
 
 use super::SplineTube;
-use super::kinematics::{Columns, Vector, turn};
-use super::stress_free::Departure;
-use super::tables::Around;
+use super::kinematics::{GradientMap, Vector, to_element_frame};
+use super::stress_free::ImperfectionMap;
+use super::tables::CircumferentialPoint;
 use crate::material::Law;
 use crate::spline::Values;
 use crate::tensor::Tensor2;
@@ -13,7 +13,7 @@ use fearless_simd::{Level, dispatch};
 /// A material point, by its reference position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Along the tube, in D.
+    /// Position along the tube, in D.
     pub z: f64,
     /// Radius, in D.
     pub radius: f64,
@@ -21,7 +21,7 @@ pub struct Point {
     pub angle: f64,
 }
 
-/// What is found at a material point.
+/// Fields at a material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Reference position (z, x, y), in the perfect tube.
@@ -31,34 +31,35 @@ pub struct Sample {
     /// Elastic deformation gradient: rows (z, outwards, around) at the middle of the point's
     /// element, columns (along, outwards, around) at the point.
     pub elastic: Tensor2,
-    /// det Fe; where volume is resisted, if that is integrated apart.
+    /// det Fe; at the nearest volumetric point, if the volumetric part of the law has points of its
+    /// own.
     pub jacobian: f64,
     /// Strain energy density w(Fe), per grown volume, in E.
     pub energy_density: f64,
     /// Cauchy stress, in E: rows and columns (z, outwards, around) at the middle of the point's element.
     pub stress: Tensor2,
-    /// Grown over ungrown length, along and around: θζ, θη.
+    /// Growth stretches θζ along and θη around.
     pub grown: [f64; 2],
     /// Angle of the middle of the point's element, in radians.
     pub element_angle: f64,
 }
 
 impl Sample {
-    /// Whether the wall is turned over there, or where its volume is resisted, as a spline may be between the points at which it is
-    /// integrated: neither energy nor stress exists.
-    pub fn is_turned_over(&self) -> bool {
+    /// Returns true if det Fe is not positive here or at the nearest volumetric point, as may
+    /// happen between quadrature points: neither energy nor stress exists.
+    pub fn is_inverted(&self) -> bool {
         self.elastic.determinant().min(self.jacobian) <= 0.0
     }
 
-    /// Principal stretches of Fe, largest first, and their directions in the deformed wall, (z, outwards, around) at the
-    /// middle of the point's element.
+    /// Returns the principal stretches of Fe, largest first, and their directions in the deformed
+    /// wall, (z, outwards, around) at the middle of the point's element.
     pub fn stretches(&self) -> [(f64, [f64; 3]); 3] {
         let left = self.elastic.times(self.elastic.transpose()); // b = Fe Feᵀ
         left.eigenpairs()
             .map(|(square, direction)| (square.max(0.0).sqrt(), direction))
     }
 
-    /// Von Mises stress √(3/2 s : s), s the deviator of σ, in E.
+    /// Returns the von Mises stress √(3/2 s : s), s the deviator of σ, in E.
     pub fn von_mises(&self) -> f64 {
         let mut s = self.stress;
         let mean = (s.0[0][0] + s.0[1][1] + s.0[2][2]) / 3.0;
@@ -68,18 +69,19 @@ impl Sample {
 }
 
 impl SplineTube {
-    /// The fields at a point under a load. Points outside the wall are read from the splines of
-    /// the nearest element. Where the resistance to a change of volume is integrated apart, its energy is that
-    /// of the nearest of its points through the wall, and so is its stress: between them volume is not what the wall resists.
+    /// Evaluates the fields at a point under a load. Outside the wall, it extrapolates the splines
+    /// of the nearest element. If the volumetric part of the law has quadrature points of its own,
+    /// its energy and stress are those of the nearest of them through the wall, since the volume is
+    /// not controlled between them.
     pub fn sample(&self, load: &Load, u: &[f64], at: Point) -> Sample {
-        // Where the machine can multiply and add at once, calling a function for each takes a third of the time.
+        // With fused multiply-add enabled this takes a third of the time.
         dispatch!(Level::new(), _simd => self.sample_at(load, u, at))
     }
 
     #[inline(always)]
     fn sample_at(&self, load: &Load, u: &[f64], at: Point) -> Sample {
         let sample = self.sample_here(load, u, at);
-        let Some(volume) = &self.volume else {
+        let Some(volume) = &self.volumetric else {
             return sample;
         };
         let points = volume.layers.iter().flat_map(|layer| {
@@ -98,17 +100,17 @@ impl SplineTube {
         }
     }
 
-    /// The same of what is integrated here.
+    /// Evaluates the fields for `self.law` alone.
     #[inline(always)]
     fn sample_here(&self, load: &Load, u: &[f64], at: Point) -> Sample {
         let (axial, wall) = (self.axial.evaluate(at.z), self.wall.evaluate(at.radius));
         let alpha = self.sector.angle();
         // Element 0 is centred on angle zero.
-        let turns = at.angle / alpha + 0.5;
-        let (element, s) = (turns.floor(), turns - turns.floor());
+        let rotations = at.angle / alpha + 0.5;
+        let (element, s) = (rotations.floor(), rotations - rotations.floor());
         let rings = self.sector.rings;
         let first_ring = (element as i64).rem_euclid(rings as i64) as usize;
-        let point = Around::at(&self.sector, &self.circle, s, 1.0);
+        let point = CircumferentialPoint::at(&self.sector, &self.circle, s, 1.0);
 
         let near = Near {
             axial,
@@ -120,25 +122,25 @@ impl SplineTube {
         let (value, gradients) = self.displaced(u, &near);
         let (theta_z, theta_t) = self.tube.stretches_at(at.z, at.angle, load);
         let (inverse_along, inverse_around) = (1.0 / theta_z, 1.0 / theta_t);
-        let imperfection_map = self.imperfect.as_ref().map(|imperfect| {
-            let columns = Columns::new(point, at.radius, 1.0, 1.0);
+        let imperfection_map = self.stress_free_shape.as_ref().map(|imperfect| {
+            let gradient_map = GradientMap::new(point, at.radius, 1.0, 1.0);
             let (_, gradients) = self.displaced(&imperfect.displacement, &near);
-            let A = columns.elastic(point, at.radius, gradients);
-            Departure::of(A, inverse_along, inverse_around)
+            let A = gradient_map.elastic_gradient(point, at.radius, gradients);
+            ImperfectionMap::from_gradient(A, inverse_along, inverse_around)
         });
-        let columns = Columns::new(point, at.radius, inverse_along, inverse_around);
-        let columns = columns.measured_from(imperfection_map);
-        let Fe = columns.elastic(point, at.radius, gradients);
+        let gradient_map = GradientMap::new(point, at.radius, inverse_along, inverse_around);
+        let gradient_map = gradient_map.with_imperfection(imperfection_map);
+        let Fe = gradient_map.elastic_gradient(point, at.radius, gradients);
         let reference = [at.z, at.radius * point.circle.0, at.radius * point.circle.1];
         let position = [0, 1, 2].map(|i| reference[i] + value[i]);
         // From the element's frame to the laboratory.
         let (sin, cos) = (element * alpha).sin_cos();
-        let turned = |x: [f64; 3]| [x[0], x[1] * cos - x[2] * sin, x[1] * sin + x[2] * cos];
+        let rotated = |x: [f64; 3]| [x[0], x[1] * cos - x[2] * sin, x[1] * sin + x[2] * cos];
         let (energy_density, P) = (self.law.energy(&Fe), self.law.stress(&Fe));
         let jacobian = Fe.determinant();
         Sample {
-            reference: turned(reference),
-            position: turned(position),
+            reference: rotated(reference),
+            position: rotated(position),
             jacobian,
             energy_density,
             stress: P.times(Fe.transpose()).scaled(1.0 / jacobian), // σ = P Feᵀ / det Fe
@@ -149,17 +151,17 @@ impl SplineTube {
     }
 }
 
-/// What control points do at a point.
+/// Basis functions at a point.
 struct Near {
     axial: Values,
     wall: Values,
-    point: Around,
-    /// Of the element around the tube.
+    point: CircumferentialPoint,
+    /// First ring of the element around.
     first_ring: usize,
 }
 
 impl SplineTube {
-    /// A displacement, and its gradients over ζ, s and R, in the element's frame.
+    /// Returns a displacement and its gradients over ζ, s and R, in the element's frame.
     #[inline(always)]
     fn displaced(&self, u: &[f64], near: &Near) -> (Vector<f64>, [Vector<f64>; 3]) {
         let Near { axial, wall, .. } = near;
@@ -167,7 +169,7 @@ impl SplineTube {
         let (mut value, mut g) = ([0.0; 3], [[0.0; 3]; 3]);
         for (a, (n, dn)) in axial.value.iter().zip(&axial.slope).enumerate() {
             for (c, (m, dm)) in wall.value.iter().zip(&wall.slope).enumerate() {
-                for (r, slot) in near.point.slots.iter().enumerate() {
+                for (r, ring) in near.point.ring_values.iter().enumerate() {
                     let row = axial.element + a;
                     let place = |i: usize| {
                         row * self.row_size()
@@ -175,10 +177,10 @@ impl SplineTube {
                             + (near.first_ring + r) % rings
                     };
                     let u = [0, 1, 2].map(|i| u[place(i)]);
-                    value = turn(slot, 0, u.map(|x| n * m * x), value);
-                    g[0] = turn(slot, 0, u.map(|x| dn * m * x), g[0]);
-                    g[1] = turn(slot, 1, u.map(|x| n * m * x), g[1]);
-                    g[2] = turn(slot, 0, u.map(|x| n * dm * x), g[2]);
+                    value = to_element_frame(ring, 0, u.map(|x| n * m * x), value);
+                    g[0] = to_element_frame(ring, 0, u.map(|x| dn * m * x), g[0]);
+                    g[1] = to_element_frame(ring, 1, u.map(|x| n * m * x), g[1]);
+                    g[2] = to_element_frame(ring, 0, u.map(|x| n * dm * x), g[2]);
                 }
             }
         }

@@ -1,36 +1,49 @@
-//! What the kernel needs to know of the splines, tabulated once.
+//! Tabulated basis functions and quadrature points: along the tube, through the wall and around it.
 
-use crate::rings::{Sector, SlotValues};
-use crate::spline::{Basis, Circle, gauss_legendre, reduced_rule};
+use crate::rings::{RingValues, Sector};
+use crate::spline::{Basis, Circle, gauss_legendre, graded_breakpoints, reduced_rule};
 use crate::tensor::{LANES, Lanes};
+use crate::tube::{Mesh, Tube};
 
-/// A rule for every element of a basis: points on [0, 1] of it, and weights. Kernels read p + 1 points;
-/// rules of fewer are filled up with places that have no weight.
+/// Returns the basis along a tube, over z, and through its wall, over the reference radius.
+pub fn bases(tube: &Tube, mesh: &Mesh) -> [Basis; 2] {
+    let [along, _, through] = mesh.elements();
+    let breakpoints = graded_breakpoints(tube.length, along, &mesh.refinements);
+    let radii = graded_breakpoints(tube.thickness, through, &[]);
+    let radii: Vec<f64> = radii.iter().map(|h| tube.inner_radius() + h).collect();
+    [
+        Basis::open(mesh.degree, &breakpoints),
+        Basis::open(mesh.degree, &radii),
+    ]
+}
+
+/// A quadrature rule for every element of a basis: points on [0, 1] of the element, and weights.
+/// Kernels read p + 1 points; shorter rules are padded with points of zero weight.
 pub type Rules = Vec<Vec<(f64, f64)>>;
 
-/// p + 1 Gauss points on every element.
+/// Returns p + 1 Gauss points on every element.
 pub fn full_rules(basis: &Basis) -> Rules {
     vec![gauss_legendre(basis.degree() + 1); basis.elements()]
 }
 
-/// About one point on every element of a uniform basis, see [`reduced_rule`]. Panics where there is no
-/// such rule.
+/// Returns about one point on every element of a uniform basis, see [`reduced_rule`]. Panics if the
+/// degree has no such rule.
 pub fn reduced_rules(basis: &Basis) -> Rules {
     let (p, elements) = (basis.degree(), basis.elements());
     let rules = reduced_rule(p, elements);
     let mut rules = rules.unwrap_or_else(|| panic!("degree {p} has no reduced rule"));
     for rule in &mut rules {
-        // An element between two points has one all the same, of no weight.
+        // An element without a quadrature point gets one of zero weight.
         let place = rule.first().map_or(0.5, |point| point.0);
         rule.resize(p + 1, (place, 0.0));
     }
     rules
 }
 
-/// Eight elements that are neighbours along the tube. The last slab may hold fewer: its spare
-/// lanes repeat its last element with no weight.
+/// Eight elements that are neighbours along the tube. The last batch may hold fewer: its unused
+/// lanes repeat its last element with zero weight.
 #[derive(Clone, Debug)]
-pub struct Slab {
+pub struct AxialBatch {
     /// First row of control points.
     pub first: usize,
     /// Elements, at most eight.
@@ -41,12 +54,12 @@ pub struct Slab {
     pub slope: Vec<Lanes>,
     /// Weights of the quadrature points.
     pub weight: Vec<Lanes>,
-    /// Where the quadrature points lie.
+    /// Axial positions of the quadrature points.
     pub z: Vec<Lanes>,
 }
 
-impl Slab {
-    /// All slabs of an axial basis, with a rule of as many points for every element.
+impl AxialBatch {
+    /// Returns the batches of an axial basis; every element has as many quadrature points.
     pub fn all(basis: &Basis, rules: &Rules) -> Vec<Self> {
         (0..basis.elements())
             .step_by(LANES)
@@ -58,7 +71,7 @@ impl Slab {
         let (points, functions) = (rules[0].len(), basis.degree() + 1);
         let elements = (basis.elements() - first).min(LANES);
         let zero = |n: usize| vec![Lanes::default(); n];
-        let mut slab = Self {
+        let mut batch = Self {
             first,
             elements,
             value: zero(points * functions),
@@ -67,23 +80,23 @@ impl Slab {
             z: zero(points),
         };
         for l in 0..LANES {
-            let e = first + slab.row(l);
+            let e = first + batch.row(l);
             let (start, end) = basis.element(e);
             for (q, (x, w)) in rules[e].iter().enumerate() {
                 let z = start + (end - start) * x;
                 let v = basis.evaluate_in(e, z);
-                slab.z[q].0[l] = z;
-                slab.weight[q].0[l] = if l < elements { w * (end - start) } else { 0.0 };
+                batch.z[q].0[l] = z;
+                batch.weight[q].0[l] = if l < elements { w * (end - start) } else { 0.0 };
                 for a in 0..functions {
-                    slab.value[q * functions + a].0[l] = v.value[a];
-                    slab.slope[q * functions + a].0[l] = v.slope[a];
+                    batch.value[q * functions + a].0[l] = v.value[a];
+                    batch.slope[q * functions + a].0[l] = v.slope[a];
                 }
             }
         }
-        slab
+        batch
     }
 
-    /// The first row of a lane's element, counted from the slab's first.
+    /// Returns the first row of a lane's element, counted from the first row of the batch.
     pub fn row(&self, lane: usize) -> usize {
         lane.min(self.elements - 1)
     }
@@ -105,7 +118,7 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// All layers of a basis through the wall, with a rule for every element.
+    /// Returns the layers of a basis through the wall, with a quadrature rule for every element.
     pub fn all(basis: &Basis, rules: &Rules) -> Vec<Self> {
         let layer = |e: usize| {
             let rule = &rules[e];
@@ -126,7 +139,7 @@ impl Layer {
         (0..basis.elements()).map(layer).collect()
     }
 
-    /// So many Gauss points through the whole wall, each as a layer of its own.
+    /// Returns `count` Gauss points through the whole wall, each as a layer of its own.
     pub fn points(basis: &Basis, count: usize) -> Vec<Self> {
         let (inner, outer) = (basis.element(0).0, basis.element(basis.elements() - 1).1);
         let point = |(x, w): (f64, f64)| {
@@ -144,13 +157,13 @@ impl Layer {
     }
 }
 
-/// One quadrature point around an element; every element around the tube has the same.
+/// A quadrature point around an element. The points are the same for every element around the tube.
 #[derive(Clone, Debug)]
-pub struct Around {
-    /// Where along the element, 0 to 1.
+pub struct CircumferentialPoint {
+    /// Position in the element, from 0 to 1.
     pub s: f64,
-    /// What each slot contributes.
-    pub slots: Vec<SlotValues>,
+    /// Basis functions of the distinct rings of an element, by local index.
+    pub ring_values: Vec<RingValues>,
     /// Weight.
     pub weight: f64,
     /// C, real (outwards at the element's middle) and imaginary.
@@ -159,20 +172,20 @@ pub struct Around {
     pub circle_slope: (f64, f64),
     /// |C|.
     pub radius: f64,
-    /// dC/ds along C.
+    /// Component of dC/ds along C.
     pub outwards: f64,
-    /// dC/ds across C.
+    /// Component of dC/ds perpendicular to C.
     pub across: f64,
 }
 
-impl Around {
-    /// A point of an element around the tube, at `s` in [0, 1].
+impl CircumferentialPoint {
+    /// Returns the point at `s` in [0, 1] of an element.
     pub fn at(sector: &Sector, circle: &Circle, s: f64, weight: f64) -> Self {
-        // Every function of the element at the control radius: the sector of one ring adds up.
-        let slots = sector.at(s);
+        // With every control point at the control radius, the ring values add up to C.
+        let ring_values = sector.at(s);
         let scale = |d: usize| {
-            let sum = slots.iter().fold((0.0, 0.0), |sum, slot| {
-                (sum.0 + slot.turned[d].0, sum.1 + slot.turned[d].1)
+            let sum = ring_values.iter().fold((0.0, 0.0), |sum, ring| {
+                (sum.0 + ring.rotated[d].0, sum.1 + ring.rotated[d].1)
             });
             (circle.control_radius * sum.0, circle.control_radius * sum.1)
         };
@@ -180,7 +193,7 @@ impl Around {
         let radius = c.0.hypot(c.1);
         Self {
             s,
-            slots,
+            ring_values,
             weight,
             circle: c,
             circle_slope: slope,
@@ -190,14 +203,14 @@ impl Around {
         }
     }
 
-    /// Reference volume per unit of z, R and s at a reference radius, times the weight:
-    /// dV₀ = R b |C| dζ dR ds.
+    /// Returns the weighted reference volume per unit of z, R and s at a reference radius: dV₀ = R
+    /// b |C| dζ dR ds.
     #[inline(always)]
     pub fn volume(&self, radius: f64) -> f64 {
         self.weight * radius * self.across * self.radius
     }
 
-    /// The quadrature points of an element around the tube.
+    /// Returns the quadrature points of an element around the tube.
     pub fn all(sector: &Sector, circle: &Circle, rule: &[(f64, f64)]) -> Vec<Self> {
         rule.iter()
             .map(|&(s, w)| Self::at(sector, circle, s, w))

@@ -1,10 +1,10 @@
 //! The tangent of a tube of many rings: conjugate gradients around the harmonic solver.
 
 use super::spare::Spare;
-use crate::assembly::{Linearised, LowHarmonics, RingDamping, SplineTube};
+use crate::assembly::{LowHarmonics, MatrixFreeTangent, RingDamping, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::monitor::Monitor;
-use crate::rings::{Coupling, HarmonicSolver, Transform};
+use crate::rings::{HarmonicSolver, LowHarmonicCorrection, Transform};
 use crate::solve::{NegativeCurvature, Operator, Solved, Solver, Tangent, conjugate_gradients};
 use crate::tube::Load;
 use rayon::prelude::*;
@@ -35,7 +35,7 @@ pub struct HarmonicTube {
     /// Low harmonics, as many as a state needs, once one does.
     low: [OnceLock<Arc<LowHarmonics>>; 2],
     /// Memory of tangents, of blocks of harmonics, and of matrices of low harmonics.
-    linearised: Spare<Linearised>,
+    linearised: Spare<MatrixFreeTangent>,
     blocks: Spare<BlockBanded>,
     coupled: Spare<BlockBanded>,
 }
@@ -50,7 +50,7 @@ pub struct HarmonicTangent {
 #[derive(Debug)]
 struct Linear {
     tube: Arc<HarmonicTube>,
-    at: Linearised,
+    at: MatrixFreeTangent,
     /// Whether the state is the same at every ring.
     symmetric: bool,
     /// The low harmonics that the state couples, if it does.
@@ -115,14 +115,14 @@ impl HarmonicTube {
     /// The tangent stiffness at a state.
     pub fn tangent(self: &Arc<Self>, load: &Load, u: &[f64]) -> HarmonicTangent {
         let mut at = self.linearised.take().unwrap_or_default();
-        self.tube.linearise(load, u, &mut at);
+        self.tube.linearise_into(load, u, &mut at);
         let rings = u.chunks_exact(self.tube.sector.rings);
         let difference = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs()));
         let differs = rings.map(difference).fold(0.0, f64::max);
         let low = (differs > COUPLED).then(|| self.low_harmonics(u));
         let coupled = low.as_ref().map(|low| {
             let mut coupled = self.low_matrix(low);
-            self.tube.coupled_tangent(low, load, u, &mut coupled);
+            self.tube.low_harmonic_tangent(low, load, u, &mut coupled);
             coupled
         });
         HarmonicTangent {
@@ -138,7 +138,7 @@ impl HarmonicTube {
 
     /// The low harmonics that a state couples.
     fn low_harmonics(&self, u: &[f64]) -> Arc<LowHarmonics> {
-        let mut shares = Transform::new(self.tube.sector.rings).products(u, u);
+        let mut shares = Transform::new(self.tube.sector.rings).dot_by_harmonic(u, u);
         shares[0] = 0.0;
         let all: f64 = shares.iter().sum();
         let own = shares.iter().rposition(|share| *share > SHARE * all);
@@ -149,7 +149,11 @@ impl HarmonicTube {
 
     /// Memory for a matrix of low harmonics.
     fn low_matrix(&self, low: &LowHarmonics) -> BlockBanded {
-        let (rows, size, band) = (self.tube.axial.functions(), low.row(), self.tube.degree());
+        let (rows, size, band) = (
+            self.tube.axial.functions(),
+            low.row_size(),
+            self.tube.degree(),
+        );
         let fits = self.coupled.take().filter(|matrix| matrix.size() == size);
         fits.unwrap_or_else(|| BlockBanded::zeros(rows, size, band))
     }
@@ -165,7 +169,7 @@ impl HarmonicTube {
 impl HarmonicTangent {
     /// Unknowns to a row of the matrix of low harmonics, of k rings; where it is needed.
     pub fn low_row(rings: usize) -> usize {
-        9 * (2 * HIGHEST[1].min(LowHarmonics::resolved(rings)) + 1)
+        9 * (2 * HIGHEST[1].min(LowHarmonics::highest_resolved(rings)) + 1)
     }
 }
 
@@ -174,7 +178,7 @@ impl Tangent for HarmonicTangent {
 
     fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         let Linear { tube, at, .. } = &*self.state;
-        tube.tube.product(at, factor, v, y);
+        tube.tube.add_tangent_product(at, factor, v, y);
     }
 
     fn shifted(&self, alpha: f64) -> Result<HarmonicSystem, Singular> {
@@ -217,12 +221,12 @@ impl HarmonicTangent {
         let mut preconditioner = HarmonicSolver::new(rings, factors);
         if let (Some(low), Some(mut matrix)) = (self.state.low.as_deref(), coupled) {
             if alpha != 0.0 {
-                low.add_drag(&tube.tube, &tube.damping, alpha, &mut matrix);
+                low.add_damping(&tube.tube, &tube.damping, alpha, &mut matrix);
             }
             matrix.constrain(&low.prescribed(&tube.tube));
             let mut coupled = matrix.factor()?;
             coupled.make_positive();
-            preconditioner = preconditioner.coupled(Coupling {
+            preconditioner = preconditioner.with_correction(LowHarmonicCorrection {
                 highest: low.highest,
                 through: low.through.clone(),
                 coupled,
@@ -330,12 +334,12 @@ impl Operator for HarmonicSystem {
         self.state.tube.tube.prescribed()
     }
     fn project_out_constraints(&self, v: &mut [f64]) {
-        self.state.tube.tube.take_out_pins(v);
+        self.state.tube.tube.project_out_constraints(v);
     }
     fn apply(&self, v: &[f64], out: &mut [f64]) {
         let Linear { tube, at, .. } = &*self.state;
         out.fill(0.0);
-        tube.tube.product(at, 1.0, v, out);
+        tube.tube.add_tangent_product(at, 1.0, v, out);
         if self.alpha != 0.0 {
             tube.damping(self.alpha, v, out);
         }
@@ -420,7 +424,7 @@ mod tests {
         let tube = Arc::new(SplineTube::new(&tube, &mesh, 36));
         let load = tube.tube.rest();
         let wave = |harmonic: f64| {
-            tube.control_values(|z, _, ring| {
+            tube.control_values_from(|z, _, ring| {
                 let phi = harmonic * tube.sector.ring_angle(ring);
                 let size = 0.03 * (std::f64::consts::PI * z).sin();
                 [0.0, size * phi.cos(), -size * phi.sin() / harmonic]

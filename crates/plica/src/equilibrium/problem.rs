@@ -86,7 +86,7 @@ impl Equilibrium for TubeProblem {
     }
     fn forces(&self, load: &Load, u: &[f64]) -> Result<ResidualEvaluation, Inverted> {
         let mut forces = self.tube.forces(load, u)?;
-        self.tube.take_out_pins(&mut forces.residual);
+        self.tube.project_out_constraints(&mut forces.residual);
         // The solver sees one sector: its energy is that whose derivative the residual is.
         let [strain, energy] =
             [forces.energy, forces.potential].map(|x| x / self.tube.sector.repeats());
@@ -117,7 +117,7 @@ impl Equilibrium for TubeProblem {
             Rings::Many(tube) => {
                 let mut force = vec![0.0; v.len()];
                 tube.damping(factor, v, &mut force);
-                self.tube.take_out_pins(&mut force);
+                self.tube.project_out_constraints(&mut force);
                 y.iter_mut().zip(&force).for_each(|(y, f)| *y += f);
             }
         }

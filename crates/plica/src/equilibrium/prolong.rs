@@ -104,7 +104,7 @@ fn at_angle(sector: &Sector, angle: f64) -> Vec<(f64, Complex)> {
     let mut weights = vec![(0.0, (0.0, 0.0)); sector.rings];
     for (r, slot) in sector.at(s).iter().enumerate() {
         let weight = &mut weights[sector.ring(first, r)];
-        let turned = times(slot.turned[0], (cos, sin));
+        let turned = times(slot.rotated[0], (cos, sin));
         weight.0 += slot.axial[0];
         weight.1 = (weight.1.0 + turned.0, weight.1.1 + turned.1);
     }

@@ -77,7 +77,7 @@ pub fn test_stability(
     };
     let known = known.unwrap_or(&[]).to_vec();
     // The blocks of an axisymmetric state are those of its ring alone.
-    let ring = (k > 1).then(|| tube.of_one_ring());
+    let ring = (k > 1).then(|| tube.axisymmetric());
     let ring = ring.as_ref().unwrap_or(tube);
     let load = &path.state().load;
     let negative = |n: usize| {
@@ -89,7 +89,7 @@ pub fn test_stability(
         }
         let mut tangent = match n {
             0 => ring.tangent(load, &of_ring),
-            n => ring.harmonic_tangent(load, &of_ring, n),
+            n => ring.tangent_in_harmonic(load, &of_ring, n),
         };
         tangent.constrain(&ring.prescribed_in_harmonic(n));
         // A singular block is at the limit of stability and counts as unstable.
@@ -150,7 +150,7 @@ fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
     let repeats = tube.sector.around / k;
     let highest = 4.min((k - 1) / 2);
     let seed = |quarter: f64| {
-        tube.control_values(|z, _, ring| {
+        tube.control_values_from(|z, _, ring| {
             let along = (PI * z / length).sin() + 0.5 * (2.0 * PI * z / length + quarter).sin();
             let (mut radial, mut around) = (0.0, 0.0);
             for n in 1..=highest {
@@ -204,7 +204,7 @@ mod tests {
                 (0.04, 0.03),
             ] {
                 // Not an equilibrium, which makes no difference to the tangent.
-                let oval = tube.control_values(|z, _, ring| {
+                let oval = tube.control_values_from(|z, _, ring| {
                     let phi = 2.0 * tube.sector.ring_angle(ring);
                     let size = size * (1.0 + (3.0 * z).cos());
                     [0.0, size * phi.cos(), -0.5 * size * phi.sin()]

@@ -52,7 +52,7 @@ impl<'a> Meridians<'a> {
         let mean = (rings > 1).then(|| {
             let mean = |u: &[f64]| u.iter().sum::<f64>() / rings as f64;
             let mean = u.chunks_exact(rings).map(mean).collect();
-            (tube.of_one_ring(), mean)
+            (tube.axisymmetric(), mean)
         });
         Self {
             tube,

@@ -28,7 +28,7 @@ fn tube(rings: usize) -> SplineTube {
 
 /// Unknowns that take every control point at (z, x, y) where a map says.
 fn moved(tube: &SplineTube, to: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
-    tube.control_values(|z, r, ring| {
+    tube.control_values_from(|z, r, ring| {
         let r = r * tube.circle.control_radius;
         let (sin, cos) = tube.sector.ring_angle(ring).sin_cos();
         let at = to([z, r * cos, r * sin]);

@@ -1,40 +1,40 @@
-//! The inverse of a matrix that is the same at every ring, harmonic by harmonic.
+//! Harmonic solver: the inverse of a block-circulant matrix, harmonic by harmonic.
 
-use super::{Coupling, Transform, Wave};
+use super::{HarmonicColumns, LowHarmonicCorrection, Transform};
 use crate::matrix::Factor;
 use rayon::prelude::*;
 
-/// The factored blocks of all circumferential harmonics of a sector.
+/// Factorised blocks of all circumferential harmonics of a sector.
 #[derive(Clone, Debug)]
 pub struct HarmonicSolver {
     transform: Transform,
-    factors: Vec<(Wave, Factor)>,
-    coupling: Option<Coupling>,
+    factors: Vec<(HarmonicColumns, Factor)>,
+    correction: Option<LowHarmonicCorrection>,
 }
 
 impl HarmonicSolver {
-    /// For k rings, of the factored blocks of the harmonics of the sector, 0 to k/2, their given
-    /// unknowns constrained.
+    /// Returns the solver for k rings from the factorised blocks of the harmonics of the sector, 0
+    /// to k/2, with prescribed unknowns constrained.
     pub fn new(rings: usize, factors: Vec<Factor>) -> Self {
         let transform = Transform::new(rings);
         Self {
             factors: transform.harmonics().zip(factors).collect(),
             transform,
-            coupling: None,
+            correction: None,
         }
     }
 
-    /// Corrects it on low harmonics (see [`Coupling`]).
-    pub fn coupled(mut self, coupling: Coupling) -> Self {
-        self.coupling = Some(coupling);
+    /// Adds a correction on low harmonics (see [`LowHarmonicCorrection`]).
+    pub fn with_correction(mut self, correction: LowHarmonicCorrection) -> Self {
+        self.correction = Some(correction);
         self
     }
 
-    /// The factors of all harmonics, and what corrects them.
-    pub fn into_factors(self) -> (impl Iterator<Item = Factor>, Option<Coupling>) {
+    /// Returns the factors of all harmonics, and the correction.
+    pub fn into_factors(self) -> (impl Iterator<Item = Factor>, Option<LowHarmonicCorrection>) {
         (
             self.factors.into_iter().map(|(_, factor)| factor),
-            self.coupling,
+            self.correction,
         )
     }
 
@@ -43,14 +43,14 @@ impl HarmonicSolver {
         let mut coefficients = self.transform.forward(b);
         let lines = b.len() / self.transform.rings();
         for pair in self.pairs(&mut coefficients, lines) {
-            // A wave is (z cos, r cos, −θ sin), and a quarter on (z sin, r sin, θ cos).
+            // A wave is (z cos, r cos, −θ sin); a quarter period on it is (z sin, r sin, θ cos).
             for (c, s) in circumferential(pair) {
                 (*c, *s) = (-*s, *c);
             }
         }
-        let low = self.coupling.as_ref().map(|coupling| {
-            let waves = self.transform.rings() as f64;
-            (coupling, coupling.restricted(&coefficients, lines), waves)
+        let low = self.correction.as_ref().map(|low| {
+            let rings = self.transform.rings() as f64;
+            (low, low.restricted(&coefficients, lines), rings)
         });
         let mut work = vec![];
         let mut rest = &mut coefficients[..];
@@ -61,7 +61,7 @@ impl HarmonicSolver {
             rest = others;
         }
         let (correction, ()) = rayon::join(
-            || low.map(|(coupling, b, waves)| (coupling, coupling.correction(b, waves))),
+            || low.map(|(low, b, rings)| (low, low.correction(b, rings))),
             || {
                 work.into_par_iter().for_each(|(factor, own)| {
                     if own.len() == lines {
@@ -73,18 +73,18 @@ impl HarmonicSolver {
                 });
             },
         );
-        if let Some((coupling, correction)) = correction {
-            coupling.add(&correction, &mut coefficients, lines);
+        if let Some((low, correction)) = correction {
+            low.add(&correction, &mut coefficients, lines);
         }
         for pair in self.pairs(&mut coefficients, lines) {
             for (c, s) in circumferential(pair) {
                 (*c, *s) = (*s, -*c);
             }
         }
-        self.transform.back(&coefficients)
+        self.transform.inverse(&coefficients)
     }
 
-    /// The cosine and the sine of every harmonic that has both.
+    /// Returns the cosine and sine columns of every harmonic that has both.
     fn pairs<'a>(&self, coefficients: &'a mut [f64], lines: usize) -> Vec<[&'a mut [f64]; 2]> {
         let alone = self.factors.iter().filter(|(wave, _)| wave.sine.is_none());
         let last = usize::from(alone.count() > 1);
@@ -97,7 +97,7 @@ impl HarmonicSolver {
     }
 }
 
-/// The circumferential unknowns of two columns.
+/// Returns the circumferential unknowns of two columns.
 fn circumferential([a, b]: [&mut [f64]; 2]) -> impl Iterator<Item = (&mut f64, &mut f64)> {
     a.iter_mut().zip(b).skip(2).step_by(3)
 }

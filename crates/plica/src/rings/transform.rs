@@ -1,37 +1,37 @@
-//! The discrete Fourier transform over the rings of a sector.
+//! Discrete Fourier transform over the rings of a sector.
 //!
-//! A vector of k rings is a matrix of k columns, one row for every unknown of a ring. Its
-//! coefficients on 1, cos φ, sin φ, cos 2φ, … are that matrix times a k × k one. For the tens of
-//! rings of a tube the dense product costs no more than a fast transform of so many short rows
-//! (2.6e7 multiply-adds at paper scale, 2 ms), keeps the rings of a harmonic side by side, and adds
-//! up in an order that never changes.
+//! A vector of k rings is a matrix of k columns with one row for every unknown of a ring. Its
+//! coefficients on 1, cos φ, sin φ, cos 2φ, … are the product of that matrix with a k × k matrix.
+//! For the tens of rings of a tube the dense product takes no longer than a fast transform of so
+//! many short rows (2.6e7 multiply-adds at paper scale, 2 ms), stores the columns of a harmonic
+//! side by side, and sums in a fixed order.
 
 use crate::matrix::multiply;
 use std::f64::consts::TAU;
 
-/// The transform over k rings.
+/// Discrete Fourier transform over k rings.
 #[derive(Clone, Debug)]
 pub struct Transform {
     rings: usize,
-    /// Row by row of rings: the values of 1, cos φ, sin φ, … at each ring.
+    /// The values of 1, cos φ, sin φ, … at each ring, wave by wave.
     waves: Vec<f64>,
-    /// What a coefficient is divided by: the sum of the squares of its wave.
+    /// Inverse sums of the squares of the waves.
     scale: Vec<f64>,
 }
 
-/// Circumferential harmonics of a sector: the coefficients that belong to one.
+/// Columns of the coefficients of one circumferential harmonic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wave {
-    /// Harmonic of the sector: waves around the k rings.
+pub struct HarmonicColumns {
+    /// Harmonic of the sector: periods over the k rings.
     pub harmonic: usize,
-    /// Column of its cosine.
+    /// Column of the cosine.
     pub cosine: usize,
-    /// Column of its sine; none for those that alternate or do not change.
+    /// Column of the sine; none for harmonics 0 and k/2.
     pub sine: Option<usize>,
 }
 
 impl Transform {
-    /// Over `rings` rings.
+    /// Returns the transform over `rings` rings.
     pub fn new(rings: usize) -> Self {
         let waves = (0..rings)
             .flat_map(|column| {
@@ -58,22 +58,23 @@ impl Transform {
         }
     }
 
-    /// k.
+    /// Returns k.
     pub fn rings(&self) -> usize {
         self.rings
     }
 
-    /// The harmonics, 0 to k/2.
-    pub fn harmonics(&self) -> impl Iterator<Item = Wave> + use<> {
+    /// Returns the columns of the harmonics, 0 to k/2.
+    pub fn harmonics(&self) -> impl Iterator<Item = HarmonicColumns> + use<> {
         let rings = self.rings;
-        (0..=rings / 2).map(move |harmonic| Wave {
+        (0..=rings / 2).map(move |harmonic| HarmonicColumns {
             harmonic,
             cosine: if harmonic == 0 { 0 } else { 2 * harmonic - 1 },
             sine: (harmonic > 0 && 2 * harmonic < rings).then_some(2 * harmonic),
         })
     }
 
-    /// Sums over the rings against every wave: column by column of unknowns of one ring.
+    /// Returns the sums over the rings of u times each wave: one column of unknowns of a ring per
+    /// wave.
     pub fn forward(&self, u: &[f64]) -> Vec<f64> {
         let (k, lines) = (self.rings, u.len() / self.rings);
         let mut out = vec![0.0; u.len()];
@@ -85,8 +86,8 @@ impl Transform {
         out
     }
 
-    /// What every harmonic, 0 to k/2, adds to u · v.
-    pub fn products(&self, u: &[f64], v: &[f64]) -> Vec<f64> {
+    /// Returns the contribution of every harmonic, 0 to k/2, to u · v.
+    pub fn dot_by_harmonic(&self, u: &[f64], v: &[f64]) -> Vec<f64> {
         let lines = u.len() / self.rings;
         let (u, v) = (self.forward(u), self.forward(v));
         let columns = u.chunks_exact(lines).zip(v.chunks_exact(lines));
@@ -96,13 +97,13 @@ impl Transform {
             .zip(&self.scale)
             .map(|(product, scale)| product * scale)
             .collect();
-        let of_wave = |wave: Wave| products[wave.cosine] + wave.sine.map_or(0.0, |s| products[s]);
+        let of_wave =
+            |wave: HarmonicColumns| products[wave.cosine] + wave.sine.map_or(0.0, |s| products[s]);
         self.harmonics().map(of_wave).collect()
     }
 
-    /// The displacements of given coefficients, each over the sum of the squares of its wave: the
-    /// inverse of [`Transform::forward`].
-    pub fn back(&self, coefficients: &[f64]) -> Vec<f64> {
+    /// Returns the displacements from coefficients: the inverse of [`Transform::forward`].
+    pub fn inverse(&self, coefficients: &[f64]) -> Vec<f64> {
         let (k, lines) = (self.rings, coefficients.len() / self.rings);
         let scaled: Vec<f64> = (0..k * k)
             .map(|at| self.scale[at / k] * self.waves[at])
@@ -126,7 +127,7 @@ mod tests {
         for rings in [1, 2, 3, 4, 7, 12, 60] {
             let transform = Transform::new(rings);
             let u: Vec<f64> = (0..5 * rings).map(|i| (i as f64 * 0.37).sin()).collect();
-            let back = transform.back(&transform.forward(&u));
+            let back = transform.inverse(&transform.forward(&u));
             for (a, b) in back.iter().zip(&u) {
                 assert!((a - b).abs() < 1e-14, "{rings} rings: {a} {b}");
             }
@@ -140,16 +141,16 @@ mod tests {
             let u: Vec<f64> = (0..4 * rings).map(|i| (i as f64 * 0.37).sin()).collect();
             let v: Vec<f64> = (0..4 * rings).map(|i| (i as f64 * 0.81).cos()).collect();
             let whole: f64 = u.iter().zip(&v).map(|(u, v)| u * v).sum();
-            let parts = transform.products(&u, &v);
+            let parts = transform.dot_by_harmonic(&u, &v);
             assert_eq!(parts.len(), rings / 2 + 1);
             assert!((parts.iter().sum::<f64>() - whole).abs() < 1e-14);
         }
-        // A wave has a part in its own harmonic only.
+        // A wave contributes to its own harmonic only.
         let wave = |phase: f64| -> Vec<f64> {
             let angle = |j: usize| TAU * (3 * j) as f64 / 12.0 + phase;
             (0..12).map(|j| angle(j).cos()).collect()
         };
-        for (n, part) in (0..).zip(Transform::new(12).products(&wave(0.3), &wave(0.7))) {
+        for (n, part) in (0..).zip(Transform::new(12).dot_by_harmonic(&wave(0.3), &wave(0.7))) {
             let expected = if n == 3 { 6.0 * 0.4_f64.cos() } else { 0.0 };
             assert!((part - expected).abs() < 1e-13, "{n}: {part}");
         }

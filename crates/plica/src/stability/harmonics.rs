@@ -95,7 +95,7 @@ impl<'a> Harmonics<'a> {
         let Harmonic { mass, prescribed } = &self.harmonics[n];
         let block = self.block(n, load, u);
         let motions = self.tube.rigid_motions_in_harmonic(u, n);
-        let held = self.tube.held_in_harmonics();
+        let held = self.tube.prescribed_at_ends();
         if motions
             .iter()
             .all(|motion| is_neutral(&block, &held, motion))
@@ -109,7 +109,7 @@ impl<'a> Harmonics<'a> {
     fn block(&self, n: usize, load: &Load, u: &[f64]) -> BlockBanded {
         match n {
             0 => self.tube.tangent(load, u),
-            n => self.tube.harmonic_tangent(load, u, n),
+            n => self.tube.tangent_in_harmonic(load, u, n),
         }
     }
 }

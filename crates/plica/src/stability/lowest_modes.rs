@@ -164,7 +164,7 @@ fn described(
     {
         let mut measured = vec![0.0; x.len()];
         problem.damping(1.0, &x, &mut measured);
-        let products = transform.products(&x, &measured);
+        let products = transform.dot_by_harmonic(&x, &measured);
         let whole: f64 = products.iter().sum();
         let mut shares = vec![0.0; sector.around / 2 + 1];
         for (n, product) in products.iter().enumerate() {

@@ -2,12 +2,12 @@
 
 use crate::assembly::SplineTube;
 use crate::matrix::BlockBanded;
-use crate::rings::{Sector, Turn};
+use crate::rings::{Rotation, Sector};
 use crate::spline::{Basis, gauss_legendre};
 
 /// The mass matrix ∫ N N dV₀ (unit density, reference volume) of harmonic n of an axisymmetric
 /// tube: of the displacements (z cos nφ, r cos nφ, −θ sin nφ), scaled as
-/// [`SplineTube::harmonic_tangent`] is for n ≥ 1 and [`SplineTube::tangent`] for n = 0.
+/// [`SplineTube::tangent_in_harmonic`] is for n ≥ 1 and [`SplineTube::tangent`] for n = 0.
 ///
 /// A form of harmonic n is N_C/2 times that of the two halves of [`Sector::harmonic_at`] on one
 /// element, added up, and the tangent's block is given without the N_C/2; so is this. Harmonic 0
@@ -69,10 +69,10 @@ fn around(tube: &SplineTube, n: usize) -> [[f64; 3]; 3] {
     let mut sum = [[0.0; 3]; 3];
     for (s, w) in gauss_legendre(tube.degree() + 1) {
         let slot = one.at(s)[0];
-        let [(x, y), (dx, dy)] = slot.turned;
+        let [(x, y), (dx, dy)] = slot.rotated;
         let area = w * tube.circle.control_radius.powi(2) * (x * dy - y * dx);
         let halves = match n {
-            0 => vec![Turn::from(&slot)],
+            0 => vec![Rotation::from(&slot)],
             n => one.harmonic_at(n, s).to_vec(),
         };
         for half in halves {

@@ -32,7 +32,9 @@ pub fn state(plan: &Plan, row: usize) -> SavedState {
         muscles: vec![],
         load: plan.tube.rest(),
         layout: plan.layout(),
-        u: tube.control_values(|z, r, _| [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * late)),
+        u: tube.control_values_from(|z, r, _| {
+            [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * late)
+        }),
         arrays: Default::default(),
     }
 }

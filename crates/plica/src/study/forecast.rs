@@ -107,7 +107,7 @@ fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
         ..mesh.clone()
     };
     let problem = TubeProblem::new(SplineTube::new(&plan.tube, &short, rings));
-    let (load, u) = (plan.tube.rest(), problem.tube.start());
+    let (load, u) = (plan.tube.rest(), problem.tube.initial_guess());
     let mut seconds = f64::INFINITY;
     for _ in 0..3 {
         let start = Instant::now();

@@ -106,13 +106,13 @@ fn locations(
         if let Failure::Evaluation(Inverted { place, .. }) = failure {
             return Some(Location::Inverted(*place));
         }
-        let place = tube.place_of(failure.worst_unknown()?);
+        let place = tube.place_of_unknown(failure.worst_unknown()?);
         Some(match failure {
             Failure::StillMoving { .. } => Location::Moving(place),
             _ => Location::LargestResidual(place),
         })
     });
-    let strained = last.and_then(|(load, u)| tube.hardest_strained(load, u));
+    let strained = last.and_then(|(load, u)| tube.max_energy_density(load, u));
     let strained = strained
         .filter(|(_, density)| *density > ROUNDING)
         .map(|(place, density)| match density.is_finite() {
@@ -130,7 +130,11 @@ impl Location {
     pub fn describe(&self, scale: &Scale) -> String {
         let at = |place: &Place| {
             let z = significant(scale.length * place.z);
-            format!("at z = {z} {}, {}", scale.length_name, place.beside_z())
+            format!(
+                "at z = {z} {}, {}",
+                scale.length_name,
+                place.angle_and_depth()
+            )
         };
         match self {
             Self::LargestResidual(place) => {

@@ -59,7 +59,7 @@ fn step(method: Method, solution: Solution, effort: Effort) -> (Vec<f64>, Step) 
 /// Returns an element that the imperfections of a tube turn inside out, if there is one.
 pub fn inverted_by_imperfections(tube: &Tube, mesh: &Mesh, symmetry: Symmetry) -> Option<Inverted> {
     let perfect = SplineTube::new(&perfect(tube), mesh, mesh.rings(symmetry));
-    perfect.can_have(&tube.imperfections).err()
+    perfect.check_imperfections(&tube.imperfections).err()
 }
 
 /// Returns a tube without its imperfections.

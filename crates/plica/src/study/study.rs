@@ -241,7 +241,7 @@ impl Study {
             damping_work: 0.0,
         };
         let mut path = self
-            .begin(rest.clone(), self.problem.tube.start())
+            .begin(rest.clone(), self.problem.tube.initial_guess())
             .map_err(|error| PathError {
                 attempts: vec![(Method::Rest, Failure::Evaluation(error))],
                 step,

@@ -1,37 +1,42 @@
-//! What pressures add to the tangent averaged around the tube.
+//! Contribution of pressure to the tangent averaged around the tube.
 
 use super::super::SplineTube;
 use super::volume::{sum, volume_blocks};
-use super::{Pressed, turned};
-use crate::rings::{Circulant, Turn};
+use super::{PressureTangent, rotated};
+use crate::rings::{Circulant, Rotation};
 
 impl SplineTube {
-    /// Adds the part of the tangent that pressures have, averaged over the rings (see
-    /// [`slab_offsets`](super::super::pencil::slab_offsets)).
-    pub(in crate::assembly) fn add_average_pressure(&self, at: &Pressed, average: &mut Circulant) {
+    /// Adds the contribution of pressure to the tangent, averaged over the rings (see
+    /// [`offset_blocks`](super::super::circumferential::offset_blocks)).
+    pub(in crate::assembly) fn add_average_pressure(
+        &self,
+        at: &PressureTangent,
+        average: &mut Circulant,
+    ) {
         let (n, k) = (self.degree() + 1, self.sector.rings);
-        let turns: Vec<Vec<Turn>> = self
+        let rotations: Vec<Vec<Rotation>> = self
             .around
             .iter()
             .map(|point| {
                 self.sector
-                    .unfolded_at(point.s)
+                    .function_values_at(point.s)
                     .iter()
-                    .map(Turn::from)
+                    .map(Rotation::from)
                     .collect()
             })
             .collect();
         for wall in &at.walls {
-            for along @ (slab, lane) in self.elements_along() {
-                // Between rings d apart: rows of control points a and b, components i and j.
+            for along @ (batch, lane) in self.elements_along() {
+                // By distance d between rings, rows of control points a and b, and components i and
+                // j.
                 let mut blocks_apart = vec![[[0.0; 3]; 3]; n * n * n];
                 for qz in 0..n {
-                    let rings = self.rings_at(wall, &at.u, along, qz);
-                    for (point, turns) in self.around.iter().zip(&turns) {
-                        let weight = slab.weight[qz].0[lane] * point.weight / k as f64;
+                    let rings = self.rings_along(wall, &at.u, along, qz);
+                    for (point, rotations) in self.around.iter().zip(&rotations) {
+                        let weight = batch.weight[qz].0[lane] * point.weight / k as f64;
                         let mut blocks = [[[0.0; 3]; 3]; 6];
                         for element in 0..k {
-                            let moved = self.surface(&rings, element, point);
+                            let moved = self.surface_displacement(&rings, element, point);
                             let place = sum(&wall.at_rest(point), &moved);
                             let own = volume_blocks(&place, -wall.follower * weight);
                             for (sum, own) in
@@ -44,8 +49,8 @@ impl SplineTube {
                         }
                         for r in 0..n {
                             for s in r..n {
-                                let turned = turned(&blocks, &turns[r], &turns[s]);
-                                self.add_along(along, qz, &turned, |a, b, i, j, x| {
+                                let rotated = rotated(&blocks, &rotations[r], &rotations[s]);
+                                self.add_along_tube(along, qz, &rotated, |a, b, i, j, x| {
                                     blocks_apart[((s - r) * n + a) * n + b][i][j] += x;
                                 });
                             }
@@ -69,7 +74,7 @@ impl SplineTube {
                                     };
                                     let place = (wall.point * 3 + i, wall.point * 3 + j);
                                     average.offsets[d].add_at(
-                                        slab.first + lane + b,
+                                        batch.first + lane + b,
                                         a - b,
                                         place.0,
                                         place.1,

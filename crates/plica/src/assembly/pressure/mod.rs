@@ -1,78 +1,78 @@
-//! Pressure on the inner and the outer wall: its potential, its forces, its part of the tangent.
+//! Pressure on the inner and the outer wall: potential, forces and tangent.
 //!
-//! A follower pressure p presses on the wall as it is, along its normal. Its work is p dV, with V
-//! what the wall encloses; its potential is −p V on the inner wall and +p V on the outer one, and
+//! A follower pressure p acts on the deformed wall, along its normal. Its work is p dV, with V the
+//! volume that the wall encloses; its potential is −p V on the inner wall and +p V on the outer
+//! one, and
 //!
 //! V = ∫ ½ (x × dx)_z ∧ dz = ∫∫ ½ [(a b_s − b a_s) z_ζ − (a b_ζ − b a_ζ) z_s] dζ ds
 //!
-//! over the wall alone, (z, a, b) the current position in the frame of the element: across planes
-//! z = const the form is nothing. Where every point of a wall's edge is given, or kept in such a
-//! plane, the forces ∂V/∂u are those of the pressure on the wall, and nothing acts at the edge.
-//! (At an edge that moves along z, what a lid would carry is missing; there the force depends on the way,
-//! and no V has it as its slope.)
+//! over the wall alone, with (z, a, b) the current position in the frame of the element: on planes
+//! z = const the integrand vanishes. If every point of a wall's edge is prescribed, or stays in
+//! such a plane, the forces ∂V/∂u are those of the pressure on the wall, and none act at the edge.
+//! (At an edge that moves along z, the force on a lid would be missing; the force then depends on
+//! the path, and has no potential.)
 //!
-//! A dead pressure presses on the wall as it is at rest: its potential is ∓p ∫ N · u dA₀, for any
-//! ends.
+//! A dead load acts on the wall at rest: its potential is ∓p ∫ N · u dA₀, for any ends.
 //!
-//! A wall is one surface, so plain loops do. V is taken without what it is at rest, so that
-//! nothing is lost to rounding.
+//! A wall is one surface, so plain loops are fast enough. V is computed relative to its value at
+//! rest, which avoids rounding.
 
 mod average;
-mod coupled;
+mod low_harmonics;
 #[cfg(test)]
 mod tests;
 mod volume;
 
+use super::Forces;
 use super::SplineTube;
-use super::kinematics::{Vector, turn, turn_back};
-use super::spline_tube::Forces;
-use super::tables::{Around, Slab};
-use super::tangent::{Block, add_turned};
+use super::blocks::{Block, add_rotated};
+use super::kinematics::{Vector, to_element_frame, to_ring_frame};
+use super::tables::{AxialBatch, CircumferentialPoint};
 use crate::matrix::BlockBanded;
-use crate::rings::Turn;
+use crate::rings::Rotation;
 use crate::tube::{Load, Tube};
 use rayon::prelude::*;
 use volume::{Surface, product, sum, volume_blocks, volume_change, volume_slopes};
 
-/// A wall with a pressure on it.
+/// A wall under pressure.
 #[derive(Clone, Copy, Debug)]
-pub struct Wall {
-    /// Its control point through the wall; the splines are one there, all others zero.
+pub struct LoadedWall {
+    /// Its control point through the wall: there its basis function is one, all others zero.
     point: usize,
-    /// Its radius at rest.
+    /// Radius at rest.
     radius: f64,
-    /// What pushes it outwards, following it.
+    /// Outward follower pressure.
     follower: f64,
-    /// What pushes it outwards, as if it were at rest.
+    /// Outward dead load.
     dead: f64,
 }
 
-/// The part of a tangent that pressure has: a state, and the walls that are pressed there.
+/// Contribution of pressure to a tangent: the walls under follower pressure, and the state.
 #[derive(Clone, Debug)]
-pub struct Pressed {
-    walls: Vec<Wall>,
+pub struct PressureTangent {
+    walls: Vec<LoadedWall>,
     u: Vec<f64>,
 }
 
-/// What the elements at one place along the tube add to the forces on a wall.
-struct Part {
-    /// Of the sector.
+/// Contribution of the elements at one axial position to the forces on a wall.
+struct WallForces {
+    /// Potential of the sector.
     potential: f64,
-    /// Sum of the squares of what the elements add.
+    /// Sum of the squares of the element contributions.
     squares: f64,
-    /// For p + 1 rows of control points, component and ring.
+    /// Forces on p + 1 rows of control points, by component and ring.
     force: Vec<f64>,
 }
 
-/// An element along the tube: slab and lane.
-type Along<'a> = (&'a Slab, usize);
+/// An element along the tube: axial batch and lane.
+type Along<'a> = (&'a AxialBatch, usize);
 
 impl SplineTube {
-    /// Adds what pressures do to the energy and the residual of a state.
+    /// Adds the potential and the forces of pressure to those of a state.
     pub(in crate::assembly) fn add_pressure(&self, load: &Load, u: &[f64], forces: &mut Forces) {
         let mut squares = forces.residual_scale * forces.residual_scale;
-        for wall in self.pressed_walls(load) {
-            let parts = self.sum_over(&wall, [u], |[moved], point| {
+        for wall in self.loaded_walls(load) {
+            let parts = self.integrate_over_wall(&wall, [u], |[moved], point| {
                 let rest = wall.at_rest(point);
                 let place = sum(&rest, &moved);
                 let volume = volume_slopes(&place);
@@ -93,67 +93,77 @@ impl SplineTube {
                 forces.potential += self.sector.repeats() * part.potential;
                 squares += part.squares;
             }
-            self.add_parts(&wall, &parts, 1.0, &mut forces.residual);
+            self.add_wall_forces(&wall, &parts, 1.0, &mut forces.residual);
             forces.residual_scale = squares.sqrt();
         }
     }
 
-    /// The pressed walls of a state, if a follower pressure makes them part of the tangent.
-    pub(in crate::assembly) fn pressed(&self, load: &Load, u: &[f64]) -> Option<Pressed> {
-        let walls = self.following_walls(load);
+    /// Returns the contribution of pressure to the tangent at a state; none without follower
+    /// pressure.
+    pub(in crate::assembly) fn pressure_tangent(
+        &self,
+        load: &Load,
+        u: &[f64],
+    ) -> Option<PressureTangent> {
+        let walls = self.follower_walls(load);
         let u = u.to_vec();
-        (!walls.is_empty()).then_some(Pressed { walls, u })
+        (!walls.is_empty()).then_some(PressureTangent { walls, u })
     }
 
-    /// y += factor · K v, K the part of the tangent that pressures have.
-    pub(in crate::assembly) fn pressure_product(
+    /// Computes y += factor · K v, with K the contribution of pressure to the tangent.
+    pub(in crate::assembly) fn add_pressure_product(
         &self,
-        at: &Pressed,
+        at: &PressureTangent,
         factor: f64,
         v: &[f64],
         y: &mut [f64],
     ) {
         for wall in &at.walls {
-            let parts = self.sum_over(wall, [&at.u, v], |[moved, v], point| {
+            let parts = self.integrate_over_wall(wall, [&at.u, v], |[moved, v], point| {
                 let blocks = volume_blocks(&sum(&wall.at_rest(point), &moved), -wall.follower);
                 (0.0, product(&blocks, &v))
             });
-            self.add_parts(wall, &parts, factor, y);
+            self.add_wall_forces(wall, &parts, factor, y);
         }
     }
 
-    /// Adds the part of the tangent that pressures have; `turns` as in
-    /// [`slab_tangent`](super::tangent::slab_tangent).
+    /// Adds the contribution of pressure to the tangent; `rotations` as in the axial kernel
+    /// [`tangent`](super::axial::tangent).
     pub(in crate::assembly) fn add_pressure_tangent(
         &self,
         load: &Load,
         u: &[f64],
-        turns: &[Vec<Vec<Turn>>],
+        rotations: &[Vec<Vec<Rotation>>],
         matrix: &mut BlockBanded,
     ) {
-        for wall in self.following_walls(load) {
+        for wall in self.follower_walls(load) {
             let place = |i: usize, ring: usize| (wall.point * 3 + i) * self.sector.rings + ring;
-            for along @ (slab, lane) in self.elements_along() {
+            for along @ (batch, lane) in self.elements_along() {
                 for qz in 0..=self.degree() {
-                    let rings = self.rings_at(&wall, u, along, qz);
+                    let rings = self.rings_along(&wall, u, along, qz);
                     for element in 0..self.sector.rings {
-                        for (point, turns) in self.around.iter().zip(turns) {
-                            let moved = self.surface(&rings, element, point);
-                            let weight = slab.weight[qz].0[lane] * point.weight;
+                        for (point, rotations) in self.around.iter().zip(rotations) {
+                            let moved = self.surface_displacement(&rings, element, point);
+                            let weight = batch.weight[qz].0[lane] * point.weight;
                             let place_now = sum(&wall.at_rest(point), &moved);
                             let blocks = volume_blocks(&place_now, -wall.follower * weight);
-                            for slots in turns {
-                                for (r, row) in slots.iter().enumerate() {
-                                    for (s, column) in slots.iter().enumerate() {
+                            for set in rotations {
+                                for (r, row) in set.iter().enumerate() {
+                                    for (s, column) in set.iter().enumerate() {
                                         let [r, s] = [r, s].map(|r| self.sector.ring(element, r));
-                                        let turned = turned(&blocks, row, column);
-                                        self.add_along(along, qz, &turned, |a, b, i, j, x| {
-                                            if a >= b {
-                                                let first = slab.first + lane;
-                                                let (row, column) = (place(i, r), place(j, s));
-                                                matrix.add_at(first + b, a - b, row, column, x);
-                                            }
-                                        });
+                                        let rotated = rotated(&blocks, row, column);
+                                        self.add_along_tube(
+                                            along,
+                                            qz,
+                                            &rotated,
+                                            |a, b, i, j, x| {
+                                                if a >= b {
+                                                    let first = batch.first + lane;
+                                                    let (row, column) = (place(i, r), place(j, s));
+                                                    matrix.add_at(first + b, a - b, row, column, x);
+                                                }
+                                            },
+                                        );
                                     }
                                 }
                             }
@@ -164,74 +174,79 @@ impl SplineTube {
         }
     }
 
-    /// Walls under any pressure.
-    fn pressed_walls(&self, load: &Load) -> Vec<Wall> {
+    /// Returns the walls under any pressure.
+    fn loaded_walls(&self, load: &Load) -> Vec<LoadedWall> {
         let [inner, outer] = load.pressures;
         let walls = [
-            Wall {
+            LoadedWall {
                 point: 0,
                 radius: self.tube.inner_radius(),
                 follower: inner.follower,
                 dead: inner.dead,
             },
-            Wall {
+            LoadedWall {
                 point: self.wall.functions() - 1,
                 radius: Tube::OUTER_RADIUS,
                 follower: -outer.follower,
                 dead: -outer.dead,
             },
         ];
-        let pressed = |wall: &Wall| wall.follower != 0.0 || wall.dead != 0.0;
+        let pressed = |wall: &LoadedWall| wall.follower != 0.0 || wall.dead != 0.0;
         walls.into_iter().filter(pressed).collect()
     }
 
-    fn following_walls(&self, load: &Load) -> Vec<Wall> {
-        let mut walls = self.pressed_walls(load);
+    fn follower_walls(&self, load: &Load) -> Vec<LoadedWall> {
+        let mut walls = self.loaded_walls(load);
         walls.retain(|wall| wall.follower != 0.0);
         walls
     }
 
     fn elements_along(&self) -> impl Iterator<Item = Along<'_>> {
-        self.slabs
+        self.batches
             .iter()
-            .flat_map(|slab| (0..slab.elements).map(move |lane| (slab, lane)))
+            .flat_map(|batch| (0..batch.elements).map(move |lane| (batch, lane)))
     }
 
-    /// Sums what is found at the points of a wall over each place along the tube. `of` takes fields
-    /// at a point to a potential and to its slopes.
-    fn sum_over<const F: usize>(
+    /// Integrates over the elements around a wall, for each element along the tube. `of` returns
+    /// the potential at a point, and its derivatives, from the displacement fields there.
+    fn integrate_over_wall<const F: usize>(
         &self,
-        wall: &Wall,
+        wall: &LoadedWall,
         fields: [&[f64]; F],
-        of: impl Fn([Surface; F], &Around) -> (f64, Surface) + Sync,
-    ) -> Vec<Part> {
-        let (n, k, slots) = (self.degree() + 1, self.sector.rings, self.sector.slots());
+        of: impl Fn([Surface; F], &CircumferentialPoint) -> (f64, Surface) + Sync,
+    ) -> Vec<WallForces> {
+        let (n, k, local_rings) = (
+            self.degree() + 1,
+            self.sector.rings,
+            self.sector.local_rings(),
+        );
         let elements: Vec<Along<'_>> = self.elements_along().collect();
         let part = |&along: &Along<'_>| {
-            let (slab, lane) = along;
+            let (batch, lane) = along;
             let mut potential = 0.0;
-            // Of each element around: per row and slot.
-            let mut forces = vec![[0.0; 3]; k * n * slots];
+            // Per element around, row and local ring.
+            let mut forces = vec![[0.0; 3]; k * n * local_rings];
             for qz in 0..n {
-                let rings = fields.map(|field| self.rings_at(wall, field, along, qz));
-                for (element, forces) in forces.chunks_exact_mut(n * slots).enumerate() {
-                    // Per slot: on the value and on the slope along.
-                    let mut slot_forces = vec![[[0.0; 3]; 2]; slots];
+                let rings = fields.map(|field| self.rings_along(wall, field, along, qz));
+                for (element, forces) in forces.chunks_exact_mut(n * local_rings).enumerate() {
+                    // Per local ring: forces on the value and on the slope along.
+                    let mut ring_forces = vec![[[0.0; 3]; 2]; local_rings];
                     for point in &self.around {
-                        let weight = slab.weight[qz].0[lane] * point.weight;
-                        let fields =
-                            std::array::from_fn(|f| self.surface(&rings[f], element, point));
+                        let weight = batch.weight[qz].0[lane] * point.weight;
+                        let fields = std::array::from_fn(|f| {
+                            self.surface_displacement(&rings[f], element, point)
+                        });
                         let (density, slopes) = of(fields, point);
                         potential += weight * density;
                         let [zeta, s, value] = slopes.map(|v| v.map(|x| weight * x));
-                        for (slot, f) in point.slots.iter().zip(&mut slot_forces) {
-                            f[0] = turn_back(slot, 1, s, turn_back(slot, 0, value, f[0]));
-                            f[1] = turn_back(slot, 0, zeta, f[1]);
+                        for (ring, f) in point.ring_values.iter().zip(&mut ring_forces) {
+                            f[0] = to_ring_frame(ring, 1, s, to_ring_frame(ring, 0, value, f[0]));
+                            f[1] = to_ring_frame(ring, 0, zeta, f[1]);
                         }
                     }
-                    for (a, forces) in forces.chunks_exact_mut(slots).enumerate() {
+                    for (a, forces) in forces.chunks_exact_mut(local_rings).enumerate() {
                         let (value, slope) = self.along(along, qz, a);
-                        for (force, [on_value, on_slope]) in forces.iter_mut().zip(&slot_forces) {
+                        for (force, [on_value, on_slope]) in forces.iter_mut().zip(&ring_forces) {
                             for i in 0..3 {
                                 force[i] += value * on_value[i] + slope * on_slope[i];
                             }
@@ -239,18 +254,18 @@ impl SplineTube {
                     }
                 }
             }
-            // Ring by ring, so that every ring adds up its elements in the same order.
+            // Ring by ring, so that every ring sums its elements in the same order.
             let mut force = vec![0.0; n * 3 * k];
             for (a, force) in force.chunks_exact_mut(3 * k).enumerate() {
                 for (at, force) in force.iter_mut().enumerate() {
                     let (i, ring) = (at / k, at % k);
-                    for r in 0..slots {
+                    for r in 0..local_rings {
                         let element = (ring + k - r) % k;
-                        *force += forces[(element * n + a) * slots + r][i];
+                        *force += forces[(element * n + a) * local_rings + r][i];
                     }
                 }
             }
-            Part {
+            WallForces {
                 potential,
                 squares: forces.as_flattened().iter().map(|x| x * x).sum(),
                 force,
@@ -259,8 +274,8 @@ impl SplineTube {
         elements.par_iter().map(part).collect()
     }
 
-    /// Adds forces on a wall to those on the unknowns.
-    fn add_parts(&self, wall: &Wall, parts: &[Part], factor: f64, y: &mut [f64]) {
+    /// Adds forces on a wall to the vector of all unknowns.
+    fn add_wall_forces(&self, wall: &LoadedWall, parts: &[WallForces], factor: f64, y: &mut [f64]) {
         let (m, row) = (self.row_size(), 3 * self.sector.rings);
         for (first, part) in parts.iter().enumerate() {
             for (a, force) in part.force.chunks_exact(row).enumerate() {
@@ -272,16 +287,17 @@ impl SplineTube {
         }
     }
 
-    /// Value and slope along the tube of a function of an element.
-    fn along(&self, (slab, lane): Along<'_>, qz: usize, a: usize) -> (f64, f64) {
+    /// Returns value and slope along the tube of function `a` of an element.
+    fn along(&self, (batch, lane): Along<'_>, qz: usize, a: usize) -> (f64, f64) {
         let at = qz * (self.degree() + 1) + a;
-        (slab.value[at].0[lane], slab.slope[at].0[lane])
+        (batch.value[at].0[lane], batch.slope[at].0[lane])
     }
 
-    /// The displacement of the rings of a wall and its slope along, at a point along the tube.
-    fn rings_at(
+    /// Returns the displacement of the rings of a wall, and its slope along, at a point along the
+    /// tube.
+    fn rings_along(
         &self,
-        wall: &Wall,
+        wall: &LoadedWall,
         u: &[f64],
         along: Along<'_>,
         qz: usize,
@@ -301,28 +317,34 @@ impl SplineTube {
         rings
     }
 
-    /// The displacement at a point of an element around, and its slopes.
-    fn surface(&self, rings: &[[Vector<f64>; 2]], element: usize, point: &Around) -> Surface {
+    /// Returns the displacement at a point of an element around, and its slopes.
+    fn surface_displacement(
+        &self,
+        rings: &[[Vector<f64>; 2]],
+        element: usize,
+        point: &CircumferentialPoint,
+    ) -> Surface {
         let mut surface = [[0.0; 3]; 3];
-        for (r, slot) in point.slots.iter().enumerate() {
+        for (r, ring) in point.ring_values.iter().enumerate() {
             let [value, along] = rings[self.sector.ring(element, r)];
-            surface[0] = turn(slot, 0, along, surface[0]);
-            surface[1] = turn(slot, 1, value, surface[1]);
-            surface[2] = turn(slot, 0, value, surface[2]);
+            surface[0] = to_element_frame(ring, 0, along, surface[0]);
+            surface[1] = to_element_frame(ring, 1, value, surface[1]);
+            surface[2] = to_element_frame(ring, 0, value, surface[2]);
         }
         surface
     }
 
-    /// Hands on φ_α(a) φ_β(b) T_αβ, summed over the slopes α and β, for all rows a and b of an element.
-    fn add_along(
+    /// Calls `add` with φ_α(a) φ_β(b) T_αβ, summed over the slopes α and β, for all rows a and b of
+    /// an element.
+    fn add_along_tube(
         &self,
         along: Along<'_>,
         qz: usize,
-        turned: &[[Block<f64>; 3]; 3],
+        rotated: &[[Block<f64>; 3]; 3],
         mut add: impl FnMut(usize, usize, usize, usize, f64),
     ) {
         let n = self.degree() + 1;
-        // N′ with the slope over ζ, N with that over s and with the value.
+        // N′ for the slope over ζ, N for the slope over s and the value.
         let functions = |a: usize| {
             let (value, slope) = self.along(along, qz, a);
             [slope, value, value]
@@ -335,7 +357,7 @@ impl SplineTube {
                         let mut x = 0.0;
                         for alpha in 0..3 {
                             for beta in 0..3 {
-                                x += row[alpha] * column[beta] * turned[alpha][beta][i][j];
+                                x += row[alpha] * column[beta] * rotated[alpha][beta][i][j];
                             }
                         }
                         add(a, b, i, j, x);
@@ -346,9 +368,9 @@ impl SplineTube {
     }
 }
 
-impl Wall {
-    /// Position across the axis, and its slopes, at rest.
-    fn at_rest(&self, point: &Around) -> Surface {
+impl LoadedWall {
+    /// Returns the position at rest across the axis, and its slopes.
+    fn at_rest(&self, point: &CircumferentialPoint) -> Surface {
         let across = |(re, im): (f64, f64)| [0.0, self.radius * re, self.radius * im];
         [
             [1.0, 0.0, 0.0],
@@ -358,9 +380,9 @@ impl Wall {
     }
 }
 
-/// Blocks on the slopes of two slots.
-fn turned(blocks: &[Block<f64>; 6], row: &Turn, column: &Turn) -> [[Block<f64>; 3]; 3] {
-    let mut turned = [[[[0.0; 3]; 3]; 3]; 3];
-    add_turned(&mut turned, blocks, row, column, false);
-    turned
+/// Returns blocks rotated to two rings.
+fn rotated(blocks: &[Block<f64>; 6], row: &Rotation, column: &Rotation) -> [[Block<f64>; 3]; 3] {
+    let mut rotated = [[[[0.0; 3]; 3]; 3]; 3];
+    add_rotated(&mut rotated, blocks, row, column, false);
+    rotated
 }

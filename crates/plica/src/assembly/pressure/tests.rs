@@ -163,8 +163,8 @@ fn the_tangent_of_pressures_is_the_slope_of_their_forces() {
         let slope: Vec<f64> = ahead.iter().zip(&behind).map(|(a, b)| a - b).collect();
 
         let mut product = vec![0.0; u.len()];
-        let at = tube.pressed(&load, &u).unwrap();
-        tube.pressure_product(&at, 1.0, &v, &mut product);
+        let at = tube.pressure_tangent(&load, &u).unwrap();
+        tube.add_pressure_product(&at, 1.0, &v, &mut product);
         let mut assembled = vec![0.0; u.len()];
         tube.tangent(&load, &u)
             .multiply_add(1.0, &v, &mut assembled);
@@ -193,12 +193,12 @@ fn the_tangent_of_pressures_is_the_slope_of_their_forces() {
 fn on_a_harmonic_the_average_and_the_block_are_the_product() {
     let (degree, elements) = (3, [5, 2, 10]);
     let TubeAndLoad { tube, .. } = tube_and_load(degree, elements, 10);
-    let one = tube.of_one_ring();
+    let one = tube.axisymmetric();
     let ring = unknowns_without_twist(&one);
     let u: Vec<f64> = ring.iter().flat_map(|x| [*x; 10]).collect();
     let load = all(&tube);
-    let at = tube.pressed(&load, &u).unwrap();
-    let mut average = tube.linearised(&tube.tube.rest(), &u).average;
+    let at = tube.pressure_tangent(&load, &u).unwrap();
+    let mut average = tube.matrix_free_tangent(&tube.tube.rest(), &u).average;
     let free = average.clone();
     tube.add_average_pressure(&at, &mut average);
     let x = direction(&one);
@@ -215,7 +215,7 @@ fn on_a_harmonic_the_average_and_the_block_are_the_product() {
             }
         }
         let mut product = vec![0.0; u.len()];
-        tube.pressure_product(&at, 1.0, &wave, &mut product);
+        tube.add_pressure_product(&at, 1.0, &wave, &mut product);
         let whole = dot(&product, &wave) * if n == 0 { 0.1 } else { 0.2 };
         let form = |matrix: &crate::matrix::BlockBanded| {
             let mut y = vec![0.0; x.len()];
@@ -225,7 +225,7 @@ fn on_a_harmonic_the_average_and_the_block_are_the_product() {
         let averaged = form(&average.harmonic(n)) - form(&free.harmonic(n));
         let block = |load: &Load| match n {
             0 => form(&one.tangent(load, &ring)),
-            n => form(&one.harmonic_tangent(load, &ring, n)),
+            n => form(&one.tangent_in_harmonic(load, &ring, n)),
         };
         let block = block(&load) - block(&one.tube.rest());
         // Differences from the tangent of the wall, 1e3 times as large.
@@ -248,11 +248,11 @@ fn unknowns_without_twist(tube: &SplineTube) -> Vec<f64> {
 
 #[test]
 fn pressure_between_plates_leaves_rigid_motions_alone() {
-    // Shifted sideways or turned about the axis, no volume is swept, and no force arises.
+    // Shifted sideways or rotated about the axis, no volume is swept, and no force arises.
     let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 12], 12);
     let u = between_plates(&tube, wavy(&tube));
     let load = pressed(&tube, [follower(0.3), follower(0.7)]);
-    let at = tube.pressed(&load, &u).unwrap();
+    let at = tube.pressure_tangent(&load, &u).unwrap();
     let k = tube.sector.rings;
     let (mut shift, mut turn) = (vec![0.0; u.len()], vec![0.0; u.len()]);
     let radii = tube.wall.greville();
@@ -275,7 +275,7 @@ fn pressure_between_plates_leaves_rigid_motions_alone() {
     }
     // Shifting changes no force.
     let mut product = vec![0.0; u.len()];
-    tube.pressure_product(&at, 1.0, &shift, &mut product);
+    tube.add_pressure_product(&at, 1.0, &shift, &mut product);
     let m = tube.row_size();
     let axial = |i: usize| (i / k).is_multiple_of(3) && (i < m || i >= u.len() - m);
     for (i, x) in product.iter().enumerate().filter(|(i, _)| !axial(*i)) {

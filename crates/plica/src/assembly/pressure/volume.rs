@@ -1,18 +1,18 @@
-//! The volume below a surface, per point of it: its slopes, and theirs.
+//! Volume enclosed by a surface, per point of the surface: its first and second derivatives.
 
+use super::super::blocks::Block;
 use super::super::kinematics::Vector;
-use super::super::tangent::Block;
 
-/// Slopes over ζ and s, and the value itself: of the displacement, or of the position.
+/// Slopes over ζ and s, and the value, of a displacement or of a position.
 pub type Surface = [Vector<f64>; 3];
 
-/// Of both.
+/// Returns the sum of two.
 pub fn sum(a: &Surface, b: &Surface) -> Surface {
     std::array::from_fn(|d| std::array::from_fn(|i| a[d][i] + b[d][i]))
 }
 
-/// ½ [(a b_s − b a_s) z_ζ − (a b_ζ − b a_ζ) z_s], less what it is at rest: of a position at rest (of
-/// a wall that runs along z) and a displacement.
+/// Returns ½ [(a b_s − b a_s) z_ζ − (a b_ζ − b a_ζ) z_s] less its value at rest, for a position at
+/// rest (of a wall along z) and a displacement.
 pub fn volume_change(rest: &Surface, moved: &Surface) -> f64 {
     let across = |x: &Vector<f64>, y: &Vector<f64>| x[1] * y[2] - x[2] * y[1];
     let [_, rest_s, rest] = rest;
@@ -23,7 +23,7 @@ pub fn volume_change(rest: &Surface, moved: &Surface) -> f64 {
     0.5 * (change + area * moved_z[0] - drawn * moved_s[0])
 }
 
-/// Its slopes at a position, over everything that it depends on.
+/// Returns its derivatives at a position, with respect to the slopes and the value.
 pub fn volume_slopes([x_z, x_s, x]: &Surface) -> Surface {
     let ([z_z, a_z, b_z], [z_s, a_s, b_s], [_, a, b]) = (*x_z, *x_s, *x);
     [
@@ -37,7 +37,7 @@ pub fn volume_slopes([x_z, x_s, x]: &Surface) -> Surface {
     ]
 }
 
-/// Slopes of the slopes, times a factor: blocks (ζ,ζ), (ζ,s), (ζ,value), (s,s), (s,value),
+/// Returns its second derivatives times a factor: blocks (ζ,ζ), (ζ,s), (ζ,value), (s,s), (s,value),
 /// (value,value).
 pub fn volume_blocks([x_z, x_s, x]: &Surface, factor: f64) -> [Block<f64>; 6] {
     let half = 0.5 * factor;
@@ -55,7 +55,7 @@ pub fn volume_blocks([x_z, x_s, x]: &Surface, factor: f64) -> [Block<f64>; 6] {
     ]
 }
 
-/// Blocks times the slopes of a displacement.
+/// Returns the product of the blocks with the slopes of a displacement.
 pub fn product(blocks: &[Block<f64>; 6], v: &Surface) -> Surface {
     let (mut out, [_, zs, zv, _, sv, _]) = ([[0.0; 3]; 3], blocks);
     for (block, alpha, beta) in [(zs, 0, 1), (zv, 0, 2), (sv, 1, 2)] {

@@ -95,15 +95,15 @@ fn harmonic_2_of_an_end_is_oval_as_high_as_asked_and_keeps_lengths() {
     let tube = imperfect([Support::Fixed; 2], COLON, 0.01, wave);
     let mut u = vec![0.0; tube.unknowns()];
     tube.apply_prescribed(&tube.tube.rest(), &mut u);
-    let turned = |angle: f64| {
+    let rotated = |angle: f64| {
         let [_, x, y] = displacement(&tube, &u, 0.0, 0.45, angle);
         let (sin, cos) = angle.sin_cos();
         [x * cos + y * sin, y * cos - x * sin]
     };
     for i in 0..50 {
         let angle = 0.13 * f64::from(i);
-        let [radial, around] = turned(angle);
-        // Twelve splines draw three turns to 2 %.
+        let [radial, around] = rotated(angle);
+        // Twelve splines draw three rotations to 2 %.
         assert!(
             (radial - 0.01 * (2.0 * angle).cos()).abs() < 1e-4,
             "{radial}"
@@ -170,7 +170,7 @@ fn a_geometric_imperfection_is_zero_at_fixed_ends_and_as_high_as_asked_between()
 fn a_perfect_tube_has_no_imperfect_geometry_and_starts_at_rest() {
     let TubeAndLoad { tube, load } = tube_and_load(3, [9, 2, 6], 6);
     assert_eq!(tube.geometric_imperfection(), None);
-    assert!(tube.start().iter().all(|x| x.to_bits() == 0));
+    assert!(tube.initial_guess().iter().all(|x| x.to_bits() == 0));
     for z in [0.1, 0.3, 0.75, 1.2] {
         assert_eq!(
             tube.tube.stretches_at(z, 2.0, &load),
@@ -183,7 +183,7 @@ fn a_perfect_tube_has_no_imperfect_geometry_and_starts_at_rest() {
 fn a_start_is_smooth_and_holds_the_ends() {
     let wave = Wave::new(2, 0.3, Axial::Uniform);
     let tube = imperfect([Support::Fixed; 2], COLON, 0.01, wave);
-    let u = tube.start();
+    let u = tube.initial_guess();
     let mut imposed = u.clone();
     tube.apply_prescribed(&tube.tube.rest(), &mut imposed);
     assert_eq!(u, imposed);
@@ -201,7 +201,7 @@ fn fields_at_points_add_up_to_the_energy_of_an_imperfect_muscle() {
         let tube = imperfect([Support::Fixed; 2], of, amplitude, wave);
         let mut load = tube_and_load(3, [9, 2, 12], 1).load;
         load.ends = tube.tube.rest().ends;
-        let mut u = tube.start();
+        let mut u = tube.initial_guess();
         tube.apply_prescribed(&load, &mut u);
         let rule = gauss_legendre(4);
         let spans = |basis: &Basis| -> Vec<(f64, f64)> {

@@ -119,13 +119,13 @@ fn rigid_motions_leave_the_energy_of_an_active_tube_as_it_is() {
         let TubeAndLoad { tube, load } = tube_and_load(degree, [5, 2, 7], 7);
         let u = wavy(&tube);
         let before = tube.forces(&load, &u).unwrap();
-        let turned = carried(&tube, &load, &u, tilted(), [0.4, -0.7, 0.9]);
-        let after = tube.forces(&load, &turned).unwrap();
+        let rotated = carried(&tube, &load, &u, tilted(), [0.4, -0.7, 0.9]);
+        let after = tube.forces(&load, &rotated).unwrap();
         assert!(
             (after.energy / before.energy - 1.0).abs() < 1e-12,
             "degree {degree}"
         );
-        // The residual turns with the tube: its size is unchanged.
+        // The residual rotations with the tube: its size is unchanged.
         let size = |r: &[f64]| dot(r, r).sqrt();
         let ratio = size(&after.residual) / size(&before.residual);
         assert!((ratio - 1.0).abs() < 1e-11, "degree {degree}: {ratio}");

@@ -1,13 +1,13 @@
 //! What must hold of a discretised tube, and the tubes and displacements that show it.
 
+mod batches;
+mod boundary_conditions;
 mod imperfection;
 mod mechanics;
+mod reduced_integration;
 mod reference;
-mod slabs;
 mod stress_free;
-mod supports;
 mod symmetry;
-mod volume;
 
 use super::SplineTube;
 use crate::activation::{Direction, Muscle, Profile};
@@ -69,7 +69,7 @@ pub(in crate::assembly) fn unknowns(
     field: impl Fn(f64, f64, f64) -> [f64; 3],
 ) -> Vec<f64> {
     let rings = tube.sector.rings as f64;
-    tube.control_values(|z, r, ring| field(z, r, ring as f64 / rings))
+    tube.control_values_from(|z, r, ring| field(z, r, ring as f64 / rings))
 }
 
 /// A displacement without any symmetry but the sector's: waves as large as the wall is thick,

@@ -8,7 +8,7 @@ use crate::tensor::Tensor2;
 use std::f64::consts::TAU;
 
 /// Degrees and elements along, through and around: counts along the tube below, at and above
-/// eight, so that slabs are partly filled, full and summed.
+/// eight, so that batches are partly filled, full and summed.
 const MESHES: [(usize, [usize; 3]); 7] = [
     (1, [10, 2, 8]),
     (2, [8, 2, 7]),

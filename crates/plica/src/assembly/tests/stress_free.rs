@@ -150,7 +150,7 @@ fn the_residual_and_the_tangent_of_an_imperfect_tube_are_slopes() {
         if rings > 1 {
             // Ten numbers of a point are kept in single precision.
             let mut product = vec![0.0; u.len()];
-            tube.product(&tube.linearised(&load, &u), 1.0, &d, &mut product);
+            tube.add_tangent_product(&tube.matrix_free_tangent(&load, &u), 1.0, &d, &mut product);
             let off = largest(&moved(&product, &exact, -1.0));
             assert!(off < 1e-6 * largest(&exact), "{rings} rings: {off:e}");
         }
@@ -169,7 +169,7 @@ fn an_imperfect_tube_at_rest_is_free_of_stress() {
         assert!(largest(&forces.residual) < 1e-14, "{rings} rings");
         assert!((forces.smallest_jacobian - 1.0).abs() < 1e-13);
         // Its ends are held as they are, and there the search for it begins.
-        assert!(largest(&moved(&tube.start(), u, -1.0)) < 1e-16);
+        assert!(largest(&moved(&tube.initial_guess(), u, -1.0)) < 1e-16);
         let mut held = u.to_vec();
         tube.apply_prescribed(&rest, &mut held);
         assert!(largest(&moved(&held, u, -1.0)) < 1e-16);
@@ -184,11 +184,11 @@ fn a_tube_that_is_only_turned_is_perfect() {
         let delta = carried(&tube, &load, &zero, tilted(), [0.4, -0.7, 0.9]);
         let u = wavy(&tube);
         let perfect = tube.forces(&load, &u).unwrap();
-        let turned = tube.clone().imperfect(delta);
-        let forces = turned.forces(&load, &u).unwrap();
+        let rotated = tube.clone().with_stress_free_shape(delta);
+        let forces = rotated.forces(&load, &u).unwrap();
         assert!((forces.energy / perfect.energy - 1.0).abs() < 1e-12);
         assert_close("residual", forces.residual, &perfect.residual);
-        let (a, b) = (turned.tangent(&load, &u), tube.tangent(&load, &u));
+        let (a, b) = (rotated.tangent(&load, &u), tube.tangent(&load, &u));
         let n = tube.unknowns();
         let entries = |K: &crate::matrix::BlockBanded| -> Vec<f64> {
             (0..n * n).map(|e| K.entry(e / n, e % n)).collect()
@@ -215,9 +215,9 @@ fn a_round_imperfection_is_the_same_for_every_sector() {
         assert!((f.energy / forces.energy - 1.0).abs() < 1e-13);
         let off = moved(&f.residual, &replicated(&forces.residual, rings), -1.0);
         assert!(largest(&off) < 1e-13 * forces.residual_scale);
-        let again = many.of_one_ring().forces(&load, &u).unwrap();
+        let again = many.axisymmetric().forces(&load, &u).unwrap();
         assert!((again.energy / forces.energy - 1.0).abs() < 1e-15);
-        // Harmonic by harmonic: by slabs, by the average of pencils, and of the whole tube. Without
+        // Harmonic by harmonic: by batches, by the average of circumferential batches, and of the whole tube. Without
         // twist in the shape, so that the mode's part around is left out.
         let plain = Tube {
             imperfections: vec![one.tube.imperfections[1].clone()],
@@ -225,18 +225,18 @@ fn a_round_imperfection_is_the_same_for_every_sector() {
         };
         let [one, many] =
             [1, rings].map(|rings| SplineTube::new(&plain, &mesh(3, elements), rings));
-        let at = many.linearised(&load, &replicated(&u, rings));
+        let at = many.matrix_free_tangent(&load, &replicated(&u, rings));
         let v = direction(&one);
         for n in [4, 8] {
             let mut block = vec![0.0; v.len()];
-            one.harmonic_tangent(&load, &u, n)
+            one.tangent_in_harmonic(&load, &u, n)
                 .multiply_add(1.0, &v, &mut block);
             let mut averaged = vec![0.0; v.len()];
             at.average.harmonic(n).multiply_add(1.0, &v, &mut averaged);
             assert_close(&format!("average, {n}"), averaged, &block);
             if rings == 12 {
                 let mut product = vec![0.0; many.unknowns()];
-                many.product(&at, 1.0, &harmonic(&many, &v, n), &mut product);
+                many.add_tangent_product(&at, 1.0, &harmonic(&many, &v, n), &mut product);
                 let off = largest(&moved(&product, &harmonic(&many, &block, n), -1.0));
                 assert!(off < 1e-6 * largest(&block), "{n}: {off:e}");
             }
@@ -321,7 +321,7 @@ fn a_mode_displaces_another_mesh_as_its_own() {
         };
         for i in 0..50 {
             let (a, b) = (at(&a, i), at(&b, i));
-            // 24 functions draw four turns to 2e-3.
+            // 24 functions draw four rotations to 2e-3.
             let off = (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
             assert!(off < 3e-3 * 0.01, "{harmonic}: {a:?}, {b:?}");
         }
@@ -333,8 +333,8 @@ fn a_shape_that_is_folded_is_refused_with_its_place() {
     let TubeAndLoad { tube, .. } = tube_and_load(3, [9, 2, 12], 12);
     let mode = mode(2, mesh(3, [9, 2, 12]));
     let shape = |amplitude| [geometry(amplitude, Shape::Mode(mode.clone()))];
-    assert_eq!(tube.can_have(&shape(0.03)), Ok(()));
-    let folded = tube.can_have(&shape(3.0)).unwrap_err();
+    assert_eq!(tube.check_imperfections(&shape(0.03)), Ok(()));
+    let folded = tube.check_imperfections(&shape(3.0)).unwrap_err();
     assert!(
         folded.jacobian <= 0.0 && (0.0..=1.5).contains(&folded.place.z),
         "{folded:?}"
@@ -346,5 +346,8 @@ fn a_shape_that_is_folded_is_refused_with_its_place() {
         ..tube.tube
     };
     let tube = SplineTube::new(&tube, &mesh(3, [9, 2, 12]), 12);
-    assert!(tube.forces(&tube.tube.rest(), &tube.start()).is_err());
+    assert!(
+        tube.forces(&tube.tube.rest(), &tube.initial_guess())
+            .is_err()
+    );
 }

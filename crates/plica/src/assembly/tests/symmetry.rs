@@ -95,7 +95,7 @@ fn harmonic_blocks_are_those_of_the_whole_tube() {
     for n in 1..around / 2 {
         // Quadratic forms are 2/N_C of the whole tube's and so is |cos nφ|²: the blocks are equal.
         let mut block = vec![0.0; v.len()];
-        one.harmonic_tangent(&load, &u, n)
+        one.tangent_in_harmonic(&load, &u, n)
             .multiply_add(1.0, &v, &mut block);
         let mut product = vec![0.0; whole.unknowns()];
         K.multiply_add(1.0, &harmonic(&whole, &v, n), &mut product);
@@ -106,7 +106,7 @@ fn harmonic_blocks_are_those_of_the_whole_tube() {
     let negative = |n: usize| {
         let mut block = match n {
             0 => one.tangent(&load, &u),
-            _ => one.harmonic_tangent(&load, &u, n),
+            _ => one.tangent_in_harmonic(&load, &u, n),
         };
         block.constrain(&one.prescribed_in_harmonic(n));
         block.factor().unwrap().negative_pivots()

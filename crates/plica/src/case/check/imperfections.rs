@@ -384,7 +384,7 @@ pub(super) fn check_wall(
     }
     if let Some(at) = inverted_by_imperfections(tube, mesh, symmetry) {
         let z = tidy(at.place.z * spec.tube.diameter);
-        let near = at.place.beside_z();
+        let near = at.place.angle_and_depth();
         let rule = format!("with it the stress-free wall is folded over, near z = {z}, {near}");
         let key = format!("imperfections[{}].amplitude", last + 1);
         problems.value(&key, rule, Some("make it smaller".into()));

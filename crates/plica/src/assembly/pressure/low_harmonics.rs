@@ -1,17 +1,18 @@
-//! What pressures add to the tangent on low harmonics.
+//! Contribution of pressure to the tangent on low harmonics.
 
-use super::super::coupling::LowHarmonics;
-use super::super::{SplineTube, tangent::Block};
+use super::super::SplineTube;
+use super::super::blocks::Block;
+use super::super::low_harmonics::LowHarmonics;
 use super::volume::{sum, volume_blocks};
 use crate::matrix::BlockBanded;
 use crate::tube::Load;
 
-/// Quadrature points along an element, as the low harmonics have.
+/// Quadrature points along an element, the same number as in the low-harmonic tangent.
 const POINTS: usize = 2;
 
 impl SplineTube {
-    /// Adds the part of Eᵀ K E that pressures have (see [`SplineTube::coupled_tangent`]).
-    pub(in crate::assembly) fn add_coupled_pressure(
+    /// Adds the contribution of pressure to Eᵀ K E (see [`SplineTube::low_harmonic_tangent`]).
+    pub(in crate::assembly) fn add_low_harmonic_pressure(
         &self,
         low: &LowHarmonics,
         load: &Load,
@@ -20,19 +21,21 @@ impl SplineTube {
     ) {
         let (n, columns, point) = (self.degree() + 1, 3 * low.modes(), &low.middle[0]);
         let [values, slopes] = &low.waves;
-        for wall in self.following_walls(load) {
+        for wall in self.follower_walls(load) {
             // 1, t, t² at the wall.
             let through = [1.0, if wall.point == 0 { -1.0 } else { 1.0 }, 1.0];
-            for slab in &low.slabs {
-                for (lane, qz) in (0..slab.elements * POINTS).map(|i| (i / POINTS, i % POINTS)) {
-                    let rings = self.rings_at(&wall, u, (slab, lane), qz);
-                    let weight = -wall.follower * slab.weight[qz].0[lane] * point.weight;
-                    // The parts that go with (N′, N) and (N, N) along the tube.
+            for batch in &low.batches {
+                for (lane, qz) in (0..batch.elements * POINTS).map(|i| (i / POINTS, i % POINTS)) {
+                    let rings = self.rings_along(&wall, u, (batch, lane), qz);
+                    let weight = -wall.follower * batch.weight[qz].0[lane] * point.weight;
+                    // The parts that multiply (N′, N) and (N, N) along the tube.
                     let mut mixed = vec![0.0; columns * columns];
                     let mut own = vec![0.0; columns * columns];
                     for element in 0..self.sector.rings {
-                        let place =
-                            sum(&wall.at_rest(point), &self.surface(&rings, element, point));
+                        let place = sum(
+                            &wall.at_rest(point),
+                            &self.surface_displacement(&rings, element, point),
+                        );
                         let [_, zs, zv, _, sv, _] = volume_blocks(&place, weight);
                         let rows = 3 * element * columns..3 * (element + 1) * columns;
                         let (value, slope) = (&values[rows.clone()], &slopes[rows]);
@@ -41,9 +44,9 @@ impl SplineTube {
                         add_form(slope, &sv, value, &mut own);
                     }
                     for b in 0..n {
-                        let (value_b, slope_b) = self.along((slab, lane), qz, b);
+                        let (value_b, slope_b) = self.along((batch, lane), qz, b);
                         for a in b..n {
-                            let (value_a, slope_a) = self.along((slab, lane), qz, a);
+                            let (value_a, slope_a) = self.along((batch, lane), qz, a);
                             for x in 0..columns {
                                 for y in 0..columns {
                                     let (at, across) = (x * columns + y, y * columns + x);
@@ -53,7 +56,7 @@ impl SplineTube {
                                     for (c, f) in through.iter().enumerate() {
                                         for (d, g) in through.iter().enumerate() {
                                             matrix.add_at(
-                                                slab.first + lane + b,
+                                                batch.first + lane + b,
                                                 a - b,
                                                 c * columns + x,
                                                 d * columns + y,

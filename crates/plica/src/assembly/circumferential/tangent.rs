@@ -1,53 +1,57 @@
-//! The tangent of a pencil without its matrix: what is kept of a state, and the product with it.
+//! Matrix-free tangent of a circumferential batch: linearisation at a state, and tangent products.
 
-use super::super::kinematics::turn_back;
-use super::{AVERAGED, PencilInput, gradients, load, slots, store, sum_along, sum_through};
+use super::super::kinematics::to_ring_frame;
+use super::{
+    AVERAGED, CircumferentialBatchInput, gradients, load, ring_values, store, sum_along,
+    sum_through,
+};
 use crate::material::{Law, TangentData};
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Level, Simd, SimdBase, SimdFrom, dispatch, f32x16, f64x8};
 
-/// What is kept of a state at the points of a pencil: two numbers of [`Law::TangentData`] to a
-/// vector of sixteen in single precision, in the order in which the product reads them. The product
-/// stays symmetric whatever they are, and its rounding (6e-8) is far below what a Newton step asks
-/// of it; it is half the memory, which is what the product waits for.
-pub type Kept = Vec<[f32; 16]>;
+/// Tangent data of a state at the points of a circumferential batch, in the order in which the
+/// product reads them: pairs of numbers of [`Law::TangentData`] as vectors of sixteen in single
+/// precision. The product stays symmetric for any rounding, and a relative rounding of 6e-8 is far
+/// below the tolerance of a Newton step; single precision halves the memory traffic that limits the
+/// product.
+pub type PackedTangentData = Vec<[f32; 16]>;
 
-/// Vectors of sixteen per point.
-const fn vectors<L: Law>() -> usize {
+/// Returns the number of vectors of sixteen numbers per point.
+const fn vectors_per_point<L: Law>() -> usize {
     let numbers = <L::TangentData<f64> as TangentData<f64, L>>::LEN;
     assert!(numbers.is_multiple_of(2));
     numbers / 2
 }
 
-/// Keeps a state, and adds up its moduli around the tube: `averaged` holds, for every (point
-/// along, layer, point through, point around), the blocks of [`Columns::moduli`] with the weight of
-/// the point, summed over the elements around.
-pub fn pencil_keep<L: Law, const N: usize>(
+/// Linearises at a state: writes the tangent data, and to `averaged` the weighted moduli of
+/// [`GradientMap::pull_back_moduli`](super::super::kinematics::GradientMap), summed over the
+/// elements around, for every (point along, layer, point through, point around).
+pub fn linearise<L: Law, const N: usize>(
     law: &L,
-    input: &PencilInput<'_>,
-    kept: &mut [[f32; 16]],
+    input: &CircumferentialBatchInput<'_>,
+    tangent_data: &mut [[f32; 16]],
     averaged: &mut [f64],
 ) {
     let level = Level::new();
     if input.stress_free.is_none() {
-        dispatch!(level, simd => keep::<_, L, N, true>(simd, law, input, kept, averaged));
+        dispatch!(level, simd => kernel_linearise::<_, L, N, true>(simd, law, input, tangent_data, averaged));
     } else {
-        dispatch!(level, simd => keep::<_, L, N, false>(simd, law, input, kept, averaged));
+        dispatch!(level, simd => kernel_linearise::<_, L, N, false>(simd, law, input, tangent_data, averaged));
     }
 }
 
 #[inline(always)]
-fn keep<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
+fn kernel_linearise<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     simd: S,
     law: &L,
-    input: &PencilInput<'_>,
-    kept: &mut [[f32; 16]],
+    input: &CircumferentialBatchInput<'_>,
+    tangent_data: &mut [[f32; 16]],
     averaged: &mut [f64],
 ) {
     let (row, W) = (input.row(), input.rings.wide());
     let nil = f64x8::splat(simd, 0.0);
-    let slots = slots::<N>(input.around);
-    let mut kept = kept.chunks_exact_mut(vectors::<L>());
+    let ring_values = ring_values::<N>(input.around);
+    let mut tangent_data = tangent_data.chunks_exact_mut(vectors_per_point::<L>());
     let mut averaged = averaged.chunks_exact_mut(AVERAGED);
     let mut along = vec![0.0; 2 * row];
     let mut through = vec![0.0; 9 * W];
@@ -62,17 +66,17 @@ fn keep<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
                 for v in 0..input.rings.vectors() {
                     for qs in 0..N {
                         let point = &input.around[qs];
-                        let (columns, [_, grown]) =
-                            input.columns::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
-                        let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
-                        let Fe = columns.elastic(point, radius, g);
+                        let (gradient_map, [_, grown]) =
+                            input.gradient_map::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
+                        let g = gradients::<S, N>(simd, &ring_values[qs], &through, W, v);
+                        let Fe = gradient_map.elastic_gradient(point, radius, g);
                         let data = L::TangentData::linearise(law, &Fe);
-                        if let Some(to) = kept.next() {
+                        if let Some(to) = tangent_data.next() {
                             for (to, pair) in to.iter_mut().zip(data.as_ref().chunks_exact(2)) {
                                 *to = simd.narrow_f64x8(pair[0], pair[1]).into();
                             }
                         }
-                        let blocks = columns.moduli(&law.moduli(&Fe), grown);
+                        let blocks = gradient_map.pull_back_moduli(&law.moduli(&Fe), grown);
                         let sums = &mut sums[qs * AVERAGED..][..AVERAGED];
                         for (sums, block) in sums.chunks_exact_mut(9).zip(&blocks) {
                             for j in 0..3 {
@@ -95,33 +99,33 @@ fn keep<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     }
 }
 
-/// Vectors of sixteen that a pencil keeps.
-pub fn kept_len<L: Law, const N: usize>(_: &L, layers: usize, rings: usize) -> usize {
-    N.pow(3) * layers * rings * vectors::<L>()
+/// Returns the length of the tangent data of a circumferential batch.
+pub fn tangent_data_len<L: Law, const N: usize>(_: &L, layers: usize, vectors: usize) -> usize {
+    N.pow(3) * layers * vectors * vectors_per_point::<L>()
 }
 
-/// Adds the tangent of a pencil times `input.u` to `out`, p + 1 rows of (point, component) times R
-/// rings.
-pub fn pencil_product<L: Law, const N: usize>(
+/// Adds the tangent of a circumferential batch times `input.u` to `out`, p + 1 rows of (point,
+/// component) times R rings.
+pub fn tangent_product<L: Law, const N: usize>(
     law: &L,
-    input: &PencilInput<'_>,
-    kept: &[[f32; 16]],
+    input: &CircumferentialBatchInput<'_>,
+    tangent_data: &[[f32; 16]],
     out: &mut [f64],
 ) {
     let level = Level::new();
     if input.stress_free.is_none() {
-        dispatch!(level, simd => product::<_, L, N, true>(simd, law, input, kept, out));
+        dispatch!(level, simd => kernel_product::<_, L, N, true>(simd, law, input, tangent_data, out));
     } else {
-        dispatch!(level, simd => product::<_, L, N, false>(simd, law, input, kept, out));
+        dispatch!(level, simd => kernel_product::<_, L, N, false>(simd, law, input, tangent_data, out));
     }
 }
 
 #[inline(always)]
-fn product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
+fn kernel_product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     simd: S,
     law: &L,
-    input: &PencilInput<'_>,
-    kept: &[[f32; 16]],
+    input: &CircumferentialBatchInput<'_>,
+    tangent_data: &[[f32; 16]],
     out: &mut [f64],
 ) {
     let (row, R, W, k) = (
@@ -131,12 +135,12 @@ fn product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
         input.rings.rings,
     );
     let nil = f64x8::splat(simd, 0.0);
-    let slots = slots::<N>(input.around);
-    let mut kept = kept.chunks_exact(vectors::<L>());
+    let ring_values = ring_values::<N>(input.around);
+    let mut tangent_data = tangent_data.chunks_exact(vectors_per_point::<L>());
     let mut along = vec![0.0; 2 * row];
     let mut along_force = vec![0.0; 2 * row];
     let mut through = vec![0.0; 9 * W];
-    // Per slot and row: a vector before, then R elements.
+    // Per local ring and row: one vector for the elements before the first, then R elements.
     let mut elements = vec![0.0; N * 9 * W];
     for qz in 0..N {
         sum_along::<S, N>(simd, input, qz, &mut along);
@@ -145,28 +149,29 @@ fn product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
             for qr in 0..N {
                 sum_through::<S, N>(simd, input, layer, qr, &along, &mut through);
                 for v in 0..input.rings.vectors() {
-                    let mut pulled = [[[nil; 3]; 3]; N];
+                    let mut pulled_back = [[[nil; 3]; 3]; N];
                     for qs in 0..N {
-                        let (columns, [_, grown]) =
-                            input.columns::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
-                        let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
+                        let (gradient_map, [_, grown]) =
+                            input.gradient_map::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
+                        let g = gradients::<S, N>(simd, &ring_values[qs], &through, W, v);
                         let mut data = L::TangentData::zeros(nil);
-                        if let Some(from) = kept.next() {
+                        if let Some(from) = tangent_data.next() {
                             for (pair, from) in data.as_mut().chunks_exact_mut(2).zip(from) {
                                 let wide = simd.widen_f32x16(f32x16::simd_from(simd, *from));
                                 (pair[0], pair[1]) = wide;
                             }
                         }
-                        let dP = data.tangent_product(law, &columns.linear(g));
-                        pulled[qs] = columns.pulled_back(&dP.scaled(grown));
+                        let dP =
+                            data.tangent_product(law, &gradient_map.elastic_gradient_change(g));
+                        pulled_back[qs] = gradient_map.pull_back(&dP.scaled(grown));
                     }
                     for r in 0..N {
                         let mut f = [[nil; 3]; 3];
                         for qs in 0..N {
-                            let [zeta, s, over_r] = pulled[qs];
-                            f[0] = turn_back(&slots[qs][r], 1, s, f[0]);
-                            f[1] = turn_back(&slots[qs][r], 0, zeta, f[1]);
-                            f[2] = turn_back(&slots[qs][r], 0, over_r, f[2]);
+                            let [zeta, s, over_r] = pulled_back[qs];
+                            f[0] = to_ring_frame(&ring_values[qs][r], 1, s, f[0]);
+                            f[1] = to_ring_frame(&ring_values[qs][r], 0, zeta, f[1]);
+                            f[2] = to_ring_frame(&ring_values[qs][r], 0, over_r, f[2]);
                         }
                         for d in 0..3 {
                             for i in 0..3 {
@@ -176,13 +181,13 @@ fn product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
                         }
                     }
                 }
-                // Once around before the first element.
+                // Continue periodically before the first element.
                 for ring in elements.chunks_exact_mut(W) {
                     for j in 1..N {
                         ring[LANES - j] = ring[LANES + (N * k - j) % k];
                     }
                 }
-                // Element e adds to ring e + r; then back through the wall.
+                // Element e adds to ring e + r; then the transposed sum through the wall.
                 for i in 0..3 {
                     for j in (0..R).step_by(LANES) {
                         let mut sum = [nil; 3];

@@ -1,68 +1,80 @@
-//! What the slab kernels share: their input, and the sums that lead from control points to a
+//! Axial batches: kernels for eight neighbouring elements along the tube, one per SIMD lane.
+//!
+//! This file holds what the kernels share: their input, and the sums from control points to a
 //! quadrature point.
 
-use super::kinematics::{Columns, Vector, turn};
-use super::stress_free::StressFree;
-use super::tables::{Around, Layer, Slab};
+mod forces;
+mod stress_free;
+mod tangent;
+
+pub use forces::{BatchForces, SmallestJacobian, forces};
+pub use stress_free::stress_free_stretch;
+pub use tangent::{BatchTangent, add_along, add_through, tangent};
+
+use super::kinematics::{GradientMap, Vector, to_element_frame};
+use super::stress_free::StressFreeStretch;
+use super::tables::{AxialBatch, CircumferentialPoint, Layer};
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
 
-/// What a slab kernel reads.
+/// Input of a kernel.
 #[derive(Clone, Copy)]
-pub struct SlabInput<'a> {
-    pub slab: &'a Slab,
+pub struct AxialBatchInput<'a> {
+    pub batch: &'a AxialBatch,
     pub layers: &'a [Layer],
-    pub around: &'a [Around],
+    pub around: &'a [CircumferentialPoint],
     /// Control points through the wall.
     pub points: usize,
     /// Rings of the sector.
     pub rings: usize,
-    /// 1/θζ and 1/θη at the quadrature points along the slab.
+    /// 1/θζ and 1/θη at the quadrature points along the batch.
     pub inverse_stretch: &'a [(Lanes, Lanes)],
     /// The stress-free shape at every (layer, element around, point along, point through, point
-    /// around), if it is not the perfect tube's.
-    pub stress_free: Option<&'a [StressFree]>,
-    /// Displacements of the slab's rows, one after the other: (point, component, ring) in each.
+    /// around); none if the tube is perfect.
+    pub stress_free: Option<&'a [StressFreeStretch]>,
+    /// Displacements of the rows of the batch, one after the other; (point, component, ring) in
+    /// each.
     pub u: &'a [f64],
 }
 
-impl SlabInput<'_> {
-    /// Unknowns of one row of control points.
+impl AxialBatchInput<'_> {
+    /// Returns the number of unknowns in a row of control points.
     pub fn row_size(&self) -> usize {
         self.points * 3 * self.rings
     }
 
-    /// Distinct rings of an element.
-    pub fn slots(&self) -> usize {
-        self.around[0].slots.len()
+    /// Returns the number of distinct rings of an element.
+    pub fn local_rings(&self) -> usize {
+        self.around[0].ring_values.len()
     }
 
-    /// What leads from gradients to Fe at a point along (its 1/θζ and 1/θη), layer and element
-    /// around, point through and point around.
+    /// Returns the map from displacement gradients to Fe at a point along (with its 1/θζ and 1/θη),
+    /// layer and element around, point through and point around.
     #[inline(always)]
-    pub fn columns<S: Simd>(
+    pub fn gradient_map<S: Simd>(
         &self,
         simd: S,
         (qz, [inverse_along, inverse_around]): (usize, [f64x8<S>; 2]),
         [t, element]: [usize; 2],
         [qr, qs]: [usize; 2],
-    ) -> Columns<f64x8<S>> {
+    ) -> GradientMap<f64x8<S>> {
         let (layer, points) = (&self.layers[t], self.around.len());
         let radius = layer.radius[qr];
-        let columns = Columns::new(&self.around[qs], radius, inverse_along, inverse_around);
-        columns.measured_from(self.stress_free.map(|at| {
+        let gradient_map =
+            GradientMap::new(&self.around[qs], radius, inverse_along, inverse_around);
+        gradient_map.with_imperfection(self.stress_free.map(|at| {
             let at = &at[(((t * self.rings + element) * points + qz) * points + qr) * points + qs];
             at.imperfection_map(simd, inverse_along, inverse_around)
         }))
     }
 
-    /// Where a component of a control point sits in its row.
+    /// Returns the index of a component of a control point in its row.
     #[inline(always)]
     pub fn place(&self, point: usize, component: usize, ring: usize) -> usize {
         (point * 3 + component) * self.rings + ring
     }
 
-    /// The displacements of one element per lane, at `((a * N + c) * slots + r)`.
+    /// Gathers the displacements of one element per lane, at `((a * N + c) * local_rings + r)`.
     #[inline(always)]
     pub fn gather<S: Simd, const N: usize>(
         &self,
@@ -71,18 +83,18 @@ impl SlabInput<'_> {
         element: usize,
         out: &mut [Vector<f64x8<S>>],
     ) {
-        let (size, slots) = (self.row_size(), self.slots());
+        let (size, local_rings) = (self.row_size(), self.local_rings());
         for a in 0..N {
             for c in 0..N {
-                for r in 0..slots {
+                for r in 0..local_rings {
                     let ring = (element + r) % self.rings;
                     for i in 0..3 {
                         let place = self.place(layer.first + c, i, ring);
                         let mut lanes = [0.0; LANES];
                         for (l, x) in lanes.iter_mut().enumerate() {
-                            *x = self.u[(self.slab.row(l) + a) * size + place];
+                            *x = self.u[(self.batch.row(l) + a) * size + place];
                         }
-                        out[(a * N + c) * slots + r][i] = f64x8::simd_from(simd, lanes);
+                        out[(a * N + c) * local_rings + r][i] = f64x8::simd_from(simd, lanes);
                     }
                 }
             }
@@ -90,11 +102,11 @@ impl SlabInput<'_> {
     }
 }
 
-/// Value and slope along the tube at quadrature point `qz`, per (c, r).
+/// Sums along the tube: returns value and slope at quadrature point `qz`, per (c, r).
 #[inline(always)]
 pub fn contract_along<S: Simd, const N: usize>(
     simd: S,
-    slab: &Slab,
+    batch: &AxialBatch,
     qz: usize,
     u: &[Vector<f64x8<S>>],
     out: &mut [[Vector<f64x8<S>>; 2]],
@@ -103,8 +115,8 @@ pub fn contract_along<S: Simd, const N: usize>(
     for (k, sum) in out.iter_mut().enumerate() {
         *sum = [[f64x8::splat(simd, 0.0); 3]; 2];
         for a in 0..N {
-            let n = slab.value[qz * N + a].load(simd);
-            let dn = slab.slope[qz * N + a].load(simd);
+            let n = batch.value[qz * N + a].load(simd);
+            let dn = batch.slope[qz * N + a].load(simd);
             let from = &u[a * count + k];
             for i in 0..3 {
                 sum[0][i] = Real::mul_add(n, from[i], sum[0][i]);
@@ -114,7 +126,8 @@ pub fn contract_along<S: Simd, const N: usize>(
     }
 }
 
-/// Value, slope over ζ and slope over R at quadrature point `qr` through the wall, per r.
+/// Sums through the wall: returns value, slope over ζ and slope over R at quadrature point `qr`,
+/// per r.
 #[inline(always)]
 pub fn contract_through<S: Simd, const N: usize>(
     simd: S,
@@ -123,13 +136,13 @@ pub fn contract_through<S: Simd, const N: usize>(
     along: &[[Vector<f64x8<S>>; 2]],
     out: &mut [[Vector<f64x8<S>>; 3]],
 ) {
-    let slots = out.len();
+    let local_rings = out.len();
     for (r, sum) in out.iter_mut().enumerate() {
         *sum = [[f64x8::splat(simd, 0.0); 3]; 3];
         for c in 0..N {
             let m = f64x8::splat(simd, layer.value[qr * N + c]);
             let dm = f64x8::splat(simd, layer.slope[qr * N + c]);
-            let from = &along[c * slots + r];
+            let from = &along[c * local_rings + r];
             for i in 0..3 {
                 sum[0][i] = Real::mul_add(m, from[0][i], sum[0][i]);
                 sum[1][i] = Real::mul_add(m, from[1][i], sum[1][i]);
@@ -139,18 +152,18 @@ pub fn contract_through<S: Simd, const N: usize>(
     }
 }
 
-/// Displacement gradients over ζ, s and R at a point around the element.
+/// Sums around the element: returns the displacement gradients over ζ, s and R at a point.
 #[inline(always)]
 pub fn gradients<S: Simd>(
     simd: S,
-    point: &Around,
+    point: &CircumferentialPoint,
     through: &[[Vector<f64x8<S>>; 3]],
 ) -> [Vector<f64x8<S>>; 3] {
     let mut g = [[f64x8::splat(simd, 0.0); 3]; 3];
-    for (slot, [value, over_zeta, over_r]) in point.slots.iter().zip(through) {
-        g[0] = turn(slot, 0, *over_zeta, g[0]);
-        g[1] = turn(slot, 1, *value, g[1]);
-        g[2] = turn(slot, 0, *over_r, g[2]);
+    for (ring, [value, over_zeta, over_r]) in point.ring_values.iter().zip(through) {
+        g[0] = to_element_frame(ring, 0, *over_zeta, g[0]);
+        g[1] = to_element_frame(ring, 1, *value, g[1]);
+        g[2] = to_element_frame(ring, 0, *over_r, g[2]);
     }
     g
 }

@@ -48,7 +48,7 @@ fn residual_and_tangent_are_slopes() {
         if rings > 1 {
             // The product single-precision numbers make.
             let mut y = vec![0.0; u.len()];
-            tube.product(&tube.linearised(&load, &u), 1.0, &d, &mut y);
+            tube.add_tangent_product(&tube.matrix_free_tangent(&load, &u), 1.0, &d, &mut y);
             assert!(
                 largest(&moved(&y, &K, -1.0)) < 1e-5 * largest(&K),
                 "{degree}, {rings}"
@@ -71,10 +71,10 @@ fn every_sector_and_every_harmonic_is_part_of_the_whole() {
         whole.forces(&load, &many).unwrap(),
     );
     assert!((all.energy / few.energy - 1.0).abs() < 1e-13);
-    let average = whole.linearised(&load, &many).average;
+    let average = whole.matrix_free_tangent(&load, &many).average;
     let tangent = whole.tangent(&load, &many);
     for n in [2, 3] {
-        let block = one.harmonic_tangent(&load, &u, n);
+        let block = one.tangent_in_harmonic(&load, &u, n);
         let (mut exact, mut found) = (vec![0.0; u.len()], vec![0.0; u.len()]);
         let v = direction(&one);
         block.multiply_add(1.0, &v, &mut exact);
@@ -101,7 +101,7 @@ fn an_even_stress_meets_the_forces_that_full_integration_meets() {
         let [tube, full] = reduced(degree, [7, 3, 24], 1);
         let load = tube.tube.rest();
         let radius = tube.circle.control_radius;
-        let u = tube.control_values(|z, r, _| [0.2 * z, 0.03 * r * radius, 0.0]);
+        let u = tube.control_values_from(|z, r, _| [0.2 * z, 0.03 * r * radius, 0.0]);
         let (apart, whole) = (
             tube.forces(&load, &u).unwrap(),
             full.forces(&load, &u).unwrap(),

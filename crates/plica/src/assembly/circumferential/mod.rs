@@ -1,86 +1,87 @@
-//! Many rings: all elements around the tube at once, eight neighbours around it to a vector.
+//! Circumferential batches: kernels for all elements around the tube at one axial position, eight
+//! neighbours around the tube per SIMD vector.
 //!
-//! A *pencil* is everything around the tube and through the wall at one element along it. What is
-//! summed along the tube and through the wall is the same for all rings, so it is done ring by
-//! ring, once, for the four (p + 1) elements that share a ring; what is left at a point is the sum
-//! around the element. Every element around the tube sees the same numbers in the same order, so a
-//! symmetric state stays symmetric to the last bit.
+//! Sums along the tube and through the wall are the same for all rings, so the kernels do them once
+//! per ring, for the p + 1 elements that share it; only the sum around the element remains at a
+//! point. All elements around the tube see the same numbers in the same order, so a symmetric state
+//! stays symmetric to the last bit.
 //!
-//! For N = p + 1 functions each way, a point costs about 15 N multiply-adds forward and as many back,
-//! whatever the law costs (some 100), and N/2 for its share of the sums before: 250 for cubics.
+//! With N = p + 1 functions per direction, a point takes about 15 N multiply-adds forward and as
+//! many backward, some 100 for the law, and N/2 for its share of the earlier sums: 250 for cubics.
 //!
-//! | length | holds |
+//! | length | meaning |
 //! |---|---|
 //! | k | rings of the sector |
 //! | R | k rounded up to whole vectors |
-//! | W | R and a vector more: rings once around and on |
+//! | W | R plus one vector: the rings, continued periodically |
 
 mod average;
-mod coupling;
 mod forces;
-mod linear;
+mod moduli;
 mod stress_free;
+mod tangent;
 #[cfg(test)]
 mod tests;
 
-pub use average::{AVERAGED, slab_offsets};
-pub use coupling::pencil_moduli;
-pub use forces::pencil_forces;
-pub use linear::{Kept, kept_len, pencil_keep, pencil_product};
-pub use stress_free::pencil_stress_free;
+pub use average::{AVERAGED, offset_blocks};
+pub use forces::forces;
+pub use moduli::moduli;
+pub use stress_free::stress_free_stretch;
+pub use tangent::{PackedTangentData, linearise, tangent_data_len, tangent_product};
 
-use super::kinematics::{Columns, Vector, turn};
-use super::stress_free::StressFree;
-use super::tables::{Around, Layer, Slab};
-use crate::rings::SlotValues;
+use super::kinematics::{GradientMap, Vector, to_element_frame};
+use super::stress_free::StressFreeStretch;
+use super::tables::{AxialBatch, CircumferentialPoint, Layer};
+use crate::rings::RingValues;
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Simd, SimdBase, f64x8};
 
-/// What a pencil kernel reads.
+/// Input of a kernel.
 #[derive(Clone, Copy)]
-pub struct PencilInput<'a> {
-    /// The slab of the element along the tube, and its lane there.
-    pub slab: &'a Slab,
+pub struct CircumferentialBatchInput<'a> {
+    /// Axial batch and lane of the element along the tube.
+    pub batch: &'a AxialBatch,
     pub lane: usize,
     pub layers: &'a [Layer],
-    pub around: &'a [Around],
+    pub around: &'a [CircumferentialPoint],
     /// Control points through the wall.
     pub points: usize,
-    pub rings: &'a RingLanes,
-    /// 1/θζ and 1/θη: at the quadrature points along the element or, where they differ around the
-    /// tube, at every (point along, point around, vector of elements).
+    pub rings: &'a PaddedRings,
+    /// 1/θζ and 1/θη: at the quadrature points along the element or, if they vary around the tube,
+    /// at every (point along, point around, vector of elements).
     pub inverse_stretch: &'a [(Lanes, Lanes)],
     /// The stress-free shape at every (point along, layer, point through, vector of elements, point
-    /// around), if it is not the perfect tube's.
-    pub stress_free: Option<&'a [StressFree]>,
-    /// The p + 1 rows of control points, one after the other: (point, component) times R rings.
+    /// around); none if the tube is perfect.
+    pub stress_free: Option<&'a [StressFreeStretch]>,
+    /// The p + 1 rows of control points, one after the other; (point, component) times R rings in
+    /// each.
     pub u: &'a [f64],
 }
 
-impl PencilInput<'_> {
-    /// Numbers of a row.
+impl CircumferentialBatchInput<'_> {
+    /// Returns the size of a row.
     pub fn row(&self) -> usize {
         self.points * 3 * self.rings.padded
     }
 
     #[inline(always)]
     fn weight(&self, qz: usize) -> f64 {
-        self.slab.weight[qz].0[self.lane]
+        self.batch.weight[qz].0[self.lane]
     }
 
     #[inline(always)]
     fn along<const N: usize>(&self, qz: usize, a: usize) -> (f64, f64) {
         let at = qz * N + a;
         (
-            self.slab.value[at].0[self.lane],
-            self.slab.slope[at].0[self.lane],
+            self.batch.value[at].0[self.lane],
+            self.batch.slope[at].0[self.lane],
         )
     }
 
-    /// 1/θζ and 1/θη at a point along, a point around and a vector of elements.
+    /// Returns 1/θζ and 1/θη at a point along, a point around and a vector of elements.
     #[inline(always)]
     fn stretch<S: Simd>(&self, simd: S, qz: usize, qs: usize, v: usize) -> (f64x8<S>, f64x8<S>) {
-        let at = if self.inverse_stretch.len() == self.slab.z.len() {
+        let at = if self.inverse_stretch.len() == self.batch.z.len() {
             qz
         } else {
             (qz * self.around.len() + qs) * self.rings.vectors() + v
@@ -89,48 +90,51 @@ impl PencilInput<'_> {
         (along.load(simd), around.load(simd))
     }
 
-    /// What leads from gradients to Fe at a point along, layer and point through it, vector of
-    /// elements and point around them; and dV and det Fp dV there, zero in the lanes that are left
-    /// over. `PERFECT` says that the wall is: kernels that may depart from it at every point, and do
-    /// not, are up to twice as slow.
+    /// Returns the map from displacement gradients to Fe at a point along, layer and point through
+    /// it, vector of elements and point around them; and dV and det Fp dV there, zero in unused
+    /// lanes. `PERFECT` excludes an imperfect wall at compile time: a branch at every point makes a
+    /// kernel up to twice as slow.
     #[inline(always)]
-    fn columns<S: Simd, const PERFECT: bool>(
+    fn gradient_map<S: Simd, const PERFECT: bool>(
         &self,
         simd: S,
         qz: usize,
         [t, qr]: [usize; 2],
         [v, qs]: [usize; 2],
-    ) -> (Columns<f64x8<S>>, [f64x8<S>; 2]) {
+    ) -> (GradientMap<f64x8<S>>, [f64x8<S>; 2]) {
         let (layer, point) = (&self.layers[t], &self.around[qs]);
         let (inverse_along, inverse_around) = self.stretch(simd, qz, qs, v);
         let radius = layer.radius[qr];
-        let columns = Columns::new(point, radius, inverse_along, inverse_around);
+        let gradient_map = GradientMap::new(point, radius, inverse_along, inverse_around);
         let stress_free = self.stress_free.filter(|_| !PERFECT);
-        let columns = columns.measured_from(stress_free.map(|at| {
+        let gradient_map = gradient_map.with_imperfection(stress_free.map(|at| {
             let through = (qz * self.layers.len() + t) * layer.radius.len() + qr;
             let at = &at[(through * self.rings.vectors() + v) * self.around.len() + qs];
             at.imperfection_map(simd, inverse_along, inverse_around)
         }));
         let mask = self.rings.mask[v].load(simd);
         let volume = mask.times(self.weight(qz) * layer.weight[qr] * point.volume(radius));
-        let volume = columns.volume(volume);
-        (columns, [volume, volume / (inverse_along * inverse_around)])
+        let volume = gradient_map.stress_free_volume(volume);
+        (
+            gradient_map,
+            [volume, volume / (inverse_along * inverse_around)],
+        )
     }
 }
 
-/// The rings of a sector in vectors of eight.
+/// The rings of a sector, padded to vectors of eight.
 #[derive(Clone, Debug)]
-pub struct RingLanes {
+pub struct PaddedRings {
     /// k.
     pub rings: usize,
     /// R.
     pub padded: usize,
-    /// One for every element around, zero in the lanes that are left over.
+    /// One for every element around, zero in unused lanes.
     pub mask: Vec<Lanes>,
 }
 
-impl RingLanes {
-    /// For k rings.
+impl PaddedRings {
+    /// Pads k rings.
     pub fn new(rings: usize) -> Self {
         let padded = rings.next_multiple_of(LANES);
         let mask = (0..padded / LANES)
@@ -146,17 +150,17 @@ impl RingLanes {
         }
     }
 
-    /// Vectors of elements around the sector.
+    /// Returns the number of vectors of elements around the sector.
     pub fn vectors(&self) -> usize {
         self.mask.len()
     }
 
-    /// W.
+    /// Returns W.
     pub fn wide(&self) -> usize {
         self.padded + LANES
     }
 
-    /// Rows of k rings as rows of R, what is left over zero.
+    /// Copies rows of k rings to rows of R, padded with zeros.
     pub fn pad(&self, u: &[f64]) -> Vec<f64> {
         let mut padded = vec![0.0; u.len() / self.rings * self.padded];
         for (to, from) in padded
@@ -169,16 +173,16 @@ impl RingLanes {
     }
 }
 
-/// The slots of the points around an element, one for each of the N functions; where the sector has
-/// fewer rings than that, the last ones are zero.
-type Slots<const N: usize> = [[SlotValues; N]; N];
+/// Basis functions of the rings of an element by point around and local index. If the sector has
+/// fewer than N rings, the last ones are zero.
+type RingValueTable<const N: usize> = [[RingValues; N]; N];
 
-fn slots<const N: usize>(around: &[Around]) -> Slots<N> {
-    let mut slots = [[SlotValues::default(); N]; N];
-    for (to, point) in slots.iter_mut().zip(around) {
-        to[..point.slots.len()].copy_from_slice(&point.slots);
+fn ring_values<const N: usize>(around: &[CircumferentialPoint]) -> RingValueTable<N> {
+    let mut ring_values = [[RingValues::default(); N]; N];
+    for (to, point) in ring_values.iter_mut().zip(around) {
+        to[..point.ring_values.len()].copy_from_slice(&point.ring_values);
     }
-    slots
+    ring_values
 }
 
 #[inline(always)]
@@ -191,11 +195,12 @@ fn store<S: Simd>(vector: f64x8<S>, to: &mut [f64], at: usize) {
     vector.store_slice(&mut to[at..at + LANES]);
 }
 
-/// Value and slope along the tube at a quadrature point, of everything in a row: two rows.
+/// Sums along the tube: writes value and slope at a quadrature point for everything in a row, as
+/// two rows.
 #[inline(always)]
 fn sum_along<S: Simd, const N: usize>(
     simd: S,
-    input: &PencilInput<'_>,
+    input: &CircumferentialBatchInput<'_>,
     qz: usize,
     out: &mut [f64],
 ) {
@@ -215,12 +220,12 @@ fn sum_along<S: Simd, const N: usize>(
     }
 }
 
-/// Value, slope over ζ and slope over R at a quadrature point through the wall, of every component
-/// and ring: nine rows of W.
+/// Sums through the wall: writes value, slope over ζ and slope over R at a quadrature point for
+/// every component and ring, as nine rows of W.
 #[inline(always)]
 fn sum_through<S: Simd, const N: usize>(
     simd: S,
-    input: &PencilInput<'_>,
+    input: &CircumferentialBatchInput<'_>,
     layer: &Layer,
     qr: usize,
     along: &[f64],
@@ -252,24 +257,26 @@ fn sum_through<S: Simd, const N: usize>(
     }
 }
 
-/// Displacement gradients over ζ, s and R at a point around eight elements.
+/// Sums around the elements: returns the displacement gradients over ζ, s and R at a point of eight
+/// elements.
 #[inline(always)]
 fn gradients<S: Simd, const N: usize>(
     simd: S,
-    slots: &[SlotValues; N],
+    ring_values: &[RingValues; N],
     through: &[f64],
     wide: usize,
     v: usize,
 ) -> [Vector<f64x8<S>>; 3] {
     let mut g = [[f64x8::splat(simd, 0.0); 3]; 3];
-    for (r, slot) in slots.iter().enumerate() {
+    for (r, values) in ring_values.iter().enumerate() {
         let at = v * LANES + r;
-        // Written out: `map` on arrays is not always inlined, and then passes vectors by memory.
+        // Written out: `map` on arrays is not always inlined, and then passes vectors through
+        // memory.
         let row = |i: usize| load(simd, through, i * wide + at);
         let ring = |d: usize| [row(3 * d), row(3 * d + 1), row(3 * d + 2)];
-        g[0] = turn(slot, 0, ring(1), g[0]);
-        g[1] = turn(slot, 1, ring(0), g[1]);
-        g[2] = turn(slot, 0, ring(2), g[2]);
+        g[0] = to_element_frame(values, 0, ring(1), g[0]);
+        g[1] = to_element_frame(values, 1, ring(0), g[1]);
+        g[2] = to_element_frame(values, 0, ring(2), g[2]);
     }
     g
 }

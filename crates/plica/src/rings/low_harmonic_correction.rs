@@ -1,40 +1,41 @@
-//! Low harmonics as a state that is not axisymmetric couples them: what the average around the tube
-//! does not see.
+//! Coarse-space correction of the harmonic solver on low harmonics, for states that are not
+//! axisymmetric.
 //!
-//! With B the average, A = Eᵀ K E the tangent on low harmonics (see
+//! With B the average around the tube, A = Eᵀ K E the tangent on low harmonics (see
 //! [`crate::assembly::LowHarmonics`]) and B_E = Eᵀ B E,
 //!
 //! B⁻¹ + E (A⁻¹ − B_E⁻¹) Eᵀ
 //!
-//! replaces, on what E spans, the average by the tangent; what is B-orthogonal to it stays with the
-//! average. It is positive definite if A and B are, since B⁻¹ − E B_E⁻¹ Eᵀ is never negative; and it
-//! is B⁻¹ where A = B_E.
+//! replaces the average by the tangent on the span of E; the B-orthogonal complement keeps the
+//! average. It is positive definite if A and B are, since B⁻¹ − E B_E⁻¹ Eᵀ is positive
+//! semidefinite, and it equals B⁻¹ if A = B_E.
 
 use crate::matrix::Factor;
 
-/// The factored matrices of low harmonics.
+/// Factorised matrices of the low harmonics.
 #[derive(Clone, Debug)]
-pub struct Coupling {
+pub struct LowHarmonicCorrection {
     /// H.
     pub highest: usize,
-    /// The functions through the wall: control values, point by point.
+    /// Control values of the functions through the wall, point by point.
     pub through: Vec<[f64; 3]>,
-    /// A, rows numbered (function through the wall, mode, component), modes 1, cos φ, sin φ, ….
+    /// A, with rows numbered (function through the wall, mode, component), modes 1, cos φ, sin φ,
+    /// ….
     pub coupled: Factor,
-    /// B_E of each harmonic 0 to H, on one wave; rows numbered (function, component).
+    /// B_E of each harmonic 0 to H, for one wave; rows numbered (function, component).
     pub averaged: Vec<Factor>,
 }
 
 /// Functions through the wall times components.
 const PART: usize = 9;
 
-impl Coupling {
+impl LowHarmonicCorrection {
     fn modes(&self) -> usize {
         2 * self.highest + 1
     }
 
-    /// Eᵀ of the coefficients of waves, column by column of `lines`: mode by mode, numbered
-    /// (row along the tube, function, component).
+    /// Returns Eᵀ times the coefficients of waves (columns of `lines`): mode by mode, numbered (row
+    /// along the tube, function, component).
     pub(super) fn restricted(&self, coefficients: &[f64], lines: usize) -> Vec<f64> {
         let points = 3 * self.through.len();
         let mut low = Vec::with_capacity(self.modes() * lines / points * PART);
@@ -54,8 +55,8 @@ impl Coupling {
         low
     }
 
-    /// (A⁻¹ − B_E⁻¹) of what [`Coupling::restricted`] gives, as coefficients of waves before they are
-    /// scaled, of `rings` rings.
+    /// Returns (A⁻¹ − B_E⁻¹) times the result of [`LowHarmonicCorrection::restricted`] for `rings`
+    /// rings, as coefficients of waves before scaling.
     pub(super) fn correction(&self, mut low: Vec<f64>, rings: f64) -> Vec<f64> {
         let modes = self.modes();
         let mode_len = low.len() / modes;
@@ -85,14 +86,14 @@ impl Coupling {
             self.averaged[mode.div_ceil(2)].solve(part);
         }
         each(&mut |mode, from, to| {
-            // The sum of the squares of a wave, by which its coefficients are divided afterwards.
+            // Sum of the squares of a wave, by which the inverse transform divides.
             let squares = if mode == 0 { rings } else { 0.5 * rings };
             low[from] = squares * coupled[to] - low[from];
         });
         low
     }
 
-    /// Adds E of a correction to the coefficients of waves.
+    /// Adds E times a correction to the coefficients of waves.
     pub(super) fn add(&self, correction: &[f64], coefficients: &mut [f64], lines: usize) {
         let points = 3 * self.through.len();
         let columns = coefficients.chunks_exact_mut(lines);

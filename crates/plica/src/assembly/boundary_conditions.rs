@@ -1,54 +1,53 @@
-//! What is given: held ends, and what keeps a loose tube from drifting.
+//! Prescribed displacements: boundary conditions at the ends, and rigid-body constraints.
 
 use super::imperfection::end_face;
 use crate::rings::Sector;
 use crate::tube::{End, Load, Support, Tube};
 use std::f64::consts::TAU;
 
-/// The displacements that are not free.
+/// Prescribed displacements of a tube.
 ///
-/// What keeps a loose tube from drifting is of a single harmonic, 0 or 1, as rigid motions are: one
-/// unknown of a ring is pinned in that harmonic. Of one ring that is the unknown itself; of many it
-/// is the mean over the rings, or their cosine and their sine, while the rings stay free otherwise.
-/// So what is held is the same at every ring, and a tube that is held is block-circulant still.
+/// Each rigid-body constraint belongs to a single harmonic, 0 or 1, as rigid motions do, and
+/// constrains one unknown of a ring in that harmonic. For a sector of one ring that is the unknown
+/// itself; for many rings it is the mean over the rings, or their cosine and sine, and the rings
+/// are otherwise free. The constraints are therefore the same at every ring, and a constrained tube
+/// stays block-circulant.
 #[derive(Clone, Debug)]
-pub struct Supports {
-    /// For every unknown, whether it is given: at the ends, and what is pinned if there is one ring.
+pub struct BoundaryConditions {
+    /// For every unknown, whether it is prescribed: at the ends, and by rigid-body constraints for
+    /// one ring.
     pub prescribed: Vec<bool>,
-    /// What is pinned if there are many.
-    pins: Vec<Pin>,
-    /// The unknowns of a ring that are pinned in harmonics 0 and 1 of the tube.
-    pinned: [Vec<usize>; 2],
-    /// Number of displacements that are pinned so that a loose tube does not drift. They are as few
-    /// as there are rigid motions left, so that they carry no force in equilibrium.
-    pub rigid_body_constraints: usize,
-    ends: Vec<EndUnknown>,
+    /// Rigid-body constraints for many rings.
+    constraints: Vec<RigidBodyConstraint>,
+    /// Constrained unknowns of a ring in harmonics 0 and 1 of the tube.
+    constrained: [Vec<usize>; 2],
+    ends: Vec<PrescribedUnknown>,
     rings: usize,
 }
 
-/// A wave over the rings that an unknown of a ring has no part in.
+/// A rigid-body constraint: an unknown of a ring is orthogonal to a wave over the rings.
 #[derive(Clone, Debug)]
-struct Pin {
+struct RigidBodyConstraint {
     unknown: usize,
-    /// Of length one.
+    /// The wave, of unit length.
     wave: Vec<f64>,
 }
 
-/// A given unknown of an end face.
+/// A prescribed unknown of an end face.
 #[derive(Clone, Copy, Debug)]
-struct EndUnknown {
+struct PrescribedUnknown {
     unknown: usize,
     end: usize,
     component: usize,
-    /// Radius of its control point.
+    /// Radius of the control point.
     radius: f64,
-    /// Where imperfections put the control point: (axial, radial, circumferential).
+    /// Displacement of the control point by imperfections: (axial, radial, circumferential).
     shift: [f64; 3],
 }
 
-impl Supports {
-    /// The supports of a tube with control points at the axial positions `z` and radii `r`, whose
-    /// stress-free shape is displaced by `shape`: ends are held where they are free of stress.
+impl BoundaryConditions {
+    /// Returns the boundary conditions of a tube with control points at axial positions `z` and
+    /// radii `r`. `shape` displaces the stress-free shape; the ends are fixed there.
     pub fn new(
         tube: &Tube,
         sector: &Sector,
@@ -75,7 +74,7 @@ impl Supports {
                             let own = row * size + (c * 3 + i) * sector.rings + ring;
                             *shift += shape.map_or(0.0, |shape| shape[own]);
                         }
-                        ends.push(EndUnknown {
+                        ends.push(PrescribedUnknown {
                             unknown,
                             end,
                             component,
@@ -87,54 +86,65 @@ impl Supports {
             }
         }
         let rings = sector.rings;
-        let held = held(&ends, prescribed.len(), rings);
+        let at_ends = prescribed_at_ends(&ends, prescribed.len(), rings);
         let whole = rings == sector.around;
         let points: Vec<[f64; 2]> = z
             .iter()
             .flat_map(|&z| r.iter().map(move |&r| [z, r]))
             .collect();
-        let pinned = [0, 1].map(|n| pins_of(motions_in_harmonic(n, &points), &held));
-        let mut pins = vec![];
+        let constrained =
+            [0, 1].map(|n| constrained_unknowns(rigid_motions_in_harmonic(n, &points), &at_ends));
+        let mut constraints = vec![];
         if rings == 1 {
-            for &unknown in &pinned[0] {
+            for &unknown in &constrained[0] {
                 prescribed[unknown] = true;
             }
         } else {
-            let of_harmonic = |n: usize| pinned[n].iter().flat_map(move |&at| waves(at, n, rings));
-            pins.extend(of_harmonic(0));
-            pins.extend(of_harmonic(1).filter(|_| whole));
+            let of_harmonic = |n: usize| {
+                constrained[n]
+                    .iter()
+                    .flat_map(move |&at| waves(at, n, rings))
+            };
+            constraints.extend(of_harmonic(0));
+            constraints.extend(of_harmonic(1).filter(|_| whole));
         }
         Self {
-            rigid_body_constraints: if rings == 1 {
-                pinned[0].len()
-            } else {
-                pins.len()
-            },
             prescribed,
-            pins,
-            pinned,
+            constraints,
+            constrained,
             ends,
             rings,
         }
     }
 
-    /// The given unknowns of circumferential harmonic n of the tube, of one ring.
-    pub fn in_harmonic(&self, n: usize) -> Vec<bool> {
-        let mut prescribed = self.held();
-        for &unknown in self.pinned.get(n).into_iter().flatten() {
+    /// Returns the number of rigid-body constraints.
+    #[cfg(test)]
+    pub fn rigid_body_constraints(&self) -> usize {
+        match self.rings {
+            1 => self.constrained[0].len(),
+            _ => self.constraints.len(),
+        }
+    }
+
+    /// Returns for every unknown of one ring whether it is prescribed in circumferential harmonic n
+    /// of the tube.
+    pub fn prescribed_in_harmonic(&self, n: usize) -> Vec<bool> {
+        let mut prescribed = self.prescribed_at_ends();
+        for &unknown in self.constrained.get(n).into_iter().flatten() {
             prescribed[unknown] = true;
         }
         prescribed
     }
 
-    /// For every unknown of a ring, whether an end gives it; loose motions are not pinned.
-    pub fn held(&self) -> Vec<bool> {
-        held(&self.ends, self.prescribed.len(), self.rings)
+    /// Returns for every unknown of a ring whether an end prescribes it, without rigid-body
+    /// constraints.
+    pub fn prescribed_at_ends(&self) -> Vec<bool> {
+        prescribed_at_ends(&self.ends, self.prescribed.len(), self.rings)
     }
 
-    /// Takes what is pinned at many rings out of a displacement.
-    pub fn take_out_pins(&self, u: &mut [f64]) {
-        for Pin { unknown, wave } in &self.pins {
+    /// Projects a displacement onto those that satisfy the rigid-body constraints of many rings.
+    pub fn project_out_constraints(&self, u: &mut [f64]) {
+        for RigidBodyConstraint { unknown, wave } in &self.constraints {
             let u = &mut u[unknown * self.rings..][..self.rings];
             let part: f64 = wave.iter().zip(&*u).map(|(w, u)| w * u).sum();
             for (u, w) in u.iter_mut().zip(wave) {
@@ -143,13 +153,13 @@ impl Supports {
         }
     }
 
-    /// Writes the given unknowns of a load into `u`.
+    /// Writes the prescribed unknowns of a load into `u`.
     pub fn apply_prescribed(&self, load: &Load, u: &mut [f64]) {
         for e in &self.ends {
             let motion = load.ends[e.end];
             let ([axial, radial, around], (sin, cos)) = (e.shift, motion.twist.sin_cos());
-            // A point at angle zero turned by ω: r (cos ω − 1) outwards, r sin ω around. What an
-            // imperfection adds turns with the face.
+            // A point at angle zero rotated by ω moves by r (cos ω − 1) outwards and r sin ω
+            // around; the displacement of an imperfection rotates with the face.
             u[e.unknown] = match e.component {
                 0 => motion.displacement + axial,
                 1 => e.radius * (cos - 1.0) + (radial * cos - around * sin),
@@ -159,17 +169,18 @@ impl Supports {
     }
 }
 
-/// For every unknown of a ring, whether an end gives it.
-fn held(ends: &[EndUnknown], unknowns: usize, rings: usize) -> Vec<bool> {
-    let mut held = vec![false; unknowns / rings];
+/// Returns for every unknown of a ring whether an end prescribes it.
+fn prescribed_at_ends(ends: &[PrescribedUnknown], unknowns: usize, rings: usize) -> Vec<bool> {
+    let mut at_ends = vec![false; unknowns / rings];
     for end in ends {
-        held[end.unknown / rings] = true;
+        at_ends[end.unknown / rings] = true;
     }
-    held
+    at_ends
 }
 
-/// The waves of harmonic n of k rings, at an unknown of a ring: the mean, or cosine and sine.
-fn waves(unknown: usize, n: usize, rings: usize) -> impl Iterator<Item = Pin> {
+/// Returns the constraints of an unknown of a ring to the waves of harmonic n of k rings: the mean,
+/// or cosine and sine.
+fn waves(unknown: usize, n: usize, rings: usize) -> impl Iterator<Item = RigidBodyConstraint> {
     let wave = move |quarter: usize| {
         let angle = |j: usize| TAU * (n * j) as f64 / rings as f64;
         let value = |j| {
@@ -181,7 +192,7 @@ fn waves(unknown: usize, n: usize, rings: usize) -> impl Iterator<Item = Pin> {
         };
         let wave: Vec<f64> = (0..rings).map(value).collect();
         let length = wave.iter().map(|w| w * w).sum::<f64>().sqrt();
-        Pin {
+        RigidBodyConstraint {
             unknown,
             wave: wave.iter().map(|w| w / length).collect(),
         }
@@ -189,9 +200,10 @@ fn waves(unknown: usize, n: usize, rings: usize) -> impl Iterator<Item = Pin> {
     (0..=n.min(1)).map(wave)
 }
 
-/// The small rigid motions of circumferential harmonic n of an axisymmetric tube without twist whose
-/// control points are at (z, r): along and about the axis; a shift sideways and a tilt.
-pub fn motions_in_harmonic(n: usize, points: &[[f64; 2]]) -> Vec<Vec<f64>> {
+/// Returns the infinitesimal rigid motions of circumferential harmonic n of an axisymmetric tube
+/// without twist with control points at (z, r): along and about the axis; a sideways shift and a
+/// tilt.
+pub fn rigid_motions_in_harmonic(n: usize, points: &[[f64; 2]]) -> Vec<Vec<f64>> {
     let motion = |of: &dyn Fn(f64, f64) -> [f64; 3]| -> Vec<f64> {
         points.iter().flat_map(|&[z, r]| of(z, r)).collect()
     };
@@ -205,24 +217,25 @@ pub fn motions_in_harmonic(n: usize, points: &[[f64; 2]]) -> Vec<Vec<f64>> {
     }
 }
 
-/// Each motion that the given unknowns leave is stopped at the unknown where it is largest.
-fn pins_of(motions: Vec<Vec<f64>>, prescribed: &[bool]) -> Vec<usize> {
-    let mut motions = left_by(motions, prescribed);
-    let mut pins = vec![];
+/// Returns one unknown for each motion that the prescribed unknowns permit: the one where it is
+/// largest.
+fn constrained_unknowns(motions: Vec<Vec<f64>>, prescribed: &[bool]) -> Vec<usize> {
+    let mut motions = permitted_by(motions, prescribed);
+    let mut constraints = vec![];
     while let Some(i) = eliminate(&mut motions, |_| true) {
-        pins.push(i);
+        constraints.push(i);
     }
-    pins
+    constraints
 }
 
-/// The motions that the given unknowns do not stop; they are zero there.
-pub fn left_by(mut motions: Vec<Vec<f64>>, prescribed: &[bool]) -> Vec<Vec<f64>> {
+/// Returns the motions that the prescribed unknowns permit; they are zero there.
+pub fn permitted_by(mut motions: Vec<Vec<f64>>, prescribed: &[bool]) -> Vec<Vec<f64>> {
     while eliminate(&mut motions, |i| prescribed[i]).is_some() {}
     motions
 }
 
-/// Takes the motion with the largest entry over some unknowns out of all others, and away; gives
-/// the unknown. None if there is no such entry.
+/// Eliminates the motion with the largest entry over some unknowns from all others and removes it.
+/// Returns the unknown, or none if there is no such entry.
 fn eliminate(motions: &mut Vec<Vec<f64>>, over: impl Fn(usize) -> bool) -> Option<usize> {
     let (m, i, _) = largest(motions, over).filter(|(_, _, size)| *size >= 1e-9)?;
     let pivot = motions.swap_remove(m);
@@ -235,7 +248,7 @@ fn eliminate(motions: &mut Vec<Vec<f64>>, over: impl Fn(usize) -> bool) -> Optio
     Some(i)
 }
 
-/// The largest entry of all motions over some unknowns: motion, unknown, size.
+/// Returns the largest entry of all motions over some unknowns: motion, unknown, size.
 fn largest(motions: &[Vec<f64>], over: impl Fn(usize) -> bool) -> Option<(usize, usize, f64)> {
     let mut best = None;
     for (m, motion) in motions.iter().enumerate() {

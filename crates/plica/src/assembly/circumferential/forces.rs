@@ -1,32 +1,34 @@
-//! Energy and residual of a pencil.
+//! Energy and residual of a circumferential batch.
 
-use super::super::forces::Worst;
-use super::super::kinematics::turn_back;
-use super::{PencilInput, gradients, load, slots, store, sum_along, sum_through};
+use super::super::axial::SmallestJacobian;
+use super::super::kinematics::to_ring_frame;
+use super::{
+    CircumferentialBatchInput, gradients, load, ring_values, store, sum_along, sum_through,
+};
 use crate::material::Law;
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 
-/// What a pencil adds to the energy and the residual.
+/// Contribution of a circumferential batch to the energy and the residual.
 #[derive(Clone, Debug, Default)]
-pub struct PencilForces {
+pub struct CircumferentialBatchForces {
     /// ∫ w det Fp dV₀.
     pub energy: f64,
     /// ∫ w dV₀.
     pub energy_ungrown: f64,
-    /// Where det Fe is smallest; the element's first number is not set.
-    pub worst: Worst,
-    /// Sum of the squares of what the elements add to each entry of R.
+    /// Smallest det Fe; the first index of its element is not set.
+    pub smallest: SmallestJacobian,
+    /// Sum of the squares of the element contributions to the entries of R.
     pub squares: f64,
 }
 
-/// Energy and residual of one pencil; R is added to `residual`, p + 1 rows of (point, component)
-/// times R rings. `N` is the degree plus one.
-pub fn pencil_forces<L: Law, const N: usize>(
+/// Computes energy and residual of a circumferential batch and adds R to `residual`, p + 1 rows of
+/// (point, component) times R rings. `N` is the degree plus one.
+pub fn forces<L: Law, const N: usize>(
     law: &L,
-    input: &PencilInput<'_>,
+    input: &CircumferentialBatchInput<'_>,
     residual: &mut [f64],
-) -> PencilForces {
+) -> CircumferentialBatchForces {
     let level = Level::new();
     if input.stress_free.is_none() {
         dispatch!(level, simd => kernel::<_, L, N, true>(simd, law, input, residual))
@@ -39,15 +41,15 @@ pub fn pencil_forces<L: Law, const N: usize>(
 fn kernel<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     simd: S,
     law: &L,
-    input: &PencilInput<'_>,
+    input: &CircumferentialBatchInput<'_>,
     residual: &mut [f64],
-) -> PencilForces {
+) -> CircumferentialBatchForces {
     let (row, R, W) = (input.row(), input.rings.padded, input.rings.wide());
     let nil = f64x8::splat(simd, 0.0);
-    let slots = slots::<N>(input.around);
-    let mut worst = Worst {
+    let ring_values = ring_values::<N>(input.around);
+    let mut smallest = SmallestJacobian {
         jacobian: f64::INFINITY,
-        ..Worst::default()
+        ..SmallestJacobian::default()
     };
     let (mut energy, mut energy_ungrown, mut squares) = (nil, nil, nil);
 
@@ -56,7 +58,7 @@ fn kernel<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
         sum_along::<S, N>(simd, input, qz, &mut along[qz * 2 * row..][..2 * row]);
     }
     let mut through = vec![0.0; 9 * W];
-    // Per (c, r), gradient (value, ζ) and component: R elements. Then per (a, c, r), component.
+    // Per (c, r), gradient (value, ζ) and component: R elements. Then per (a, c, r) and component.
     let mut along_force = vec![0.0; N * N * 6 * R];
     let mut force = vec![0.0; N * N * N * 3 * R];
 
@@ -69,27 +71,27 @@ fn kernel<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
                 let rows = &along[qz * 2 * row..][..2 * row];
                 sum_through::<S, N>(simd, input, layer, qr, rows, &mut through);
                 for v in 0..input.rings.vectors() {
-                    let mut pulled = [[[nil; 3]; 3]; N];
+                    let mut pulled_back = [[[nil; 3]; 3]; N];
                     for qs in 0..N {
                         let point = &input.around[qs];
-                        let (columns, [volume, grown]) =
-                            input.columns::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
-                        let g = gradients::<S, N>(simd, &slots[qs], &through, W, v);
-                        let Fe = columns.elastic(point, radius, g);
-                        worst.note(Fe.determinant(), |lane| [0, t, v * LANES + lane], qr);
+                        let (gradient_map, [volume, grown]) =
+                            input.gradient_map::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
+                        let g = gradients::<S, N>(simd, &ring_values[qs], &through, W, v);
+                        let Fe = gradient_map.elastic_gradient(point, radius, g);
+                        smallest.update(Fe.determinant(), |lane| [0, t, v * LANES + lane], qr);
 
                         let w = law.energy(&Fe);
                         energy = Real::mul_add(w, grown, energy);
                         energy_ungrown = Real::mul_add(w, volume, energy_ungrown);
-                        pulled[qs] = columns.pulled_back(&law.stress(&Fe).scaled(grown));
+                        pulled_back[qs] = gradient_map.pull_back(&law.stress(&Fe).scaled(grown));
                     }
                     for r in 0..N {
                         let mut f = [[nil; 3]; 3];
                         for qs in 0..N {
-                            let [zeta, s, over_r] = pulled[qs];
-                            f[0] = turn_back(&slots[qs][r], 1, s, f[0]); // ∂N : P Fp⁻ᵀ det Fp
-                            f[1] = turn_back(&slots[qs][r], 0, zeta, f[1]);
-                            f[2] = turn_back(&slots[qs][r], 0, over_r, f[2]);
+                            let [zeta, s, over_r] = pulled_back[qs];
+                            f[0] = to_ring_frame(&ring_values[qs][r], 1, s, f[0]); // ∂N : P Fp⁻ᵀ det Fp
+                            f[1] = to_ring_frame(&ring_values[qs][r], 0, zeta, f[1]);
+                            f[2] = to_ring_frame(&ring_values[qs][r], 0, over_r, f[2]);
                         }
                         for c in 0..N {
                             let m = nil.like(layer.value[qr * N + c]);
@@ -125,17 +127,17 @@ fn kernel<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
         }
         scatter::<N>(input, layer.first, &force, residual);
     }
-    PencilForces {
+    CircumferentialBatchForces {
         energy: Lanes::store(energy).sum(),
         energy_ungrown: Lanes::store(energy_ungrown).sum(),
         squares: Lanes::store(squares).sum(),
-        worst,
+        smallest,
     }
 }
 
-/// Adds the forces of elements to the rings of their slots.
+/// Adds the forces of the elements to their rings.
 fn scatter<const N: usize>(
-    input: &PencilInput<'_>,
+    input: &CircumferentialBatchInput<'_>,
     first: usize,
     force: &[f64],
     residual: &mut [f64],

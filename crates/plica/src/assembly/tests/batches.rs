@@ -1,4 +1,4 @@
-//! That neither threads nor parts show in what slabs leave, and that what cannot be is an error.
+//! That neither threads nor parts show in what batches leave, and that what cannot be is an error.
 
 use super::{TubeAndLoad, direction, largest, moved, replicated, tube_and_load, unknowns, wavy};
 use crate::assembly::{Inverted, SplineTube};

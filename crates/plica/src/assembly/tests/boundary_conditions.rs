@@ -32,7 +32,7 @@ fn anchors_are_as_many_as_rigid_motions_are_left() {
             };
             let spline = SplineTube::new(&tube, &mesh, rings);
             assert_eq!(
-                spline.rigid_body_constraints(),
+                spline.boundary_conditions.rigid_body_constraints(),
                 rigid_body_constraints,
                 "{ends:?}, {rings} rings"
             );
@@ -47,10 +47,10 @@ fn anchors_are_as_many_as_rigid_motions_are_left() {
                 let mut unit = vec![0.0; n];
                 unit[j] = 1.0;
                 let mut free = unit.clone();
-                spline.take_out_pins(&mut free);
+                spline.project_out_constraints(&mut free);
                 let mut product = vec![0.0; n];
                 K.multiply_add(1.0, &free, &mut product);
-                spline.take_out_pins(&mut product);
+                spline.project_out_constraints(&mut product);
                 for i in 0..n {
                     held[(i, j)] = product[i] + (unit[i] - free[i]);
                 }

@@ -1,4 +1,4 @@
-//! That a tube by pencils is the tube by slabs, whose matrices are assembled.
+//! That a tube by circumferential batches is the tube by batches, whose matrices are assembled.
 
 use crate::assembly::tests::{
     TubeAndLoad, direction, dot, largest, repeated, tube_and_load, unknowns, wavy,
@@ -44,7 +44,7 @@ fn the_product_is_that_of_the_assembled_tangent() {
         let (u, v) = (wavy(&tube), direction(&tube));
         let assembled = multiplied(&tube.tangent(&load, &u), &v);
         let mut product = vec![0.0; v.len()];
-        tube.product(&tube.linearised(&load, &u), 1.0, &v, &mut product);
+        tube.add_tangent_product(&tube.matrix_free_tangent(&load, &u), 1.0, &v, &mut product);
         let scale = largest(&assembled);
         for (a, b) in product.iter().zip(&assembled) {
             // Ten numbers of a point are kept in single precision.
@@ -59,11 +59,11 @@ fn the_product_is_that_of_the_assembled_tangent() {
 #[test]
 fn the_product_is_symmetric() {
     let TubeAndLoad { tube, load } = tube_and_load(3, [9, 2, 12], 12);
-    let at = tube.linearised(&load, &wavy(&tube));
+    let at = tube.matrix_free_tangent(&load, &wavy(&tube));
     let (v, w) = (direction(&tube), wavy(&tube));
     let product = |v: &[f64]| {
         let mut y = vec![0.0; v.len()];
-        tube.product(&at, 1.0, v, &mut y);
+        tube.add_tangent_product(&at, 1.0, v, &mut y);
         y
     };
     let (vw, wv) = (dot(&w, &product(&v)), dot(&v, &product(&w)));
@@ -75,10 +75,12 @@ fn averaged_blocks_are_the_harmonics_of_an_axisymmetric_tube() {
     for (degree, elements, rings) in SECTORS {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, rings);
         let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
-        let average = tube.linearised(&load, &axisymmetric(&tube)).average;
+        let average = tube
+            .matrix_free_tangent(&load, &axisymmetric(&tube))
+            .average;
         let u = axisymmetric(&one);
         for n in [1, 2, 3] {
-            let exact = one.harmonic_tangent(&load, &u, n);
+            let exact = one.tangent_in_harmonic(&load, &u, n);
             let block = average.harmonic(n);
             let v = direction(&one);
             let (a, b) = (multiplied(&block, &v), multiplied(&exact, &v));
@@ -99,7 +101,7 @@ fn the_harmonic_solver_inverts_the_tangent_of_an_axisymmetric_tube() {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, rings);
         let u = axisymmetric(&tube);
         let repeats = elements[2] / rings;
-        let average = tube.linearised(&load, &u).average;
+        let average = tube.matrix_free_tangent(&load, &u).average;
         let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
         let block = |n: usize| {
             let mut block = average.harmonic(n * repeats);
@@ -149,13 +151,15 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
             ]
         });
         let low = LowHarmonics::new(&tube, 2);
-        let mut coupled = BlockBanded::zeros(tube.axial.functions(), low.row(), tube.degree());
-        tube.coupled_tangent(&low, &load, &u, &mut coupled);
-        let at = tube.linearised(&load, &u);
+        let mut coupled = BlockBanded::zeros(tube.axial.functions(), low.row_size(), tube.degree());
+        tube.low_harmonic_tangent(&low, &load, &u, &mut coupled);
+        let at = tube.matrix_free_tangent(&load, &u);
         let points = low.through.len();
         let waves = Transform::new(rings);
         // As smooth along the tube as two points of an element can tell.
-        let of = |i: usize| (0.37 * (i % low.row()) as f64 + 0.3 * (i / low.row()) as f64).sin();
+        let of = |i: usize| {
+            (0.37 * (i % low.row_size()) as f64 + 0.3 * (i / low.row_size()) as f64).sin()
+        };
         let x: Vec<f64> = (0..coupled.unknowns()).map(of).collect();
         // E x: coefficients of waves in columns, then rings.
         let lines = tube.unknowns() / rings;
@@ -184,9 +188,9 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
             let squares = if column == 0 { 1.0 } else { 0.5 } * rings as f64;
             values.iter_mut().for_each(|x| *x *= squares);
         }
-        let v = waves.back(&coefficients);
+        let v = waves.inverse(&coefficients);
         let mut product = vec![0.0; v.len()];
-        tube.product(&at, 1.0, &v, &mut product);
+        tube.add_tangent_product(&at, 1.0, &v, &mut product);
         let (exact, found) = (dot(&v, &product), dot(&x, &multiplied(&coupled, &x)));
         assert!(
             (found / exact - 1.0).abs() < 0.03,
@@ -196,10 +200,10 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
         // What pressures add.
         let mut pressed = load.clone();
         (pressed.pressures[0].follower, pressed.pressures[1].follower) = (-0.3, 0.7);
-        let at = tube.linearised(&pressed, &u);
-        tube.product(&at, -1.0, &v, &mut product);
+        let at = tube.matrix_free_tangent(&pressed, &u);
+        tube.add_tangent_product(&at, -1.0, &v, &mut product);
         let mut of_pressed = coupled.clone();
-        tube.coupled_tangent(&low, &pressed, &u, &mut of_pressed);
+        tube.low_harmonic_tangent(&low, &pressed, &u, &mut of_pressed);
         let exact = -dot(&v, &product);
         let found = dot(&x, &multiplied(&of_pressed, &x)) - found;
         assert!(
@@ -208,8 +212,8 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
         );
 
         let damping = tube.ring_damping();
-        let mut metric = BlockBanded::zeros(coupled.blocks(), low.row(), 3);
-        low.add_drag(&tube, &damping, 2.0, &mut metric);
+        let mut metric = BlockBanded::zeros(coupled.blocks(), low.row_size(), 3);
+        low.add_damping(&tube, &damping, 2.0, &mut metric);
         let mut product = vec![0.0; v.len()];
         damping.multiply_add(2.0, &v, &mut product);
         let (exact, found) = (dot(&v, &product), dot(&x, &multiplied(&metric, &x)));

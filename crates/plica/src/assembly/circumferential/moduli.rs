@@ -1,14 +1,20 @@
-//! The moduli around a pencil, one by one.
+//! Moduli at the elements of a circumferential batch.
 
-use super::{AVERAGED, PencilInput, gradients, slots, store, sum_along, sum_through};
+use super::{
+    AVERAGED, CircumferentialBatchInput, gradients, ring_values, store, sum_along, sum_through,
+};
 use crate::material::Law;
 use crate::tensor::LANES;
 use fearless_simd::{Level, Simd, dispatch};
 
-/// The blocks of [`Columns::moduli`], with the weight of their point, of every element around: at
-/// (point along, layer, number) there are R of them. Takes the first point through each layer and the
-/// first around.
-pub fn pencil_moduli<L: Law, const N: usize>(law: &L, input: &PencilInput<'_>, out: &mut [f64]) {
+/// Writes the weighted blocks of [`GradientMap::pull_back_moduli`](super::super::kinematics::GradientMap)
+/// of every element around: R values at (point along, layer, entry). Uses the first point through
+/// each layer and the first around.
+pub fn moduli<L: Law, const N: usize>(
+    law: &L,
+    input: &CircumferentialBatchInput<'_>,
+    out: &mut [f64],
+) {
     dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input, out));
 }
 
@@ -16,25 +22,26 @@ pub fn pencil_moduli<L: Law, const N: usize>(law: &L, input: &PencilInput<'_>, o
 fn kernel<S: Simd, L: Law, const N: usize>(
     simd: S,
     law: &L,
-    input: &PencilInput<'_>,
+    input: &CircumferentialBatchInput<'_>,
     out: &mut [f64],
 ) {
     let (row, R, W) = (input.row(), input.rings.padded, input.rings.wide());
-    let slots = slots::<N>(input.around);
+    let ring_values = ring_values::<N>(input.around);
     let mut along = vec![0.0; 2 * row];
     let mut through = vec![0.0; 9 * W];
     let mut out = out.chunks_exact_mut(AVERAGED * R);
-    for qz in 0..input.slab.z.len() {
+    for qz in 0..input.batch.z.len() {
         sum_along::<S, N>(simd, input, qz, &mut along);
         for (t, layer) in input.layers.iter().enumerate() {
             let (radius, point) = (layer.radius[0], &input.around[0]);
             sum_through::<S, N>(simd, input, layer, 0, &along, &mut through);
             let Some(out) = out.next() else { return };
             for v in 0..input.rings.vectors() {
-                let (columns, [_, grown]) = input.columns::<_, false>(simd, qz, [t, 0], [v, 0]);
-                let g = gradients::<S, N>(simd, &slots[0], &through, W, v);
-                let Fe = columns.elastic(point, radius, g);
-                let blocks = columns.moduli(&law.moduli(&Fe), grown);
+                let (gradient_map, [_, grown]) =
+                    input.gradient_map::<_, false>(simd, qz, [t, 0], [v, 0]);
+                let g = gradients::<S, N>(simd, &ring_values[0], &through, W, v);
+                let Fe = gradient_map.elastic_gradient(point, radius, g);
+                let blocks = gradient_map.pull_back_moduli(&law.moduli(&Fe), grown);
                 for (b, block) in blocks.iter().enumerate() {
                     for j in 0..3 {
                         for i in 0..3 {
