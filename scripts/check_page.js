@@ -1,4 +1,4 @@
-// Uses a page that `plica report` wrote as a reader would: node check_page.js PAGE NAME_OF_SCREENSHOTS [RUN_DIR of each run]
+// Tests a page of `plica report` in a browser: node check_page.js PAGE NAME_OF_SCREENSHOTS [RUN_DIR of each run]
 "use strict";
 const { chromium } = require("playwright-core");
 const fs = require("node:fs");
@@ -6,35 +6,35 @@ const path = require("node:path");
 
 const [page, name, ...directories] = process.argv.slice(2);
 const url = `file://${path.resolve(page)}`;
-/** How far drawn walls may be from those that the run has written, in outer diameters. */
-const OFF = 2e-3;
-/** Bytes and milliseconds that a page may take. */
+/** Tolerance of drawn walls against the profiles of the run, in outer diameters. */
+const TOLERANCE = 2e-3;
+/** Largest size in bytes, and longest time to open in milliseconds. */
 const LARGEST = 15e6;
 const SLOWEST = 3000;
 
 const failures = [];
-function hold(what, holds, found = "") {
-  console.log(`  ${holds ? "ok  " : "FAIL"} ${what}${found === "" ? "" : `: ${found}`}`);
-  if (!holds) failures.push(what);
+function check(what, passes, found = "") {
+  console.log(`  ${passes ? "ok  " : "FAIL"} ${what}${found === "" ? "" : `: ${found}`}`);
+  if (!passes) failures.push(what);
 }
 
-/** Opens the page; what the browser complained of, and what it asked for, is kept. */
+/** Opens the page and records console messages and requests. */
 async function open(browser, options) {
   const context = await browser.newContext(options);
   const tab = await context.newPage();
-  const complaints = [];
-  const asked = [];
-  tab.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
-  tab.on("pageerror", (error) => complaints.push(error.message));
-  tab.on("request", (request) => !/^(data|blob):/.test(request.url()) && asked.push(request.url()));
+  const messages = [];
+  const requests = [];
+  tab.on("console", (message) => ["error", "warning"].includes(message.type()) && messages.push(message.text()));
+  tab.on("pageerror", (error) => messages.push(error.message));
+  tab.on("request", (request) => !/^(data|blob):/.test(request.url()) && requests.push(request.url()));
   const begin = Date.now();
   await tab.goto(url);
   await tab.waitForSelector("body[data-ready]", { timeout: 60000 });
-  return { tab, complaints, asked, took: Date.now() - begin };
+  return { tab, messages, requests, took: Date.now() - begin };
 }
 
 const settled = (tab) => tab.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-/** What the canvas shows: a picture, and how many different colours it has. */
+/** Returns the picture on the canvas, its number of colours, and the fraction of drawn pixels. */
 async function seen(tab) {
   await settled(tab);
   return tab.evaluate(() => {
@@ -45,25 +45,25 @@ async function seen(tab) {
     context.drawImage(canvas, 0, 0);
     const { data } = context.getImageData(0, 0, copy.width, copy.height);
     const colours = new Set();
-    let inked = 0;
+    let drawn = 0;
     for (let i = 0; i < data.length; i += 4) {
       if (data[i + 3] > 0) {
-        inked++;
+        drawn++;
         colours.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
       }
     }
-    return { picture: copy.toDataURL(), colours: colours.size, inked: inked / (data.length / 4) };
+    return { picture: copy.toDataURL(), colours: colours.size, drawn: drawn / (data.length / 4) };
   });
 }
 
-/** The columns of a table of numbers. */
+/** Reads the columns of a CSV file. */
 function table(file) {
   const [heads, ...lines] = fs.readFileSync(file, "utf8").trim().split("\n").map((line) => line.split(","));
   return Object.fromEntries(heads.map((head, i) => [head, lines.map((line) => (isNaN(line[i]) ? line[i] : Number(line[i])))]));
 }
 
-/** How far a point is from a polyline. */
-function away([x, y], xs, ys) {
+/** Returns the distance of a point from a polyline. */
+function distance([x, y], xs, ys) {
   let least = Infinity;
   for (let i = 0; i + 1 < xs.length; i++) {
     const [u, v] = [xs[i + 1] - xs[i], ys[i + 1] - ys[i]];
@@ -73,8 +73,8 @@ function away([x, y], xs, ys) {
   return least;
 }
 
-/** How far the last tube of a run is drawn from where the run's own tables have its walls: at a crest, and between two. */
-async function off(tab, which, directory) {
+/** Returns the largest distance of the last drawn tube from the profiles of the run, at a crest and between two crests. */
+async function wallError(tab, which, directory) {
   const history = table(path.join(directory, "history.csv"));
   const last = history.step.length - 1;
   const walls = table(path.join(directory, "profiles", `state-${String(last).padStart(4, "0")}.csv`));
@@ -101,32 +101,32 @@ async function off(tab, which, directory) {
   const largest = meridians.flatMap((meridian, k) =>
     ["outer", "inner"].map((face) => {
       const of = (what) => walls[`${k === 1 && "trough_outer_z" in walls ? "trough_" : ""}${face}_${what}`];
-      return Math.max(...meridian[face].map((point) => away(point, of("z"), of("r"))));
+      return Math.max(...meridian[face].map((point) => distance(point, of("z"), of("r"))));
     }),
   );
   return Math.max(...largest);
 }
 
-/** A page without a tube: plots, slider and words go on. */
-async function undrawn({ tab, complaints }) {
-  hold("shows no empty tube", !(await tab.isVisible("#stage")) && !(await tab.isVisible("#field")));
+/** Tests a page without saved states: plots, slider and text work. */
+async function undrawn({ tab, messages }) {
+  check("hides the tube", !(await tab.isVisible("#stage")) && !(await tab.isVisible("#field")));
   const told = () => tab.textContent("#told");
   const at = await told();
   await tab.focus("#state");
   await tab.keyboard.press("ArrowLeft");
   const before = await told();
-  hold("the slider moves the words", before !== at, before.slice(0, 60));
+  check("the slider changes the text", before !== at, before.slice(0, 60));
   await tab.selectOption("#along", "step");
   const box = await tab.locator("#plot-energy .u-over").boundingBox();
   await tab.mouse.move(box.x + 0.3 * box.width, box.y + 0.5 * box.height);
-  hold("the pointer on a plot moves them", (await told()) !== before);
+  check("the pointer on a plot changes the text", (await told()) !== before);
   await tab.screenshot({ path: `${name}-whole.png`, fullPage: true });
-  hold("no complaint in the console", complaints.length === 0, complaints.join(" | "));
+  check("no messages in the console", messages.length === 0, messages.join(" | "));
 }
 
-function ended() {
+function report() {
   if (failures.length === 0) return;
-  console.error(`${failures.length} of ${path.basename(page)} do not hold`);
+  console.error(`${failures.length} checks of ${path.basename(page)} failed`);
   process.exit(1);
 }
 
@@ -135,25 +135,25 @@ async function main() {
   const browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args });
   const bytes = fs.statSync(page).size;
   console.log(path.basename(page));
-  hold("is small enough", bytes < LARGEST, `${(bytes * 1e-6).toFixed(1)} MB`);
+  check("is small enough", bytes < LARGEST, `${(bytes * 1e-6).toFixed(1)} MB`);
 
-  // On a machine with other work the fastest of three tells what the page takes.
+  // Use the fastest of three attempts on a busy machine.
   let first;
   for (let attempt = 0; attempt < 3; attempt++) {
     first = await open(browser, { viewport: { width: 1400, height: 900 } });
     if (first.took < SLOWEST) break;
   }
-  const { tab, complaints, asked, took } = first;
+  const { tab, messages, requests, took } = first;
   if (await tab.locator(".undrawn").count()) {
     await undrawn(first);
     await browser.close();
-    return ended();
+    return report();
   }
   const ready = await tab.evaluate(() => document.body.dataset.ready);
-  hold("draws the tube", ready === "yes", ready);
-  hold("opens fast enough", took < SLOWEST, `${took} ms`);
+  check("draws the tube", ready === "yes", ready);
+  check("opens fast enough", took < SLOWEST, `${took} ms`);
   const last = await seen(tab);
-  hold("the canvas is not blank", last.colours > 100 && last.inked > 0.05, `${last.colours} colours on ${(100 * last.inked).toFixed(0)} %`);
+  check("the canvas is not blank", last.colours > 100 && last.drawn > 0.05, `${last.colours} colours on ${(100 * last.drawn).toFixed(0)} %`);
   await tab.screenshot({ path: `${name}-light.png` });
 
   const told = () => tab.textContent("#told");
@@ -161,23 +161,23 @@ async function main() {
     const before = await seen(tab);
     await act();
     const after = await seen(tab);
-    hold(what, before.picture !== after.picture);
+    check(what, before.picture !== after.picture);
   };
   const at = await told();
   await tab.focus("#state");
-  await change("the slider moves the tube, by keys", async () => {
+  await change("arrow keys on the slider change the tube", async () => {
     for (let i = 0; i < 3; i++) await tab.keyboard.press("ArrowLeft");
   });
-  hold("and the words", (await told()) !== at, (await told()).slice(0, 60));
-  await change("a field recolours it", () => tab.selectOption("#field", "von-mises"));
-  await change("a scale of its own recolours it", () => tab.selectOption("#range", "state"));
-  await change("cutting away changes it", () => tab.$eval("#cut", (cut) => ((cut.value = 90), cut.dispatchEvent(new Event("input")))));
-  await change("what is cut away can be seen through", () => tab.click("#ghost"));
+  check("arrow keys on the slider change the text", (await told()) !== at, (await told()).slice(0, 60));
+  await change("a field changes the colours", () => tab.selectOption("#field", "von-mises"));
+  await change("the range of the state changes the colours", () => tab.selectOption("#range", "state"));
+  await change("the cutaway changes the tube", () => tab.$eval("#cut", (cut) => ((cut.value = 90), cut.dispatchEvent(new Event("input")))));
+  await change("the removed part can be transparent", () => tab.click("#ghost"));
   await tab.focus("#canvas");
-  await change("an arrow turns it", () => tab.keyboard.press("ArrowLeft"));
-  await change("plus brings it nearer", () => tab.keyboard.press("+"));
-  await change("a view has a name", () => tab.selectOption("#view", "front"));
-  await change("dragging turns it", async () => {
+  await change("arrow keys rotate the tube", () => tab.keyboard.press("ArrowLeft"));
+  await change("the plus key zooms in", () => tab.keyboard.press("+"));
+  await change("a named view rotates the tube", () => tab.selectOption("#view", "front"));
+  await change("dragging rotates the tube", async () => {
     const box = await tab.locator("#canvas").boundingBox();
     await tab.mouse.move(box.x + 300, box.y + 150);
     await tab.mouse.down();
@@ -186,25 +186,25 @@ async function main() {
   });
   for (const plot of ["#plot-energy", "#plot-measure"]) {
     await tab.selectOption("#along", "step");
-    await change(`the pointer on ${plot} moves the tube`, async () => {
+    await change(`the pointer on ${plot} changes the tube`, async () => {
       const box = await tab.locator(`${plot} .u-over`).boundingBox();
       await tab.mouse.move(box.x + (plot === "#plot-energy" ? 0.3 : 0.6) * box.width, box.y + 0.5 * box.height);
     });
   }
   const lines = tab.locator("tr[data-step]");
-  await change("a line of the table moves the tube", () => lines.nth(1).click());
-  hold("and is marked", await lines.nth(1).evaluate((line) => line.classList.contains("here")));
-  await change("and so by keys", async () => {
+  await change("a row of the table changes the tube", () => lines.nth(1).click());
+  check("the row is marked", await lines.nth(1).evaluate((line) => line.classList.contains("here")));
+  await change("the Enter key on a row changes the tube", async () => {
     await lines.nth(2).locator("button").focus();
     await tab.keyboard.press("Enter");
   });
   for (const [which, directory] of directories.entries()) {
-    const far = await off(tab, which, directory);
-    hold(`draws ${path.basename(directory)} where it is`, far < OFF, `off by ${far.toExponential(1)}`);
+    const error = await wallError(tab, which, directory);
+    check(`draws ${path.basename(directory)} at its place`, error < TOLERANCE, error.toExponential(1));
   }
   const [file] = await Promise.all([tab.waitForEvent("download"), tab.click("#keep")]);
   await file.saveAs(`${name}-kept.png`);
-  hold("saves a picture", fs.statSync(`${name}-kept.png`).size > 20000, file.suggestedFilename());
+  check("saves a picture", fs.statSync(`${name}-kept.png`).size > 20000, file.suggestedFilename());
   for (const name of await tab.$$eval("#measure option", (options) => options.map((option) => option.value))) {
     await tab.selectOption("#measure", name);
   }
@@ -214,36 +214,36 @@ async function main() {
   await tab.screenshot({ path: `${name}-whole.png`, fullPage: true });
   const pdf = await tab.pdf({ format: "A4" });
   fs.writeFileSync(`${name}.pdf`, pdf);
-  hold("prints", pdf.length > 50000, `${(pdf.length * 1e-3).toFixed(0)} kB`);
-  hold("asks nothing of the network", asked.every((address) => address === url), asked.filter((address) => address !== url).join(" "));
-  hold("no complaint in the console", complaints.length === 0, complaints.join(" | "));
+  check("prints", pdf.length > 50000, `${(pdf.length * 1e-3).toFixed(0)} kB`);
+  check("uses no network", requests.every((address) => address === url), requests.filter((address) => address !== url).join(" "));
+  check("no messages in the console", messages.length === 0, messages.join(" | "));
 
   const phone = await open(browser, { viewport: { width: 390, height: 844 }, colorScheme: "dark", hasTouch: true, isMobile: true, deviceScaleFactor: 2 });
   const wide = await phone.tab.evaluate(() => document.scrollingElement.scrollWidth);
-  hold("fits a phone", wide <= 390, `${wide} px wide`);
+  check("fits a phone", wide <= 390, `${wide} px wide`);
   const paper = await phone.tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
-  hold("is dark by night", paper === "rgb(22, 24, 27)", paper);
+  check("has a dark theme", paper === "rgb(22, 24, 27)", paper);
   await phone.tab.screenshot({ path: `${name}-phone.png` });
-  hold("no complaint there either", phone.complaints.length === 0, phone.complaints.join(" | "));
+  check("no messages in the console of a phone", phone.messages.length === 0, phone.messages.join(" | "));
   await browser.close();
 
-  // Where there is no WebGL everything else works.
+  // Everything else works without WebGL.
   const flat = await chromium.launch({ executablePath: process.env.CHROMIUM, args: [...args, "--disable-gpu", "--disable-3d-apis"] });
   const without = await open(flat, { viewport: { width: 1400, height: 900 } });
-  hold("says so where there is no WebGL", (await without.tab.textContent("#waiting")).includes("cannot be drawn"));
+  check("reports missing WebGL", (await without.tab.textContent("#waiting")).includes("cannot be drawn"));
   const before = await without.tab.textContent("#told");
   await without.tab.focus("#state");
   await without.tab.keyboard.press("ArrowLeft");
-  hold("and goes on without", before !== (await without.tab.textContent("#told")));
+  check("the slider works without WebGL", before !== (await without.tab.textContent("#told")));
   await flat.close();
 
   const still = await chromium.launch({ executablePath: process.env.CHROMIUM, args });
   const plain = await still.newContext({ javaScriptEnabled: false });
   const bare = await plain.newPage();
   await bare.goto(url);
-  hold("says something without scripts", (await bare.textContent("#findings")).includes("Lmax/L"));
+  check("shows findings without scripts", (await bare.textContent("#findings")).includes("Lmax/L"));
   await still.close();
-  ended();
+  report();
 }
 
 main().catch((error) => {

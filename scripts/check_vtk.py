@@ -1,8 +1,8 @@
-"""Reads the VTK files of a run with VTK, and holds them against the run's own tables.
+"""Reads the VTK files of a run with VTK and compares them with the tables of the run.
 
     python scripts/check_vtk.py RUN_DIR
 
-The run is axisymmetric or not, in units of D and E, and `plica export RUN_DIR --linear --hdf` (with or without --state) was done.
+The run has units of D and E. `plica export RUN_DIR --linear --hdf`, with or without --state, must precede.
 """
 
 import csv
@@ -17,7 +17,7 @@ GAUSS = 6  # points in each direction; the volume of a cubic map takes five
 
 
 def read(path):
-    """A grid or a surface."""
+    """Reads a grid or a surface."""
     kinds = {".vtu": vtk.vtkXMLUnstructuredGridReader, ".vtp": vtk.vtkXMLPolyDataReader}
     reader = kinds[path.suffix]()
     reader.SetFileName(str(path))
@@ -37,9 +37,9 @@ def field(data, name):
 
 
 def functions(cell, places):
-    """Values and slopes of a cell's functions at places in it, by VTK."""
+    """Returns values and gradients of a cell's shape functions at points, from VTK."""
     nodes = cell.GetNumberOfPoints()
-    # One after the other in linear cells, side by side in others.
+    # VTK orders derivatives by direction in linear cells, and by node in others.
     linear = cell.GetCellType() == vtk.VTK_HEXAHEDRON
     values, slopes = [], []
     for place in places:
@@ -65,7 +65,7 @@ def cells_of(grid):
 
 
 def volume_of(grid, positions):
-    """The volume of a grid whose points are at positions, as VTK maps its cells."""
+    """Returns the volume of a grid with points at `positions`, by the shape functions of VTK."""
     places, weights = gauss()
     _, slopes = functions(grid.GetCell(0), places)
     volume, smallest = 0.0, np.inf
@@ -73,16 +73,16 @@ def volume_of(grid, positions):
         jacobian = np.linalg.det(np.einsum("qan,cni->cqai", slopes, positions[some]))
         smallest = min(smallest, jacobian.min())
         volume += np.einsum("cq,q->", jacobian, weights)
-    assert smallest > 0, "a cell is turned inside out"
+    assert smallest > 0, "inverted cell"
     return volume
 
 
 def mechanics(rest, now, slopes, values, some, theta):
-    """The model again, from what VTK draws: elastic deformation gradient, total strain and more at places of cells."""
+    """Evaluates the model at points of cells from the map of VTK."""
     of_rest = np.einsum("qan,cni->cqia", slopes, rest[some])
     of_now = np.einsum("qan,cni->cqia", slopes, now[some])
     f = of_now @ np.linalg.inv(of_rest)
-    # Along, outwards, around, where the point was at rest.
+    # Axial, radial and circumferential directions at the reference point.
     x = np.einsum("qn,cni->cqi", values, rest[some])
     outwards = x[..., :2] / np.linalg.norm(x[..., :2], axis=-1, keepdims=True)
     zero = np.zeros(x.shape[:-1])
@@ -109,13 +109,13 @@ def mechanics(rest, now, slopes, values, some, theta):
 
 
 def close(what, found, expected, tolerance):
-    off = abs(found - expected) / abs(expected)
-    print(f"{what:<58} {found:.8e}  {expected:.8e}  off {off:.0e} of {tolerance:.0e}")
-    assert off <= tolerance, what
+    error = abs(found - expected) / abs(expected)
+    print(f"{what:<58} {found:.8e}  {expected:.8e}  error {error:.0e}, tolerance {tolerance:.0e}")
+    assert error <= tolerance, what
 
 
 def meridian(grid, normal):
-    """Radii and places of the points in which VTK cuts a grid by a plane through the axis, on one side."""
+    """Returns the points in which VTK cuts a grid by a plane through the axis."""
     plane = vtk.vtkPlane()
     plane.SetNormal(*normal)
     cutter = vtk.vtkCutter()
@@ -127,8 +127,8 @@ def meridian(grid, normal):
 
 
 def check_walls(rest, now, linear, profile):
-    """Of an axisymmetric state, whose meridians are all that of its profile."""
-    # The outer and the inner wall, where VTK's cells have them, are those of the profile.
+    """Compares the walls of an axisymmetric state with its profile."""
+    # Points on the outer and inner wall lie on the profile.
     z, r = now[:, 2], np.hypot(now[:, 0], now[:, 1])
     outside, inside = rest[:, 0] ** 2 + rest[:, 1] ** 2 > 0.4999**2, rest[:, 0] ** 2 + rest[:, 1] ** 2 < 0.4401**2
     for name, of in [("outer", outside), ("inner", inside)]:
@@ -139,16 +139,15 @@ def check_walls(rest, now, linear, profile):
             if known:
                 seen += 1
                 assert np.hypot(z[point] - known[0], r[point] - known[1]) < 1e-6, (name, point)
-        print(f"{name} wall: {seen} points are where the profile has them")
+        print(f"{name} wall: {seen} points lie on the profile")
         assert seen > 10
 
-    # A slice of the linear copy by VTK lies between the walls of the profile.
+    # A slice of the linear cells lies between the walls of the profile.
     cut = meridian(linear, (0.3, 1.0, 0.0))
-    for points, name in [(cut, "slice of the straight cells")]:
-        radii = np.hypot(points[:, 0], points[:, 1])
-        lowest = min(float(p["inner_r"]) for p in profile)
-        highest = max(float(p["outer_r"]) for p in profile)
-        assert lowest - 2e-3 < radii.min() and radii.max() < highest + 2e-3, name
+    radii = np.hypot(cut[:, 0], cut[:, 1])
+    lowest = min(float(p["inner_r"]) for p in profile)
+    highest = max(float(p["outer_r"]) for p in profile)
+    assert lowest - 2e-3 < radii.min() and radii.max() < highest + 2e-3
     print(f"slice: {len(cut)} points, radii {radii.min():.4f} to {radii.max():.4f}")
 
 
@@ -160,10 +159,10 @@ def check_state(run, number, row, profile):
     rest = now - field(grid, "displacement")
     theta = [field(grid, "theta_zeta"), field(grid, "theta_eta")]
     volume = volume_of(grid, now)
-    # A polygon of splines with 60 points is a circle to 1e-7.
-    close("volume at rest, of a hollow cylinder", volume_of(grid, rest), np.pi * (0.25 - 0.44**2) * 3, 1e-5)
+    # A periodic spline with 60 control points approximates a circle to 1e-7.
+    close("reference volume of the hollow cylinder", volume_of(grid, rest), np.pi * (0.25 - 0.44**2) * 3, 1e-5)
 
-    # W from the map that VTK draws, by the formulas of the model.
+    # The energy of the map of VTK, by the formulas of the model.
     places, weights = gauss()
     values, slopes = functions(grid.GetCell(0), places)
     energy = swollen = 0.0
@@ -171,11 +170,11 @@ def check_state(run, number, row, profile):
         size, grown, j, w, _, _ = mechanics(rest, now, slopes, values, some, theta)
         energy += np.einsum("cq,q->", size * grown * w, weights)
         swollen += np.einsum("cq,q->", size * grown * j, weights)
-    close("volume, and the integral of det F over the volume at rest", volume, swollen, 1e-5)
+    close("volume, and integral of det F over the reference volume", volume, swollen, 1e-5)
     if float(row["energy"]) > 1e-8:
-        close("energy of what VTK draws, and W of history.csv", energy, float(row["energy"]), 1e-3)
+        close("energy of the map of VTK, and W of history.csv", energy, float(row["energy"]), 1e-3)
 
-    # And every field at every node.
+    # Every field at every node.
     corners = np.array(grid.GetCell(0).GetParametricCoords()).reshape(-1, 3)
     values, slopes = functions(grid.GetCell(0), corners)
     names = ["det_Fe", "strain_energy_density", "cauchy_stress", "green_lagrange_strain"]
@@ -185,24 +184,24 @@ def check_state(run, number, row, profile):
         _, _, j, w, stress, strain = mechanics(rest, now, slopes, values, some, theta)
         six = lambda t, order: np.stack([t[..., a, b] for a, b in order], -1)
         stress = six(stress, [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)])
-        # Axes: along, outwards, around.
+        # Axes: axial, radial, circumferential.
         strain = six(strain, [(0, 0), (2, 2), (1, 1), (0, 2), (2, 1), (0, 1)])
         for i, (found, of) in enumerate(zip([j, w, stress, strain], fields)):
             worst[i] = max(worst[i], abs(found - of[some]).max() / max(1e-3, abs(of).max()))
-    for name, off in zip(names, worst):
-        print(f"{name}: at every node what the model says of VTK's map, to {off:.0e} of its largest")
-        assert off < 1e-3, name
+    for name, error in zip(names, worst):
+        print(f"{name}: largest error at a node {error:.0e} of the largest value")
+        assert error < 1e-3, name
 
-    # A straight copy has the same points, and nearly the same volume.
+    # The linear cells have the same points and nearly the same volume.
     linear = read(run / "vtk" / "linear" / f"state-{number:04}.vtu")
     assert linear.GetCellType(0) == vtk.VTK_HEXAHEDRON
     assert np.array_equal(vtk_to_numpy(linear.GetPoints().GetData()), now)
-    close("volume of straight cells", volume_of(linear, now), volume, 1e-2)
+    close("volume of linear cells", volume_of(linear, now), volume, 1e-2)
 
     if int(row["asymmetry_mode"]) == 0:
         check_walls(rest, now, linear, profile)
 
-    # Fields among themselves: stress symmetric by construction; stretches and directions.
+    # Stretches and directions are consistent.
     stretch, j = field(grid, "elastic_stretch"), field(grid, "det_Fe")
     assert np.allclose(stretch.prod(axis=1), j, rtol=1e-5)
     assert (np.diff(stretch, axis=1) <= 1e-6).all()
@@ -210,7 +209,7 @@ def check_state(run, number, row, profile):
     for a, direction in enumerate(directions):
         for b, other in enumerate(directions):
             assert np.allclose((direction * other).sum(axis=1), float(a == b), atol=1e-5)
-    # The law's own: principal Cauchy stresses from the stretches (neo-Hookean), along the directions.
+    # Principal Cauchy stresses follow from the stretches by the neo-Hookean law.
     nu = 0.495
     mu, lame = 1 / (2 * (1 + nu)), nu / ((1 + nu) * (1 - 2 * nu))
     principal = (mu * (stretch**2 - 1) + (lame * np.log(j))[:, None]) / j[:, None]
@@ -223,12 +222,12 @@ def check_state(run, number, row, profile):
     mises = np.sqrt(1.5 * (deviator**2).sum(axis=1))
     assert np.allclose(field(grid, "von_mises_stress"), mises, atol=2e-5 * max(1.0, mises.max()))
 
-    # The total Green-Lagrange strain: its determinant is that of F.
+    # The Green-Lagrange strain of the total deformation gives det F.
     e = field(grid, "green_lagrange_strain")
     c = 2 * np.stack([e[:, [0, 3, 5]], e[:, [3, 1, 4]], e[:, [5, 4, 2]]], axis=1) + np.eye(3)
     assert np.allclose(np.sqrt(np.linalg.det(c)), j * theta[0] * theta[1], rtol=1e-4)
 
-    # The surface is closed, looks outwards, and holds the same volume.
+    # The surface is closed, has outward normals, and encloses the same volume.
     walls = read(run / "vtk" / "walls" / f"state-{number:04}.vtp")
     edges = vtk.vtkFeatureEdges()
     edges.SetInputData(walls)
@@ -242,11 +241,11 @@ def check_state(run, number, row, profile):
     quads = vtk_to_numpy(walls.GetPolys().GetConnectivityArray()).reshape(-1, 4)
     a, b, c, d = (points[quads[:, i]] for i in range(4))
     six = np.einsum("ni,ni->n", a, np.cross(b, c)) + np.einsum("ni,ni->n", a, np.cross(c, d))
-    close("volume within the surface", six.sum() / 6, volume, 1e-2)
+    close("volume enclosed by the surface", six.sum() / 6, volume, 1e-2)
 
 
-def check_film(run, number):
-    """The one file of all states against the surface of one of them."""
+def check_series(run, number):
+    """Compares the file of all states with the surface of one state."""
     reader = vtk.vtkHDFReader()
     reader.SetFileName(str(run / "vtk" / "walls.vtkhdf"))
     reader.UpdateInformation()
@@ -255,21 +254,21 @@ def check_film(run, number):
     saved = sorted(int(path.stem.split("-")[1]) for path in (run / "states").glob("state-*"))
     assert times == saved, (times, saved)
     reader.UpdateTimeStep(number)
-    film, walls = reader.GetOutputDataObject(0), read(run / "vtk" / "walls" / f"state-{number:04}.vtp")
-    points = [vtk_to_numpy(mesh.GetPoints().GetData()) for mesh in (film, walls)]
+    series, walls = reader.GetOutputDataObject(0), read(run / "vtk" / "walls" / f"state-{number:04}.vtp")
+    points = [vtk_to_numpy(mesh.GetPoints().GetData()) for mesh in (series, walls)]
     assert np.abs(points[0] - points[1]).max() < 1e-6
-    quads = [vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()) for mesh in (film, walls)]
+    quads = [vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()) for mesh in (series, walls)]
     assert np.array_equal(*quads)
     names = [walls.GetPointData().GetArrayName(i) for i in range(walls.GetPointData().GetNumberOfArrays())]
     for name in names:
-        assert np.array_equal(field(film, name), field(walls, name)), name
-    faces = [vtk_to_numpy(mesh.GetCellData().GetArray("face")) for mesh in (film, walls)]
+        assert np.array_equal(field(series, name), field(walls, name)), name
+    faces = [vtk_to_numpy(mesh.GetCellData().GetArray("face")) for mesh in (series, walls)]
     assert np.array_equal(*faces) and set(faces[0]) == {0, 1, 2, 3}
     for name in ["state", "length_ratio", "diameter_ratio", "energy"]:
-        values = [mesh.GetFieldData().GetArray(name) for mesh in (film, walls)]
+        values = [mesh.GetFieldData().GetArray(name) for mesh in (series, walls)]
         assert [value.GetNumberOfTuples() for value in values] == [1, 1], name
         assert values[0].GetValue(0) == values[1].GetValue(0), name
-    print(f"one file: {len(times)} states, {len(names)} fields, faces and field data as in the file of state {number}")
+    print(f"file of all states: {len(times)} states; {len(names)} fields, faces and field data equal those of state {number}")
 
 
 def main():
@@ -281,7 +280,7 @@ def main():
         number = int(path.stem.split("-")[1])
         profile = list(csv.DictReader(open(run / "profiles" / f"{path.stem}.csv")))
         check_state(run, number, rows[number], profile)
-        check_film(run, number)
+        check_series(run, number)
     for name in ["walls", "volume", "linear"]:
         text = (run / "vtk" / f"{name}.pvd").read_text()
         named = [run / "vtk" / part.split('"')[0] for part in text.split('file="')[1:]]

@@ -387,8 +387,7 @@ docs/case-file.md describes every key of a case file.
 
 Exit codes:
   0    success
-  1    a run did not finish (no equilibrium found, or too little memory), a verification row exceeds its tolerance, \
-or a statement of the paper is not met
+  1    a run did not finish, a check failed, or a statement of the paper is not met
   2    wrong arguments, or an invalid case
   3    a file could not be read or written
   130  interrupted by Ctrl-C or SIGTERM; completed results are written";

@@ -182,7 +182,7 @@ fn assert_same_history_on_one_thread(two: &History) {
 }
 
 #[test]
-fn the_main_case_prints_the_table_of_the_readme_and_has_the_energies_of_an_independent_program() {
+fn the_main_case_prints_the_table_of_the_readme() {
     let directory = scratch("invagination");
     let case = read("cases/invagination.toml");
     std::fs::write(directory.join("invagination.toml"), case).unwrap();
