@@ -118,7 +118,7 @@ pub fn open_with(path: &Path, named: &Open<'_>) -> Result<(String, Plan), Failur
 pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
     for path in directory.inputs() {
         let read = SavedState::read(&path);
-        read.map_err(|source| Failure::Study(RunError::State { path, source }))?;
+        read.map_err(|source| Failure::Run(RunError::State { path, source }))?;
     }
     let own = |wanted: Wanted<'_>| kept(directory, wanted);
     let case = directory.path().join("case.toml");

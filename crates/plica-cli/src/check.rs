@@ -18,8 +18,8 @@ pub fn check(arguments: &CaseArguments) -> Result<(), Failure> {
     for warning in case_file::advice(&plan) {
         text += &format!("\nwarning: {warning}");
     }
-    console::say(&(text.trim_end().to_owned() + "\n"))?;
-    check_memory(&plan).map_err(|error| Failure::Study(error.into()))
+    console::print(&(text.trim_end().to_owned() + "\n"))?;
+    check_memory(&plan).map_err(|error| Failure::Run(error.into()))
 }
 
 /// Returns the names and values of the printed table.

@@ -1,8 +1,8 @@
 //! `plica export`.
 
 use crate::args::ExportArguments;
+use crate::existing_run::ExistingRun;
 use crate::failure::Failure;
-use crate::finished::Finished;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{console, threads};
@@ -14,8 +14,8 @@ use std::path::Path;
 
 /// Exports states of a run to VTK files.
 pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
-    let run = Finished::open(&arguments.run)?;
-    run.has(&arguments.state)?;
+    let run = ExistingRun::open(&arguments.run)?;
+    run.check_saved(&arguments.state)?;
     threads::limit(arguments.threads)?;
     let last = run.last()?;
     let selected = |state: usize| match (arguments.all, arguments.state.as_slice()) {
@@ -34,10 +34,9 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
             files.push((Geometry::Linear, state));
         }
     }
-    let interrupt = Interrupt::listen()
-        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
+    let interrupt = Interrupt::listen()?;
     let mut ticker = Ticker::new(interrupt);
-    console::tell(&format!(
+    console::message(&format!(
         "{}\nstates of {}",
         run.plan.title,
         arguments.run.display()
@@ -89,11 +88,11 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
             path.display()
         );
     }
-    console::say(&text)?;
+    console::print(&text)?;
     let others = failures.len().saturating_sub(1);
     if let Some(first) = failures.into_iter().next() {
         if others > 0 {
-            console::tell(&format!(
+            console::message(&format!(
                 "{others} more file(s) could not be written; the first error:"
             ));
         }
@@ -114,7 +113,7 @@ const SERIES: &str = "vtk/walls.vtkhdf";
 /// Writes the walls of all states to one file. Returns the numbers of states and bytes, or `None` if it was interrupted or no
 /// state can be read.
 fn write_series(
-    run: &Finished,
+    run: &ExistingRun,
     exporter: &Exporter,
     ticker: &mut Ticker,
 ) -> Result<Option<(usize, usize)>, Failure> {
@@ -137,16 +136,14 @@ fn write_series(
     }
     let failure = |what: String| Failure::Files(format!("{SERIES}: {what}"));
     let bytes = movie.bytes().map_err(failure)?;
-    run.directory
-        .write(SERIES, &bytes)
-        .map_err(Failure::Study)?;
+    run.directory.write(SERIES, &bytes)?;
     Ok(Some((states, bytes.len())))
 }
 
 /// An export in progress.
 struct Work<'a> {
     exporter: Exporter,
-    run: &'a Finished,
+    run: &'a ExistingRun,
     /// Numbers of files and bytes of each kind.
     written: BTreeMap<Geometry, (usize, usize)>,
 }
@@ -158,7 +155,7 @@ impl Work<'_> {
         let bytes = self.exporter.file(what, &state, &row);
         let name = format!("{}/state-{number:04}.{}", folder(what), what.extension());
         let written = self.run.directory.write(&name, &bytes);
-        written.map_err(Failure::Study)?;
+        written?;
         let (files, size) = self.written.entry(what).or_default();
         (*files, *size) = (*files + 1, *size + bytes.len());
         Ok(())
@@ -177,9 +174,7 @@ fn collection_of(what: Geometry) -> String {
 
 /// Writes the collection of all existing files of a kind.
 fn collect(directory: &RunDirectory, what: Geometry) -> Result<(), Failure> {
-    let files = directory
-        .numbered(&folder(what), what.extension())
-        .map_err(Failure::Study)?;
+    let files = directory.numbered(&folder(what), what.extension())?;
     let name = |path: &Path| {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
         format!("{}/{file}", what.name())
@@ -188,5 +183,5 @@ fn collect(directory: &RunDirectory, what: Geometry) -> Result<(), Failure> {
     let text = collection(names.iter().map(|(n, name)| (*n, name.as_str())));
     directory
         .write(&collection_of(what), text.as_bytes())
-        .map_err(Failure::Study)
+        .map_err(Failure::Run)
 }

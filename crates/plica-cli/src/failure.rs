@@ -1,6 +1,6 @@
 //! Errors of the program and their exit codes.
 
-use crate::console;
+use crate::{console, diagnostics};
 use plica::case::CaseError;
 use plica::run_directory::RunError;
 use std::path::PathBuf;
@@ -26,8 +26,8 @@ pub enum Failure {
     Files(String),
     /// Internal error.
     Fault(String),
-    /// Error of a study.
-    Study(RunError),
+    /// Error of a run.
+    Run(RunError),
     /// Interrupted by the user; says what has been written.
     Interrupted(String),
 }
@@ -35,40 +35,26 @@ pub enum Failure {
 impl Failure {
     /// Prints the error and returns the exit code.
     pub fn report(&self) -> ExitCode {
-        let code = match self {
-            Self::Unfinished => 1,
-            Self::Case { path, text, error } => {
-                console::tell(&crate::diagnostics::render(path, text, error));
-                2
+        let (message, code) = match self {
+            Self::Unfinished => return ExitCode::from(1),
+            Self::Case { path, text, error } => (diagnostics::render(path, text, error), 2),
+            Self::Usage(what) => (format!("error: {what}"), 2),
+            Self::Files(what) => (format!("error: {what}"), 3),
+            Self::Fault(what) => (format!("error: {what}"), 1),
+            Self::Run(error) => {
+                let code = if error.is_about_files() { 3 } else { 1 };
+                (format!("error: {error}{}", help(error)), code)
             }
-            Self::Usage(what) => {
-                console::tell(&format!("error: {what}"));
-                2
-            }
-            Self::Files(what) => {
-                console::tell(&format!("error: {what}"));
-                3
-            }
-            Self::Fault(what) => {
-                console::tell(&format!("error: {what}"));
-                1
-            }
-            Self::Study(error) => {
-                console::tell(&format!("error: {error}{}", help(error)));
-                if error.is_about_files() { 3 } else { 1 }
-            }
-            Self::Interrupted(what) => {
-                console::tell(what);
-                130
-            }
+            Self::Interrupted(what) => (what.clone(), 130),
         };
+        console::message(&message);
         ExitCode::from(code)
     }
 }
 
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
-        Self::Study(error)
+        Self::Run(error)
     }
 }
 

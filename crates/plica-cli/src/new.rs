@@ -13,12 +13,12 @@ use std::path::Path;
 /// Writes the example case; never overwrites a file.
 pub fn new(path: &Path) -> Result<(), Failure> {
     if path == Path::new("-") {
-        return console::say(STARTER);
+        return console::print(STARTER);
     }
     let name = path.display();
     let written = File::create_new(path).and_then(|mut file| file.write_all(STARTER.as_bytes()));
     match written {
-        Ok(()) => console::say(&format!(
+        Ok(()) => console::print(&format!(
             "written to {name}; edit it, then run: plica run {name}\n"
         )),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Files(format!(
@@ -32,10 +32,10 @@ pub fn new(path: &Path) -> Result<(), Failure> {
 pub fn completions(shell: Shell) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "plica", &mut script);
-    console::say(&String::from_utf8_lossy(&script))
+    console::print(&String::from_utf8_lossy(&script))
 }
 
 /// Prints the JSON schema of the case file.
 pub fn schema() -> Result<(), Failure> {
-    console::say(&format!("{:#}\n", case::schema()))
+    console::print(&format!("{:#}\n", case::schema()))
 }

@@ -1,8 +1,8 @@
 //! `plica plot`.
 
 use crate::args::PlotArguments;
+use crate::existing_run::{ExistingRun, check_out};
 use crate::failure::Failure;
-use crate::finished::{Finished, endings};
 use crate::render::failure;
 use plica::study::Scale;
 use plica_view::draw::Chart;
@@ -24,7 +24,7 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
             ));
         }
         Some(path) => {
-            endings(path, &["svg", "png"])?;
+            check_out(path, &["svg", "png"])?;
             path.extension()
                 .map(|ending| ending.to_string_lossy().to_ascii_lowercase())
         }
@@ -41,15 +41,15 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
             "--state applies to walls, not to columns".into(),
         ));
     }
-    let run = Finished::open(&arguments.run)?;
-    run.has(&arguments.state)?;
+    let run = ExistingRun::open(&arguments.run)?;
+    run.check_saved(&arguments.state)?;
     let charts: Result<Vec<(String, Chart)>, Failure> = (arguments.what.iter())
         .map(|what| chart(&run, arguments, what))
         .collect();
     for (name, chart) in charts? {
         if ending.as_deref() != Some("png") {
             let svg = chart.svg().map_err(failure)?;
-            run.leave(
+            run.write_picture(
                 arguments.out.as_deref(),
                 &format!("{name}.svg"),
                 svg.as_bytes(),
@@ -57,7 +57,7 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
         }
         if ending.as_deref() != Some("svg") {
             let png = chart.png(usize::from(arguments.width)).map_err(failure)?;
-            run.leave(arguments.out.as_deref(), &format!("{name}.png"), &png)?;
+            run.write_picture(arguments.out.as_deref(), &format!("{name}.png"), &png)?;
         }
     }
     Ok(())
@@ -65,7 +65,7 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
 
 /// Returns the name and the chart of a plot.
 fn chart(
-    run: &Finished,
+    run: &ExistingRun,
     arguments: &PlotArguments,
     what: &str,
 ) -> Result<(String, Chart), Failure> {

@@ -1,8 +1,8 @@
 //! `plica render` and `plica animate`.
 
 use crate::args::{AnimateArguments, LookArguments, RenderArguments};
+use crate::existing_run::{ExistingRun, check_out};
 use crate::failure::Failure;
-use crate::finished::{Finished, endings};
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::video;
@@ -25,10 +25,10 @@ const MOST: usize = 12;
 
 /// Draws states of a run.
 pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
-    let run = Finished::open(&arguments.run)?;
-    run.has(&arguments.state)?;
+    let run = ExistingRun::open(&arguments.run)?;
+    run.check_saved(&arguments.state)?;
     if let Some(path) = &arguments.look.out {
-        endings(path, &["png"])?;
+        check_out(path, &["png"])?;
     }
     if arguments.state.len() > MOST {
         return Err(Failure::Usage(format!(
@@ -46,32 +46,31 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     let png = report::render(&run.plan, &states?, &look).map_err(failure)?;
     let names: Vec<String> = numbers.iter().map(|n| format!("{n:04}")).collect();
     let name = format!("{}-state-{}.png", look.field.name(), names.join("-"));
-    run.leave(arguments.look.out.as_deref(), &name, &png)
+    run.write_picture(arguments.look.out.as_deref(), &name, &png)
 }
 
 /// Draws all saved states of a run as an animation.
 pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
-    let run = Finished::open(&arguments.run)?;
+    let run = ExistingRun::open(&arguments.run)?;
     run.last()?;
     threads::limit(arguments.look.threads)?;
     let look = appearance(&arguments.look);
     if let Some(path) = &arguments.look.out {
-        endings(path, &["apng", "png", "mp4"])?;
+        check_out(path, &["apng", "png", "mp4"])?;
     }
     let video = arguments.look.out.as_deref();
     let video = video.filter(|path| video::is_video(path));
     if let Some(path) = video {
         video::require_ffmpeg(path)?;
     }
-    let interrupt = Interrupt::listen()
-        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
+    let interrupt = Interrupt::listen()?;
     let numbers: Vec<usize> = run.saved.keys().copied().collect();
     // An unreadable state does not prevent the animation of the others.
     let mut states: Vec<Shown> = vec![];
     for &number in &numbers {
         match run.try_state(number) {
             Ok(shown) => states.push(shown),
-            Err(why) => console::tell(&format!("warning: state skipped: {why}")),
+            Err(why) => console::message(&format!("warning: state skipped: {why}")),
         }
     }
     let ticker = Mutex::new(Ticker::new(interrupt));
@@ -93,7 +92,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
                 None => bytes,
             };
             let name = format!("{}-path.apng", look.field.name());
-            run.leave(arguments.look.out.as_deref(), &name, &bytes)
+            run.write_picture(arguments.look.out.as_deref(), &name, &bytes)
         }
         None => Err(Failure::Interrupted(
             "interrupted; nothing was written".into(),

@@ -1,8 +1,8 @@
 //! `plica report`.
 
 use crate::args::ReportArguments;
+use crate::existing_run::{ExistingRun, check_out};
 use crate::failure::Failure;
-use crate::finished::{Finished, endings};
 use crate::{console, threads};
 use plica::saved_state::SavedState;
 use plica_view::page::{PageError, Run, drawn, page};
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     threads::limit(arguments.threads)?;
     if let Some(path) = &arguments.out {
-        endings(path, &["html", "htm"])?;
+        check_out(path, &["html", "htm"])?;
     }
     for (i, path) in arguments.runs.iter().enumerate() {
         let same = |other: &PathBuf| path.canonicalize().ok() == other.canonicalize().ok();
@@ -35,9 +35,7 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let path = match (&arguments.out, runs.as_slice()) {
         (None, [ReportedRun { run, .. }]) => {
             let name = "report.html";
-            run.directory
-                .write(name, html.as_bytes())
-                .map_err(Failure::Study)?;
+            run.directory.write(name, html.as_bytes())?;
             run.directory.path().join(name)
         }
         (out, _) => {
@@ -47,7 +45,7 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
             path
         }
     };
-    console::say(&format!(
+    console::print(&format!(
         "written to {} ({:.1} MB); open it in a browser\n",
         path.display(),
         html.len() as f64 * 1e-6
@@ -56,7 +54,7 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
 
 /// A run and its readable states.
 struct ReportedRun {
-    run: Finished,
+    run: ExistingRun,
     states: Vec<SavedState>,
     left_out: usize,
     unread: Vec<String>,
@@ -65,16 +63,16 @@ struct ReportedRun {
 impl ReportedRun {
     /// Opens one of `runs` runs. An unreadable state is reported and skipped.
     fn open(path: &Path, runs: usize) -> Result<Self, Failure> {
-        let run = Finished::open(path)?;
+        let run = ExistingRun::open(path)?;
         let saved: Vec<usize> = run.saved.keys().copied().collect();
         let chosen = drawn(&run.plan, &saved, runs);
-        let mut unread: Vec<String> = run.broken.iter().cloned().collect();
+        let mut unread: Vec<String> = run.unreadable.iter().cloned().collect();
         let mut states = vec![];
         for &number in &chosen {
             match run.try_state(number) {
                 Ok((state, _)) => states.push(state),
                 Err(why) => {
-                    console::tell(&format!("warning: not read: {why}"));
+                    console::message(&format!("warning: not read: {why}"));
                     unread.push(why);
                 }
             }

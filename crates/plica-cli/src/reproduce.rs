@@ -37,7 +37,7 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
         wanted.extend(FIGURES);
     }
     if arguments.list {
-        return console::say(&list(&wanted, fineness));
+        return console::print(&list(&wanted, fineness));
     }
     threads::limit(arguments.threads)?;
     let default = fineness.choose("runs/reproduction", "runs/reproduction-full");
@@ -52,10 +52,9 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
         command: "plica reproduce",
     };
     page_directory::prepare(&out, &first)?;
-    let interrupt = Interrupt::listen()
-        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
+    let interrupt = Interrupt::listen()?;
     let mut monitor = Monitor(Ticker::new(interrupt));
-    console::tell(&format!("writing to {}", out.display()));
+    console::message(&format!("writing to {}", out.display()));
     let found = run_figures(&wanted, fineness, &out.join(RUNS), &mut monitor);
     monitor.0.finish();
     let found = found.map_err(|trouble| match trouble {
@@ -65,13 +64,13 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
         trouble => Failure::Files(trouble.to_string()),
     })?;
     // Print first: writing the files may fail.
-    console::say(&found.text())?;
+    console::print(&found.text())?;
     let files = found.files();
     for (name, bytes) in &files {
         page_directory::write(&out, name, bytes)?;
     }
     let pictures = files.iter().filter(|(name, _)| name.ends_with(".png"));
-    console::say(&format!(
+    console::print(&format!(
         "written to {}: {SUMMARY}, pages of figures ({}), pictures ({}), {RUNS}/\n",
         out.display(),
         found.pages.len(),

@@ -11,7 +11,7 @@ use plica::study::{Ending, Plan, check_memory, forbidden_changes};
 use plica_view::report::pictures;
 use std::path::{Path, PathBuf};
 
-/// Draws the pictures of a run; says which. A picture that cannot be drawn does not undo a run.
+/// Draws the pictures of a run and returns a line with their names. A failure to draw is only a warning.
 fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<String, Failure> {
     if !plan.output.pictures {
         return Ok(String::new());
@@ -19,7 +19,7 @@ fn draw(plan: &Plan, summary: &Summary, directory: &RunDirectory) -> Result<Stri
     let pictures = match pictures(plan, summary) {
         Ok(pictures) => pictures,
         Err(error) => {
-            console::tell(&format!("warning: no pictures: {error}"));
+            console::message(&format!("warning: no pictures: {error}"));
             return Ok(String::new());
         }
     };
@@ -45,7 +45,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         return resume_with_case(arguments, &out);
     }
     let (text, plan) = case_file::open(&arguments.case)?;
-    let interrupt = listen()?;
+    let interrupt = Interrupt::listen()?;
     check_memory(&plan).map_err(RunError::from)?;
     let mut directory = RunDirectory::create(&out, &text, &plan.title, arguments.overwrite)?;
     follow(&plan, &mut directory, interrupt, false)
@@ -71,7 +71,7 @@ fn resume_with_case(arguments: &RunArguments, out: &Path) -> Result<(), Failure>
         }
         (text, plan)
     };
-    let interrupt = listen()?;
+    let interrupt = Interrupt::listen()?;
     check_memory(&plan).map_err(RunError::from)?;
     if before != text.as_bytes() {
         directory.write_case(&text, &plan.title)?;
@@ -88,17 +88,13 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
     if directory.is_complete() {
         return nothing_to_do(&directory);
     }
-    follow(&plan, &mut directory, listen()?, true)
+    follow(&plan, &mut directory, Interrupt::listen()?, true)
 }
 
-fn listen() -> Result<Interrupt, Failure> {
-    Interrupt::listen()
-        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))
-}
-
+/// Prints that a run is complete.
 fn nothing_to_do(directory: &RunDirectory) -> Result<(), Failure> {
     directory.close()?;
-    console::say(&format!(
+    console::print(&format!(
         "{} is complete; there is nothing to resume\n",
         directory.path().display()
     ))
@@ -137,24 +133,24 @@ fn follow(
     resume: bool,
 ) -> Result<(), Failure> {
     let out = directory.path().to_owned();
-    console::tell(&format!("{}\nwriting to {}", plan.title, out.display()));
+    console::message(&format!("{}\nwriting to {}", plan.title, out.display()));
     for warning in case_file::advice(plan) {
-        console::tell(&format!("warning: {warning}"));
+        console::message(&format!("warning: {warning}"));
     }
     let mut progress = Progress::new(plan, interrupt.clone());
     let summary = all_states(plan, directory, &mut progress, resume);
     progress.finish();
     let summary = summary?;
     // The table is printed before the pictures, which take longer.
-    let printed = console::say(&summary.to_string());
+    let printed = console::print(&summary.to_string());
     let drawn = draw(plan, &summary, directory)?;
-    printed.and_then(|()| console::say(&drawn))?;
+    printed.and_then(|()| console::print(&drawn))?;
     match summary.ending() {
         Ending::Complete => return Ok(directory.close()?),
-        Ending::Stopped => console::tell("stopped on request; every state so far is kept"),
-        Ending::Lost(lost) => console::tell(&lost.to_string()),
+        Ending::Stopped => console::message("stopped on request; every state so far is kept"),
+        Ending::Lost(lost) => console::message(&lost.to_string()),
     }
-    if interrupt.asked() {
+    if interrupt.is_requested() {
         return Err(Failure::Interrupted(format!(
             "interrupted; everything up to the last accepted state is written, and `plica resume {}` continues from there",
             out.display()

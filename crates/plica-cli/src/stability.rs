@@ -21,9 +21,9 @@ const MODES: u8 = 3;
 
 /// Tests the stability of a run's states and writes the results to its directory.
 pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
-    let mut directory = RunDirectory::open(&arguments.run).map_err(Failure::Study)?;
-    directory.lock().map_err(Failure::Study)?;
-    if directory.states().map_err(Failure::Study)?.is_empty() {
+    let mut directory = RunDirectory::open(&arguments.run)?;
+    directory.lock()?;
+    if directory.states()?.is_empty() {
         let none = StabilityError::NoStates {
             directory: arguments.run.clone(),
             found: 0,
@@ -34,15 +34,14 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     threads::limit(arguments.threads)?;
     let plan = case_file::of_run(&directory)?;
     check_memory(&plan).map_err(RunError::from)?;
-    let interrupt = Interrupt::listen()
-        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
-    console::tell(&format!(
+    let interrupt = Interrupt::listen()?;
+    console::message(&format!(
         "{}\nstates of {}",
         plan.title,
         arguments.run.display()
     ));
     if directory.verdict() == Verdict::Running {
-        console::tell("warning: the run is unfinished; its states so far are tested");
+        console::message("warning: the run is unfinished; its states so far are tested");
     }
     let mut monitor = Monitor {
         ticker: Ticker::new(interrupt),
@@ -75,7 +74,7 @@ fn axisymmetric(
     let found = follow(plan, directory, &request, monitor);
     monitor.ticker.finish();
     let found = found.map_err(failure)?;
-    let names = found.write(&plan.tube, directory).map_err(Failure::Study)?;
+    let names = found.write(&plan.tube, directory)?;
     let pictures = stability_pictures(plan, &found);
     finish(
         arguments,
@@ -109,7 +108,7 @@ fn three_dimensional(
     if found.states.is_empty() {
         return Err(failure(StabilityError::Stopped));
     }
-    let mut names = vec![found.write(&plan.tube, directory).map_err(Failure::Study)?];
+    let mut names = vec![found.write(&plan.tube, directory)?];
     names.extend(found.modes.iter().cloned());
     let pictures = mode_pictures(plan, &found);
     let table = found.table(&plan.tube);
@@ -142,11 +141,11 @@ fn finish(
     match pictures {
         Ok(pictures) => {
             for (name, png) in pictures {
-                directory.write(&name, &png).map_err(Failure::Study)?;
+                directory.write(&name, &png)?;
                 names.push(name);
             }
         }
-        Err(error) => console::tell(&format!("warning: no pictures: {error}")),
+        Err(error) => console::message(&format!("warning: no pictures: {error}")),
     }
     let (modes, mut files): (Vec<String>, Vec<String>) = names
         .into_iter()
@@ -156,7 +155,7 @@ fn finish(
     }
     let run = arguments.run.display();
     let written = format!("  {:<22} {run}: {}\n", "written to", files.join(", "));
-    console::say(&(table + &written))
+    console::print(&(table + &written))
 }
 
 /// Prints a line per saved state.

@@ -11,7 +11,7 @@ pub fn limit(threads: Threads) -> Result<(), Failure> {
     };
     let available = std::thread::available_parallelism().map_or(requested, usize::from);
     if requested > available {
-        console::tell(&format!(
+        console::message(&format!(
             "warning: --threads {requested}: this machine has {available}; {available} are used"
         ));
     }

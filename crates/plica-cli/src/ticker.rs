@@ -23,7 +23,7 @@ impl Ticker {
     /// Starts the progress bar, if standard error is a terminal.
     pub fn new(interrupt: Interrupt) -> Self {
         Self {
-            bar: console::is_watched().then(bar),
+            bar: console::is_terminal().then(bar),
             interrupt,
             stopping: Cell::new(false),
             last_output: Cell::new(Instant::now()),
@@ -41,7 +41,7 @@ impl Ticker {
     pub fn line(&self, line: &str) {
         match &self.bar {
             Some(bar) => bar.println(line),
-            None => console::tell(line),
+            None => console::message(line),
         }
         self.last_output.set(Instant::now());
     }
@@ -62,7 +62,7 @@ impl Ticker {
 
     /// Returns whether the user has asked to stop.
     pub fn stop(&self) -> bool {
-        if self.interrupt.asked() && !self.stopping.replace(true) {
+        if self.interrupt.is_requested() && !self.stopping.replace(true) {
             self.line("stopping; press Ctrl-C again to stop at once");
         }
         self.stopping.get()

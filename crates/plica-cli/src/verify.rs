@@ -17,7 +17,7 @@ const PAGE: &str = "verification.md";
 /// Runs the checks, prints the table and writes it with its pictures.
 pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     if arguments.list {
-        return console::say(&list());
+        return console::print(&list());
     }
     // An empty name would match every check.
     let matches =
@@ -49,8 +49,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     page_directory::prepare(&arguments.out, &first)?;
     let file_error = |error| Failure::Files(format!("{}: {error}", arguments.out.display()));
     let page = arguments.out.join(PAGE);
-    let interrupt = Interrupt::listen()
-        .map_err(|error| Failure::Files(format!("cannot listen to signals: {error}")))?;
+    let interrupt = Interrupt::listen()?;
     let mut monitor = Monitor {
         ticker: Ticker::new(interrupt),
         done: 0,
@@ -63,7 +62,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
         trouble => Failure::Files(trouble.to_string()),
     })?;
     // Print first: writing the files may fail.
-    console::say(&found.text())?;
+    console::print(&found.text())?;
     let mut names = vec![PAGE.to_owned()];
     fs::write(&page, found.page()).map_err(file_error)?;
     match found.pictures() {
@@ -73,10 +72,10 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
                 names.push(name);
             }
         }
-        Err(error) => console::tell(&format!("warning: no pictures: {error}")),
+        Err(error) => console::message(&format!("warning: no pictures: {error}")),
     }
     let out = arguments.out.display();
-    console::say(&format!("written to {out}: {}\n", names.join(", ")))?;
+    console::print(&format!("written to {out}: {}\n", names.join(", ")))?;
     if found.failed() > 0 {
         Err(Failure::Unfinished)
     } else {

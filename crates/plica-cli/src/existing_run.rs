@@ -1,4 +1,4 @@
-//! A run that is there: its plan, its history and its saved states.
+//! An existing run: its plan, history and saved states.
 
 use crate::case_file;
 use crate::console;
@@ -9,24 +9,23 @@ use plica::study::{Plan, Row};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Refuses to write to a file that does not end as what is written does, lest something else is written over.
-pub fn endings(path: &Path, endings: &[&str]) -> Result<(), Failure> {
+/// Refuses an output file in a missing directory or with another extension, so that files of other kinds are not overwritten.
+pub fn check_out(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
         return Err(Failure::Files(format!(
-            "--out {}: there is no folder {}",
+            "--out {}: there is no directory {}",
             path.display(),
             folder.display()
         )));
     }
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    let is = |wanted: &str| ending.is_some_and(|ending| ending.eq_ignore_ascii_case(wanted));
-    if endings.iter().any(|wanted| is(wanted)) {
+    let extension = path.extension().unwrap_or_default();
+    if extensions.iter().any(|e| extension.eq_ignore_ascii_case(e)) {
         return Ok(());
     }
-    let named: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
+    let named: Vec<String> = extensions.iter().map(|e| format!(".{e}")).collect();
     Err(Failure::Usage(format!(
         "--out {}: must end in {}",
         path.display(),
@@ -34,58 +33,56 @@ pub fn endings(path: &Path, endings: &[&str]) -> Result<(), Failure> {
     )))
 }
 
-/// A run that is there.
-pub struct Finished {
+/// An existing run.
+pub struct ExistingRun {
     /// Its directory.
     pub directory: RunDirectory,
-    /// What was computed.
+    /// Its plan.
     pub plan: Plan,
     /// Its accepted states.
     pub rows: Vec<Row>,
-    /// What is wrong with the rest of `history.csv`, if not all of it could be read.
-    pub broken: Option<String>,
-    /// The files of its saved states, by their numbers.
+    /// Reason why the rest of `history.csv` could not be read.
+    pub unreadable: Option<String>,
+    /// Files of its saved states by number.
     pub saved: BTreeMap<usize, PathBuf>,
 }
 
-impl Finished {
+impl ExistingRun {
     /// Opens the directory of a run.
     pub fn open(path: &Path) -> Result<Self, Failure> {
-        let directory = RunDirectory::open(path).map_err(Failure::Study)?;
-        let mut saved = directory
-            .numbered("states", "safetensors")
-            .map_err(Failure::Study)?;
+        let directory = RunDirectory::open(path)?;
+        let mut saved = directory.numbered("states", "safetensors")?;
         let plan = case_file::of_run(&directory)?;
-        let (rows, broken) = directory.readable_history().map_err(Failure::Study)?;
+        let (rows, error) = directory.readable_history()?;
         if rows.is_empty() {
             return Err(Failure::Usage(format!(
-                "{}: the run has not come to its first state",
+                "{}: the run has not reached its first state",
                 path.display()
             )));
         }
-        // Of what has no row nothing could be said.
+        // States without a row are ignored.
         let last = rows[rows.len() - 1].step;
         saved.retain(|&number, _| number <= last);
-        let broken = broken.map(|why| {
+        let unreadable = error.map(|why| {
             format!(
                 "{} beyond state {}: {why}",
                 path.join("history.csv").display(),
                 rows.len() - 1
             )
         });
-        if let Some(broken) = &broken {
-            console::tell(&format!("warning: not read: {broken}"));
+        if let Some(unreadable) = &unreadable {
+            console::message(&format!("warning: not read: {unreadable}"));
         }
         Ok(Self {
             directory,
             plan,
             rows,
-            broken,
+            unreadable,
             saved,
         })
     }
 
-    /// The number of the last saved state.
+    /// Returns the number of the last saved state.
     ///
     /// # Errors
     /// [`Failure::Usage`] if there is none.
@@ -100,7 +97,7 @@ impl Finished {
     }
 
     /// Refuses numbers of states that are not saved.
-    pub fn has(&self, states: &[usize]) -> Result<(), Failure> {
+    pub fn check_saved(&self, states: &[usize]) -> Result<(), Failure> {
         if states.is_empty() {
             return Ok(());
         }
@@ -108,31 +105,36 @@ impl Finished {
         match states.iter().find(|state| !self.saved.contains_key(state)) {
             None => Ok(()),
             Some(state) => Err(Failure::Usage(format!(
-                "state {state} is not saved in {}; these are: {}",
+                "--state {state}: not saved in {}; choose from {}",
                 self.directory.path().display(),
-                self.listed()
+                self.list_saved()
             ))),
         }
     }
 
-    /// A saved state, and its row.
+    /// Reads a saved state and its row.
     pub fn state(&self, number: usize) -> Result<(SavedState, Row), Failure> {
         self.try_state(number).map_err(Failure::Files)
     }
 
-    /// As [`Finished::state`], or in words why not.
+    /// Reads a saved state and its row, or returns the error as text.
     pub fn try_state(&self, number: usize) -> Result<(SavedState, Row), String> {
         let path = &self.saved[&number];
-        let trouble = |why: &dyn std::fmt::Display| format!("{}: {why}", path.display());
-        let state = SavedState::read(path).map_err(|error| trouble(&error))?;
-        self.plan.accepts(&state).map_err(|error| trouble(&error))?;
+        let message = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        let state = SavedState::read(path).map_err(|error| message(&error))?;
+        self.plan.accepts(&state).map_err(|error| message(&error))?;
         let row = self.rows.iter().find(|row| row.step == number);
-        let row = row.ok_or_else(|| trouble(&"history.csv has no such state"))?;
+        let row = row.ok_or_else(|| message(&"history.csv has no such state"))?;
         Ok((state, row.clone()))
     }
 
-    /// Writes a picture where it was asked for, or else beside the run's own.
-    pub fn leave(&self, out: Option<&Path>, usual: &str, bytes: &[u8]) -> Result<(), Failure> {
+    /// Writes a picture to a file, by default to `pictures/` of the run, and prints its path.
+    pub fn write_picture(
+        &self,
+        out: Option<&Path>,
+        default: &str,
+        bytes: &[u8],
+    ) -> Result<(), Failure> {
         let path = match out {
             Some(path) => {
                 std::fs::write(path, bytes)
@@ -140,24 +142,24 @@ impl Finished {
                 path.to_owned()
             }
             None => {
-                let name = format!("pictures/{usual}");
-                self.directory.write(&name, bytes).map_err(Failure::Study)?;
+                let name = format!("pictures/{default}");
+                self.directory.write(&name, bytes)?;
                 self.directory.path().join(name)
             }
         };
-        console::say(&format!(
+        console::print(&format!(
             "written to {} ({:.1} MB)\n",
             path.display(),
             bytes.len() as f64 * 1e-6
         ))
     }
 
-    /// The numbers of saved states, in few words.
-    fn listed(&self) -> String {
+    /// Lists the numbers of saved states briefly.
+    fn list_saved(&self) -> String {
         let numbers: Vec<String> = self.saved.keys().map(ToString::to_string).collect();
         match numbers.as_slice() {
             [first, .., last] if numbers.len() > 12 => {
-                format!("{} of them from {first} to {last}", numbers.len())
+                format!("{} states from {first} to {last}", numbers.len())
             }
             _ => numbers.join(", "),
         }
