@@ -55,7 +55,7 @@ drive.ileum.twist_degrees = 10
 
 /// Returns a case in pseudo-time, whose velocity is part of the checkpoint.
 fn damped() -> String {
-    AXISYMMETRIC.replace("[output]", "[solver]\nscheme = \"newmark\"\n[solver.pseudo_time]\nsettle = false\n[output]\nprofiles_every = 2")
+    AXISYMMETRIC.replace("[output]", "[solver]\nscheme = \"newmark\"\n[solver.pseudo_time]\nequilibrate = false\n[output]\nprofiles_every = 2")
 }
 
 /// Runs a case without interruption. Returns the contents of the run and the time it took.
