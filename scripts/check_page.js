@@ -110,7 +110,7 @@ async function wallError(tab, which, directory) {
 /** Tests a page without saved states: plots, slider and text work. */
 async function undrawn({ tab, messages }) {
   check("hides the tube", !(await tab.isVisible("#stage")) && !(await tab.isVisible("#field")));
-  const told = () => tab.textContent("#told");
+  const told = () => tab.textContent("#status");
   const at = await told();
   await tab.focus("#state");
   await tab.keyboard.press("ArrowLeft");
@@ -156,7 +156,7 @@ async function main() {
   check("the canvas is not blank", last.colours > 100 && last.drawn > 0.05, `${last.colours} colours on ${(100 * last.drawn).toFixed(0)} %`);
   await tab.screenshot({ path: `${name}-light.png` });
 
-  const told = () => tab.textContent("#told");
+  const told = () => tab.textContent("#status");
   const change = async (what, act) => {
     const before = await seen(tab);
     await act();
@@ -202,7 +202,7 @@ async function main() {
     const error = await wallError(tab, which, directory);
     check(`draws ${path.basename(directory)} at its place`, error < TOLERANCE, error.toExponential(1));
   }
-  const [file] = await Promise.all([tab.waitForEvent("download"), tab.click("#keep")]);
+  const [file] = await Promise.all([tab.waitForEvent("download"), tab.click("#save")]);
   await file.saveAs(`${name}-kept.png`);
   check("saves a picture", fs.statSync(`${name}-kept.png`).size > 20000, file.suggestedFilename());
   for (const name of await tab.$$eval("#measure option", (options) => options.map((option) => option.value))) {
@@ -231,10 +231,10 @@ async function main() {
   const flat = await chromium.launch({ executablePath: process.env.CHROMIUM, args: [...args, "--disable-gpu", "--disable-3d-apis"] });
   const without = await open(flat, { viewport: { width: 1400, height: 900 } });
   check("reports missing WebGL", (await without.tab.textContent("#waiting")).includes("cannot be drawn"));
-  const before = await without.tab.textContent("#told");
+  const before = await without.tab.textContent("#status");
   await without.tab.focus("#state");
   await without.tab.keyboard.press("ArrowLeft");
-  check("the slider works without WebGL", before !== (await without.tab.textContent("#told")));
+  check("the slider works without WebGL", before !== (await without.tab.textContent("#status")));
   await flat.close();
 
   const still = await chromium.launch({ executablePath: process.env.CHROMIUM, args });

@@ -22,7 +22,7 @@ fn a_report_is_one_self_contained_page() {
     let page = fs::read_to_string(run.join("report.html")).unwrap();
     for words in [
         "<h1><bdi>a short run</bdi></h1>",
-        "Every stage was done. At its last state the tube is narrowed to a V.",
+        "All stages were completed. In the last state the tube is narrowed to a V.",
         "<dt>energy minimum</dt>",
         "drive.circular.diameter_ratio = 0.9",
         "12 × 8 × 4 control points, axisymmetric: 144 unknowns",

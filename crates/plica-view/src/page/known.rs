@@ -1,4 +1,4 @@
-//! What the page's scripts know of a run.
+//! Data of a run for the scripts of the page.
 
 use super::scene::Scene;
 use super::{Run, words};
@@ -6,33 +6,33 @@ use crate::draw::label;
 use crate::report::{Column, Role};
 use serde::Serialize;
 
-/// A run as numbers.
+/// Numbers of a run.
 #[derive(Serialize)]
 pub struct Known {
     name: String,
-    /// Its walls.
+    /// Walls of all drawn states.
     pub scene: Scene,
-    /// Of every row of the history.
+    /// Stage of every row of the history.
     stages: Vec<String>,
     shapes: Vec<String>,
-    /// What makes of it less than it seems.
-    beware: Vec<Option<&'static str>>,
+    /// Reason why a state is not physical or not an equilibrium.
+    caution: Vec<Option<&'static str>>,
     columns: Vec<Plotted>,
 }
 
-/// A column that may be plotted, its label as plain text.
+/// A column for the plots; its label is plain text.
 #[derive(Serialize)]
 struct Plotted {
     name: String,
     label: String,
-    /// Whether it is part of the load.
+    /// True for a part of the load.
     load: bool,
     values: Vec<Option<f64>>,
 }
 
 impl Known {
-    /// Of a run, its walls sampled to so many bytes at most.
-    pub fn of(run: &Run<'_>, columns: &[Column], largest: usize) -> Self {
+    /// Collects the data of a run; the walls take at most `max_bytes`.
+    pub fn of(run: &Run<'_>, columns: &[Column], max_bytes: usize) -> Self {
         let plotted = |column: &Column| Plotted {
             name: column.name.clone(),
             label: label::plain(&column.label),
@@ -42,20 +42,20 @@ impl Known {
         let all = columns.iter().map(plotted);
         let scene = match run.states {
             [] => Scene::without(run.plan, run.rows.iter().map(|row| row.step).collect()),
-            states => Scene::of(run.plan, states, run.upwards(), largest),
+            states => Scene::of(run.plan, states, run.upwards(), max_bytes),
         };
         Self {
             name: run.name.clone(),
             scene,
             stages: run.rows.iter().map(|row| row.stage.clone()).collect(),
             shapes: run.rows.iter().map(|row| row.shape.to_string()).collect(),
-            beware: run.rows.iter().map(words::beware).collect(),
+            caution: run.rows.iter().map(words::caution).collect(),
             columns: all.chain(eigenvalues(run).iter().map(plotted)).collect(),
         }
     }
 }
 
-/// The lowest eigenvalue of every harmonic at every state, as `plica stability` has left it.
+/// Reads the lowest eigenvalue of every circumferential mode and state from the results of `plica stability`.
 fn eigenvalues(run: &Run<'_>) -> Vec<Column> {
     let table = run.directory.records("eigenvalues.csv").unwrap_or_default();
     let Some((heads, lines)) = table.split_first() else {

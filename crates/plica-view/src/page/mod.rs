@@ -1,20 +1,19 @@
-//! A run, or several beside each other, as one HTML page that needs nothing else: opened from disk, sent by mail, kept with a
-//! paper.
+//! Self-contained HTML pages of one or several runs.
 //!
-//! | file | holds |
+//! | file | content |
 //! |---|---|
-//! | `scene` | the walls of all states, sampled, quantised and packed |
-//! | `stops` | which states of several runs are shown together |
-//! | `known` | what the page's scripts know of a run |
-//! | `sheet` | what its template knows: tables and pictures |
-//! | `words` | what the run came to, and what to beware of |
-//! | `stability` | what `plica stability` has left |
-//! | `web/page.html` | the page's template |
-//! | `web/page.css` | how it looks: on a phone, in print, by day and by night |
-//! | `web/*.js` | what it does: the tube in three dimensions, plots, the slider that moves both |
-//! | `web/vendor/` | three.js and uPlot as they come, bundled by `scripts/bundle-page` |
+//! | `scene` | walls of all states, sampled, quantised and compressed |
+//! | `stops` | positions of the slider: states of several runs under similar loads |
+//! | `known` | data of a run for the scripts |
+//! | `sheet` | data of a run for the template: tables and pictures |
+//! | `words` | headline and warnings |
+//! | `stability` | results of `plica stability` |
+//! | `web/page.html` | template |
+//! | `web/page.css` | style for screens, print, light and dark mode |
+//! | `web/*.js` | the tube in three dimensions, plots, slider |
+//! | `web/vendor/` | three.js and uPlot, bundled by `scripts/bundle-page` |
 //!
-//! The numbers are in the page as JSON and, packed, as base64. Without scripts its words, tables and still pictures are there.
+//! The page contains the numbers as JSON and, compressed, as base64. Without scripts it still shows text, tables and pictures.
 
 mod known;
 mod scene;
@@ -35,51 +34,51 @@ use plica::study::{Plan, Row, Scale};
 use sheet::Sheet;
 use stops::Parts;
 
-/// Colours of the map that the page has.
+/// Number of colours per colour map.
 const COLOURS: usize = 256;
-/// Bytes of the states of all runs before they are packed, at most; packed and as text they are between a sixth and two fifths
-/// of that.
-const LARGEST: usize = 28_000_000;
+/// Maximum size of the states of all runs before compression, in bytes. Compressed and as base64 they take between a sixth
+/// and two fifths of it.
+const MAX_BYTES: usize = 28_000_000;
 
-/// A run to be shown.
+/// A run shown on a page.
 #[derive(Clone, Debug)]
 pub struct Run<'a> {
-    /// What it is called beside another.
+    /// Name of the run in a comparison.
     pub name: String,
-    /// What was computed.
+    /// Plan of the run.
     pub plan: &'a Plan,
-    /// Its history.
+    /// Rows of its history.
     pub rows: &'a [Row],
-    /// Those of its saved states that are to be drawn, in the order of their numbers; see [`drawn`].
+    /// Saved states to draw, in increasing order; see [`drawn`].
     pub states: &'a [SavedState],
-    /// How many states it has saved.
+    /// Number of saved states.
     pub saved: usize,
-    /// How many of these are not to be drawn.
+    /// Number of saved states that are not drawn.
     pub left_out: usize,
-    /// What of it could not be read, in words.
+    /// Descriptions of files that could not be read.
     pub unread: &'a [String],
-    /// Where its case, its tables and its pictures are.
+    /// Directory with the case, tables and pictures.
     pub directory: &'a RunDirectory,
 }
 
-/// Why a page could not be made.
+/// Errors of making a page.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
-    /// Two runs in different units.
+    /// Runs with different units.
     #[error("`{}` is in {} and `{}` in {}: give both cases the same units, or none", .0[0].0, .0[0].1, .0[1].0, .0[1].1)]
     Units([(String, String); 2]),
-    /// The template and what it is given do not fit, which is a fault of the program.
-    #[error("the page's template failed, which is a fault of plica: {0}")]
+    /// The template failed, which is a bug of this crate.
+    #[error("the template of the page failed, which is a bug of plica: {0}")]
     Template(#[from] minijinja::Error),
 }
 
 impl Run<'_> {
-    /// The angle around it that points up, in radians.
+    /// Returns the angle that points up, in radians.
     fn upwards(&self) -> f64 {
         upright(self.rows, &Scale::of(self.plan.units.as_ref()))
     }
 
-    /// Its states by their loads.
+    /// Returns the loads of its states.
     fn loads(&self) -> Vec<Parts> {
         let scale = Scale::of(self.plan.units.as_ref());
         let rows = self.rows.iter().map(|row| stops::of_row(row, &scale));
@@ -95,7 +94,7 @@ impl Run<'_> {
     }
 }
 
-/// A sentence as HTML, what is between backticks as code.
+/// Converts a sentence to HTML, with text between backticks as code.
 fn code(sentence: &str) -> Value {
     let parts = sentence.split('`').enumerate().map(|(i, part)| {
         let part = part.replace('&', "&amp;").replace('<', "&lt;");
@@ -107,15 +106,15 @@ fn code(sentence: &str) -> Value {
     Value::from_safe_string(parts.collect())
 }
 
-/// Which of the saved states of one of so many runs a page draws, so that it stays small.
+/// Selects the saved states of one of `runs` runs that a page draws, such that the page stays small.
 pub fn drawn(plan: &Plan, saved: &[usize], runs: usize) -> Vec<usize> {
-    scene::drawn(plan, saved, LARGEST / runs.max(1))
+    scene::drawn(plan, saved, MAX_BYTES / runs.max(1))
 }
 
-/// One run, or several with one slider.
+/// Returns the HTML page of one run, or of several runs with a common slider.
 ///
 /// # Errors
-/// [`PageError::Units`] if the runs' tables are in different units.
+/// [`PageError::Units`] if the runs have different units.
 pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
     for pair in runs.windows(2) {
         let [a, b] = [&pair[0], &pair[1]].map(|run| (run.name.clone(), run.units()));
@@ -126,7 +125,7 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
     let (mut known, mut sheets) = (vec![], vec![]);
     for run in runs {
         let columns = Column::of(run.rows, &Scale::of(run.plan.units.as_ref()));
-        let one = Known::of(run, &columns, LARGEST / runs.len());
+        let one = Known::of(run, &columns, MAX_BYTES / runs.len());
         sheets.push(Sheet::of(run, &columns, &one));
         known.push(one);
     }
@@ -143,7 +142,7 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
         "stops": stops,
         "steps": scene::STEPS,
         "colours": colours(ColourMap::default()),
-        "signed": colours(ColourMap::Diverging),
+        "diverging": colours(ColourMap::Diverging),
         "lines": lines,
     });
     let mut templates = Environment::new();
@@ -164,7 +163,7 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
             include_str!("web/plots.js"),
             include_str!("web/page.js"),
         ],
-        // Nothing in it may end the script it stands in.
+        // `<` is escaped so that the data cannot end the script element.
         data => data.to_string().replace('<', "\\u003c"),
     })?)
 }

@@ -1,4 +1,4 @@
-//! The walls of a path as numbers that a browser draws: sampled, quantised, packed.
+//! Walls of a path for the browser: sampling, quantisation, compression.
 
 use crate::draw::ColourMap;
 use crate::report::Field;
@@ -14,82 +14,82 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use std::io::Write;
 
-/// Levels through the wall: of a tube whose meridians are all the same, and of any other.
+/// Points through the wall: of an axisymmetric tube, and of any other.
 const LEVELS: [usize; 2] = [9, 5];
-/// Meridians that are drawn of a tube whose meridians are all the same.
-const TURNS: usize = 96;
-/// Points along and around, at most and at least: the finest that leaves the page small enough is taken.
-const FINENESS: [[usize; 2]; 4] = [[401, 60], [241, 48], [161, 40], [121, 32]];
-/// Steps of a coordinate, and of a value: 255 of the latter would show as bands.
+/// Number of meridians drawn of an axisymmetric tube.
+const MERIDIANS: usize = 96;
+/// Maximum numbers of points along and around, from fine to coarse. The first resolution within the size limit is used.
+const RESOLUTIONS: [[usize; 2]; 4] = [[401, 60], [241, 48], [161, 40], [121, 32]];
+/// Quantisation steps of a coordinate and of a field value; 255 steps would be visible as bands.
 pub const STEPS: (f64, f64) = (65535.0, 4095.0);
-/// What stands for a value that is none.
+/// Code of a missing value.
 const MISSING: u16 = u16::MAX;
-/// Numbers of a point, two bytes each.
+/// Numbers per point, two bytes each.
 const NUMBERS: usize = 3 + Field::ALL.len();
 
-/// A path of walls.
+/// Walls of all drawn states of a path.
 ///
-/// A state is a list of bytes: for each of its coordinates (along, up, towards the viewer) and then each of its fields the
-/// low bytes of all points and then the high bytes, of the difference to the point before, modulo 2¹⁶; of a coordinate in
-/// 65535 steps between `low` and `high`, of a field in 4095 steps between that state's own ends, or 65535 where it has no value. Points run along the tube,
-/// then through the wall, then around.
+/// A state is a list of bytes. For each coordinate (along, up, towards the viewer) and then for each field it contains the low
+/// bytes of all points followed by the high bytes. They encode the difference to the previous point modulo 2¹⁶, of a coordinate
+/// in 65535 steps between `low` and `high`, and of a field in 4095 steps between its ends in that state; 65535 is a missing
+/// value. Points are ordered along the tube, then through the wall, then around.
 #[derive(Clone, Debug, Serialize)]
 pub struct Scene {
-    /// Whether there is anything to draw.
+    /// True if there are states to draw.
     pub drawn: bool,
     /// Points along the tube, through the wall and around one sector.
     pub points: [usize; 3],
-    /// How often the sector is repeated around the tube.
-    pub turns: usize,
-    /// Least coordinates of all states, in the tables' unit of length.
+    /// Number of sectors around the tube.
+    pub sectors: usize,
+    /// Smallest coordinates of all states, in the unit of length of the tables.
     pub low: [f64; 3],
-    /// Largest.
+    /// Largest coordinates of all states.
     pub high: [f64; 3],
-    /// The outer diameter at rest in that unit.
+    /// Outer diameter at rest in that unit.
     pub diameter: f64,
-    /// The farthest that any point of any state is from the axis.
+    /// Largest distance of a point from the axis over all states.
     pub radius: f64,
-    /// The fields.
+    /// Fields.
     pub fields: Vec<Colouring>,
-    /// Which rows of the history the states are.
+    /// Rows of the history of the states.
     pub rows: Vec<usize>,
-    /// Drawn points at which a field has no value.
+    /// Number of points with a missing value.
     pub missing: usize,
-    /// The states, packed with zlib, as base64.
+    /// All states, compressed with zlib and encoded as base64.
     pub data: String,
 }
 
-/// A field of a path.
+/// A field and its colours.
 #[derive(Clone, Debug, Serialize)]
 pub struct Colouring {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// Its name beside a colour bar, as plain text.
+    /// Label of the colour bar, as plain text.
     pub label: String,
-    /// Whether its colours are those of two signs, with zero in the middle.
-    pub signed: bool,
-    /// What its colours span over the whole path.
+    /// True for a diverging colour map with zero in the middle.
+    pub diverging: bool,
+    /// Colour range for the whole path.
     pub range: [f64; 2],
-    /// Its least value.
-    pub least: f64,
-    /// Its largest.
-    pub largest: f64,
-    /// Its least and largest value in each state.
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Smallest and largest value in each state.
     pub ends: Vec<[f64; 2]>,
 }
 
-/// A state before it is quantised: by component or field, then by point.
+/// A state before quantisation: by component or field, then by point.
 struct Wall {
     position: [Vec<f64>; 3],
     values: Vec<Vec<f64>>,
 }
 
-/// Which of a run's saved states are drawn, in so many bytes at most before they are packed.
-pub fn drawn(plan: &Plan, saved: &[usize], largest: usize) -> Vec<usize> {
+/// Selects the saved states to draw, which take at most `max_bytes` before compression.
+pub fn drawn(plan: &Plan, saved: &[usize], max_bytes: usize) -> Vec<usize> {
     let tube = tube_of(plan);
-    let (points, _) = fineness(&tube, saved.len(), largest);
-    let every = (bytes(points) * saved.len()).div_ceil(largest).max(1);
-    // The last one always.
+    let (points, _) = resolution(&tube, saved.len(), max_bytes);
+    let every = (bytes(points) * saved.len()).div_ceil(max_bytes).max(1);
+    // The last state is always kept.
     let kept = |(i, _): &(usize, &usize)| (saved.len() - 1 - i).is_multiple_of(every);
     let kept = saved.iter().enumerate().filter(kept);
     kept.map(|(_, number)| *number).collect()
@@ -100,12 +100,12 @@ fn tube_of(plan: &Plan) -> SplineTube {
 }
 
 impl Scene {
-    /// The path of a run that has saved no state: its rows, and nothing to draw.
+    /// Creates a scene without states to draw, for a run that has saved none.
     pub fn without(plan: &Plan, rows: Vec<usize>) -> Self {
         Self {
             drawn: false,
             points: [0; 3],
-            turns: 0,
+            sectors: 0,
             low: [0.0; 3],
             high: [0.0; 3],
             diameter: Field::Displacement.label(plan).1,
@@ -117,17 +117,18 @@ impl Scene {
         }
     }
 
-    /// The states of a path; the meridian at the angle `upwards` comes first. As fine as so many bytes allow.
-    pub fn of(plan: &Plan, states: &[SavedState], upwards: f64, largest: usize) -> Self {
+    /// Samples the states of a path, starting at the meridian at the angle `upwards`, with the finest resolution that
+    /// `max_bytes` permits.
+    pub fn of(plan: &Plan, states: &[SavedState], upwards: f64, max_bytes: usize) -> Self {
         let tube = tube_of(plan);
-        let (points, turns) = fineness(&tube, states.len(), largest);
+        let (points, sectors) = resolution(&tube, states.len(), max_bytes);
         let labels: Vec<(String, f64)> = Field::ALL.iter().map(|f| f.label(plan)).collect();
         let length = Field::Displacement.label(plan).1;
         let walls: Vec<Wall> = states
             .par_iter()
             .map(|state| {
                 let at = |point| tube.sample(&state.load, &state.u, point);
-                Wall::of(&tube, points, turns, upwards, length, &labels, at)
+                Wall::of(&tube, points, sectors, upwards, length, &labels, at)
             })
             .collect();
 
@@ -150,14 +151,14 @@ impl Scene {
         let fields = Field::ALL.iter().zip(labels).enumerate();
         let colouring = fields.map(|(i, (field, (label, _)))| {
             let values = walls.iter().flat_map(|wall| &wall.values[i]).copied();
-            let spanned = field.range().resolve(values).ok();
+            let range = field.range().resolve(values).ok();
             Colouring {
                 name: field.name(),
                 label: crate::draw::label::plain(&label),
-                signed: field.map() == ColourMap::Diverging,
-                range: spanned.map_or([0.0, 1.0], |field| [field.low, field.high]),
-                least: spanned.map_or(0.0, |field| field.min),
-                largest: spanned.map_or(1.0, |field| field.max),
+                diverging: field.map() == ColourMap::Diverging,
+                range: range.map_or([0.0, 1.0], |field| [field.low, field.high]),
+                min: range.map_or(0.0, |field| field.min),
+                max: range.map_or(1.0, |field| field.max),
                 ends: walls
                     .iter()
                     .map(|wall| ends(wall.values[i].iter()))
@@ -167,7 +168,7 @@ impl Scene {
         Self {
             drawn: true,
             points,
-            turns,
+            sectors,
             low: bounds.map(|[low, _]| low),
             high: bounds.map(|[_, high]| high),
             diameter: length,
@@ -180,30 +181,33 @@ impl Scene {
     }
 }
 
-/// Bytes of a state.
+/// Resectors the size of a state in bytes.
 fn bytes(points: [usize; 3]) -> usize {
     points.iter().product::<usize>() * 2 * NUMBERS
 }
 
-/// Points along, through and around a sector, and how many sectors there are.
-fn fineness(tube: &SplineTube, states: usize, largest: usize) -> ([usize; 3], usize) {
+/// Resectors the number of points along, through and around a sector, and the number of sectors.
+fn resolution(tube: &SplineTube, states: usize, max_bytes: usize) -> ([usize; 3], usize) {
     let along = 2 * tube.axial.elements() + 1;
     let sector = &tube.sector;
     if sector.rings == 1 {
-        return ([along.min(FINENESS[0][0]), LEVELS[0], 1], TURNS);
+        return ([along.min(RESOLUTIONS[0][0]), LEVELS[0], 1], MERIDIANS);
     }
-    let turns = sector.around / sector.rings;
+    let sectors = sector.around / sector.rings;
     let of = |[most_along, most_around]: [usize; 2]| {
-        let around = (3 * sector.around).min(most_around).div_ceil(turns).max(2);
+        let around = (3 * sector.around)
+            .min(most_around)
+            .div_ceil(sectors)
+            .max(2);
         [along.min(most_along), LEVELS[1], around]
     };
-    let small = |points: &[usize; 3]| bytes(*points) * states <= largest;
-    let points = FINENESS.map(of).into_iter().find(small);
-    (points.unwrap_or(of(FINENESS[3])), turns)
+    let small = |points: &[usize; 3]| bytes(*points) * states <= max_bytes;
+    let points = RESOLUTIONS.map(of).into_iter().find(small);
+    (points.unwrap_or(of(RESOLUTIONS[3])), sectors)
 }
 
 impl Wall {
-    /// The farthest of its points from the axis.
+    /// Resectors the largest distance of a point from the axis.
     fn radius(&self) -> f64 {
         let [_, x, y] = &self.position;
         x.iter()
@@ -212,7 +216,7 @@ impl Wall {
             .fold(0.0, f64::max)
     }
 
-    /// Points without a value.
+    /// Resectors the number of points with a missing value.
     fn missing(&self) -> usize {
         let points = 0..self.position[0].len();
         let none = |p: &usize| self.values.iter().any(|values| !values[*p].is_finite());
@@ -222,7 +226,7 @@ impl Wall {
     fn of(
         tube: &SplineTube,
         [along, through, around]: [usize; 3],
-        turns: usize,
+        sectors: usize,
         upwards: f64,
         length: f64,
         labels: &[(String, f64)],
@@ -235,7 +239,7 @@ impl Wall {
         let (zs, radii) = (tube.axial.spread(along), tube.wall.spread(through));
         let (sin, cos) = upwards.sin_cos();
         for j in 0..around {
-            let angle = upwards + TAU * j as f64 / (around * turns) as f64;
+            let angle = upwards + TAU * j as f64 / (around * sectors) as f64;
             for &radius in &radii {
                 for &z in &zs {
                     let sample = sample(Point { z, radius, angle });
@@ -255,7 +259,7 @@ impl Wall {
     }
 }
 
-/// Least and largest of what is finite; nothing and nothing if none is.
+/// Returns the smallest and largest finite value, or zeros if there is none.
 fn ends<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let finite = values.filter(|x| x.is_finite());
@@ -263,22 +267,22 @@ fn ends<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
     if low <= high { [low, high] } else { [0.0, 0.0] }
 }
 
-/// Values in so many steps between two ends, each less the one before it.
+/// Quantises values in `steps` between two ends and returns the differences between consecutive values.
 fn differences(values: &[f64], [low, high]: [f64; 2], steps: f64) -> Vec<u16> {
     let scale = if high > low {
         steps / (high - low)
     } else {
         0.0
     };
-    let mut before = 0_u16;
+    let mut previous = 0_u16;
     let step = |&x: &f64| {
-        let now = if x.is_finite() {
+        let code = if x.is_finite() {
             ((x - low) * scale).round() as u16
         } else {
             MISSING
         };
-        let difference = now.wrapping_sub(before);
-        before = now;
+        let difference = code.wrapping_sub(previous);
+        previous = code;
         difference
     };
     values.iter().map(step).collect()
@@ -299,8 +303,8 @@ mod tests {
     use plica::tube::Symmetry;
     use std::io::Read;
 
-    /// What the page's script does, in Rust.
-    fn unpacked(bytes: &[u8], [low, high]: [f64; 2], steps: f64) -> Vec<f64> {
+    /// Decodes like the script of the page.
+    fn decoded(bytes: &[u8], [low, high]: [f64; 2], steps: f64) -> Vec<f64> {
         let (lows, highs) = bytes.split_at(bytes.len() / 2);
         let mut step = 0_u16;
         let number = |(a, b): (&u8, &u8)| {
@@ -310,7 +314,7 @@ mod tests {
         lows.iter().zip(highs).map(number).collect()
     }
 
-    fn is_where_the_tube_is(symmetry: Symmetry) {
+    fn decoded_scene_equals_the_tube(symmetry: Symmetry) {
         let plan = plan(symmetry);
         let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(symmetry));
         let (states, upwards) = ([1, 2].map(|row| state(&plan, row)), 0.4);
@@ -330,10 +334,10 @@ mod tests {
                 &bytes[start..start + 2 * count]
             };
             let position =
-                [0, 1, 2].map(|i| unpacked(part(i), [scene.low[i], scene.high[i]], STEPS.0));
+                [0, 1, 2].map(|i| decoded(part(i), [scene.low[i], scene.high[i]], STEPS.0));
             let fields = scene.fields.iter().enumerate();
             let values: Vec<Vec<f64>> = fields
-                .map(|(f, field)| unpacked(part(3 + f), field.ends[k], STEPS.1))
+                .map(|(f, field)| decoded(part(3 + f), field.ends[k], STEPS.1))
                 .collect();
             for point in (0..count).step_by(7) {
                 let (i, level, j) = (
@@ -341,7 +345,7 @@ mod tests {
                     point / along % through,
                     point / along / through,
                 );
-                let angle = TAU * j as f64 / (around * scene.turns) as f64;
+                let angle = TAU * j as f64 / (around * scene.sectors) as f64;
                 let sample = tube.sample(
                     &state.load,
                     &state.u,
@@ -353,10 +357,10 @@ mod tests {
                 );
                 let [z, x, y] = sample.position;
                 let (sin, cos) = upwards.sin_cos();
-                // Turned back by where it is to point up from.
-                let place = [z, x * cos + y * sin, y * cos - x * sin];
+                // Rotated so that the angle `upwards` points up.
+                let expected = [z, x * cos + y * sin, y * cos - x * sin];
                 for c in 0..3 {
-                    let off = (position[c][point] - place[c]).abs();
+                    let off = (position[c][point] - expected[c]).abs();
                     assert!(off <= (scene.high[c] - scene.low[c]) / STEPS.0, "{off}");
                 }
                 for (f, field) in Field::ALL.iter().enumerate() {
@@ -369,32 +373,32 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unpacked_is_where_the_tube_is() {
+    fn scenes_decode_to_the_sampled_walls() {
         for symmetry in [Symmetry::Axisymmetric, Symmetry::Fold(4), Symmetry::None] {
-            is_where_the_tube_is(symmetry);
+            decoded_scene_equals_the_tube(symmetry);
         }
     }
 
     #[test]
-    fn a_long_path_stays_small() {
+    fn scenes_stay_below_the_size_limit() {
         let plan = plan(Symmetry::None);
         let tube = SplineTube::new(&plan.tube, &plan.mesh, 12);
         let whole = |states: usize| {
-            let (points, turns) = fineness(&tube, states, 10_000_000);
-            assert_eq!(turns, 1);
+            let (points, sectors) = resolution(&tube, states, 10_000_000);
+            assert_eq!(sectors, 1);
             bytes(points) * states
         };
         assert!(whole(10) <= 10_000_000 && whole(100) <= 10_000_000);
         let saved: Vec<usize> = (0..7).collect();
-        let two = 2 * bytes(fineness(&tube, 7, 1).0);
-        // The last one always.
+        let two = 2 * bytes(resolution(&tube, 7, 1).0);
+        // The last state is always kept.
         assert_eq!(drawn(&plan, &saved, two), [2, 6]);
         assert_eq!(drawn(&plan, &saved, 100 * two), saved);
         assert!(drawn(&plan, &[], two).is_empty());
     }
 
     #[test]
-    fn what_has_no_value_spoils_nothing() {
+    fn missing_values_are_encoded_separately() {
         let values = [1.0, f64::NAN, 3.0, -f64::NAN, f64::INFINITY];
         assert_eq!(ends(values.iter()), [1.0, 3.0]);
         let steps = differences(&values, [1.0, 3.0], STEPS.1);
@@ -409,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_without_saved_states_has_its_rows() {
+    fn a_scene_without_states_contains_the_rows() {
         let scene = Scene::without(&plan(Symmetry::Axisymmetric), vec![0, 1, 2]);
         assert!(!scene.drawn && scene.data.is_empty() && scene.rows == [0, 1, 2]);
     }

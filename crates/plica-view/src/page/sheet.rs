@@ -1,4 +1,4 @@
-//! What the page's template knows of a run.
+//! Data of a run for the template of the page.
 
 use super::known::Known;
 use super::stability::Stability;
@@ -11,7 +11,7 @@ use plica::run_directory::Verdict;
 use plica::study::{Findings, Row, Scale};
 use serde::Serialize;
 
-/// A run as words, tables and pictures.
+/// Text, tables and pictures of a run.
 #[derive(Serialize)]
 pub struct Sheet {
     name: String,
@@ -20,10 +20,10 @@ pub struct Sheet {
     complete: bool,
     findings: Vec<(&'static str, String)>,
     warnings: Vec<String>,
-    /// What is said where there is no warning.
-    all_well: String,
+    /// Sentence shown if there are no warnings.
+    no_warnings: String,
     case: String,
-    /// Files that the case names and that it cannot be run without.
+    /// Files that the case refers to.
     needs: Vec<String>,
     manifest: serde_json::Value,
     mesh: String,
@@ -36,7 +36,7 @@ pub struct Sheet {
     pictures: Vec<Picture>,
 }
 
-/// A state.
+/// A row of the table of states.
 #[derive(Serialize)]
 struct Line {
     step: usize,
@@ -48,7 +48,7 @@ struct Line {
     drawn: bool,
 }
 
-/// A picture of the run's own.
+/// A picture from the run directory.
 #[derive(Serialize)]
 pub struct Picture {
     words: &'static str,
@@ -56,8 +56,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Those of a run's pictures that are there, with what is to be said of each.
-    pub fn those(run: &Run<'_>, names: &[(&str, &'static str)]) -> Vec<Self> {
+    /// Reads those of the given pictures that exist; each name comes with a caption.
+    pub fn read_all(run: &Run<'_>, names: &[(&str, &'static str)]) -> Vec<Self> {
         let read = |&(name, words): &(&str, &'static str)| {
             let data = STANDARD.encode(run.directory.read(name)?);
             Some(Self { words, data })
@@ -67,7 +67,7 @@ impl Picture {
 }
 
 impl Sheet {
-    /// Of a run whose walls are sampled.
+    /// Collects the data of a run.
     pub fn of(run: &Run<'_>, columns: &[Column], known: &Known) -> Self {
         let scale = Scale::of(run.plan.units.as_ref());
         let findings = Findings {
@@ -90,8 +90,8 @@ impl Sheet {
         let rings = mesh.rings(run.plan.symmetry);
         let symmetry = match rings {
             1 => "axisymmetric".to_owned(),
-            n if n == around => "nothing repeats around".into(),
-            n => format!("a sector of {n} rings that repeats {} times", around / n),
+            n if n == around => "the whole circumference".into(),
+            n => format!("a sector of {n} rings repeated {} times", around / n),
         };
         let seconds: f64 = run.rows.iter().map(|row| row.seconds).sum();
         let case = run.directory.read("case.toml").unwrap_or_default();
@@ -103,9 +103,9 @@ impl Sheet {
             title: run.plan.title.clone(),
             headline: words::headline(run, &findings),
             complete: run.directory.verdict() == Verdict::Complete,
-            findings: findings.lines().into_iter().map(set).collect(),
+            findings: findings.lines().into_iter().map(formatted).collect(),
             warnings: words::warnings(run, &known.scene),
-            all_well: words::all_well(run),
+            no_warnings: words::no_warnings(run),
             case: String::from_utf8_lossy(&case).into_owned(),
             needs: start.chain(modes).collect(),
             manifest: run.directory.manifest(),
@@ -114,21 +114,21 @@ impl Sheet {
             seconds: format!("{seconds:.1}"),
             drawn: if known.scene.drawn {
                 format!(
-                    "{along} × {} × {through} points of every state (along, around, through the wall)",
-                    meridians * known.scene.turns
+                    "{along} × {} × {through} points per state (along, around, through the wall)",
+                    meridians * known.scene.sectors
                 )
             } else {
-                "nothing: no state is saved in full".into()
+                "nothing, because no state is saved in full".into()
             },
             table: run.rows.iter().enumerate().map(line).collect(),
             heads: tabled.iter().map(|c| label::html(&c.label)).collect(),
             stability: Stability::of(run),
-            pictures: Picture::those(
+            pictures: Picture::read_all(
                 run,
                 &[
                     (
                         "tube.png",
-                        "The tube cut open at chosen states, coloured by strain energy density.",
+                        "The tube cut open at selected states, coloured by strain energy density.",
                     ),
                     ("walls.png", "Outer and inner wall at the same states."),
                 ],
@@ -137,28 +137,28 @@ impl Sheet {
     }
 }
 
-/// A finding, its units and numbers set as on the rest of the page.
-fn set((name, words): (&'static str, String)) -> (&'static str, String) {
+/// Formats the units and numbers of a finding for the page.
+fn formatted((name, words): (&'static str, String)) -> (&'static str, String) {
     let words = words
         .replace("D^3", "D³")
         .replace(" uJ", " µJ")
         .replace(" um", " µm");
-    (name, raised(&words))
+    (name, with_superscripts(&words))
 }
 
-/// A number in a table, with as many digits as a reader compares.
+/// Formats a number for the table.
 fn number(value: Option<f64>) -> String {
     match value {
         None => "–".into(),
         Some(0.0) => "0".into(),
         Some(x) if (1e-2..1e4).contains(&x.abs()) => format!("{x:.4}").replace('-', "−"),
-        Some(x) => raised(&format!("{x:.3e}")),
+        Some(x) => with_superscripts(&format!("{x:.3e}")),
     }
 }
 
-/// A text whose numbers such as -1.5e-4 are set as −1.5×10⁻⁴.
-fn raised(text: &str) -> String {
-    let set = |word: &str| {
+/// Replaces numbers such as -1.5e-4 by −1.5×10⁻⁴.
+fn with_superscripts(text: &str) -> String {
+    let format = |word: &str| {
         let end = word.trim_end_matches(|c: char| !c.is_ascii_digit()).len();
         let (bare, rest) = word.split_at(end);
         let begin = bare.len() - bare.trim_start_matches(|c: char| "(".contains(c)).len();
@@ -171,7 +171,7 @@ fn raised(text: &str) -> String {
             _ => word.to_owned(),
         }
     };
-    text.split(' ').map(set).collect::<Vec<String>>().join(" ")
+    text.split(' ').map(format).collect::<Vec<String>>().join(" ")
 }
 
 #[cfg(test)]
@@ -179,9 +179,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn powers_of_ten_are_raised_and_nothing_else() {
+    fn only_powers_of_ten_become_superscripts() {
         assert_eq!(
-            raised("W = -1.500e-4 D³ (residual 3e-12), 2 states, the end 1e5"),
+            with_superscripts("W = -1.500e-4 D³ (residual 3e-12), 2 states, the end 1e5"),
             "W = −1.500×10⁻⁴ D³ (residual 3×10⁻¹²), 2 states, the end 1×10⁵"
         );
         assert_eq!(number(Some(1.5e-5)), "1.500×10⁻⁵");

@@ -1,15 +1,15 @@
-//! What is known of a run's stability, as tables and sentences.
+//! Stability of a run as sentences and tables.
 
 use super::Run;
 use super::sheet::Picture;
 use serde::Serialize;
 
-/// The section of the page.
+/// Data of the section on stability.
 #[derive(Serialize)]
 pub struct Stability {
-    /// What was tested, and what came of it.
+    /// Summary of the tests.
     words: String,
-    /// What the table shows.
+    /// Caption of the table.
     caption: &'static str,
     heads: Vec<String>,
     lines: Vec<Vec<String>>,
@@ -17,15 +17,15 @@ pub struct Stability {
 }
 
 impl Stability {
-    /// From what `plica stability` has left, if it has.
+    /// Reads the results of `plica stability`, if any.
     pub fn of(run: &Run<'_>) -> Self {
         let table = |name: &str| run.directory.records(name);
         match (table("stability.csv"), table("eigenvalues.csv"), table("eigenpairs.csv")) {
             (Some(changes), Some(eigenvalues), _) => Self::of_harmonics(run, changes, &eigenvalues),
             (.., Some(pairs)) => Self::of_modes(run, pairs),
             _ => Self {
-                words: "Each state's row below says what it is unstable to, as far as the run has looked. More is found by `plica stability` on the \
-                        directory of this run; make this page again after it."
+                words: "The table of states shows the unstable modes that the run has found. Run `plica stability` on the directory of this \
+                        run for critical loads and modes, then make this page again."
                     .into(),
                 caption: "",
                 heads: vec![],
@@ -35,7 +35,7 @@ impl Stability {
         }
     }
 
-    /// Of an axisymmetric run.
+    /// Section for an axisymmetric run.
     fn of_harmonics(
         run: &Run<'_>,
         mut changes: Vec<Vec<String>>,
@@ -49,7 +49,7 @@ impl Stability {
         let column = |name: &str| heads.iter().position(|head| head == name);
         if let (Some(critical), Some(how)) = (column("critical"), column("how")) {
             for line in &mut changes {
-                // Half way between two states is no critical value where the path jumps, or was not followed.
+                // The midpoint of two states is no critical value if the path snaps or could not be followed in between.
                 match line[how].as_str() {
                     "snap" => line[critical] = "a snap".into(),
                     "unfollowed" => line[critical] = "unknown".into(),
@@ -60,10 +60,10 @@ impl Stability {
         for head in &mut heads {
             *head = head.replace('_', " ");
         }
-        let words = tested(eigenvalues, changes.is_empty());
+        let words = summary(eigenvalues, changes.is_empty());
         Self {
             words,
-            caption: "Where the path loses or regains stability, harmonic by harmonic; lengths in D, pressures in E.",
+            caption: "Points where the path loses or regains stability, for each circumferential mode; lengths in D, pressures in E.",
             heads,
             lines: changes,
             pictures: Picture::those(
@@ -71,15 +71,15 @@ impl Stability {
                 &[
                     (
                         "stability.png",
-                        "Lowest eigenvalues along the path. Where one falls below zero the tube leaves it in that harmonic.",
+                        "Lowest eigenvalues along the path. Where one is negative, the path is unstable to that circumferential mode.",
                     ),
-                    ("mode.png", "The first mode in which it does."),
+                    ("mode.png", "The first unstable mode."),
                 ],
             ),
         }
     }
 
-    /// Of a run in three dimensions.
+    /// Section for a three-dimensional run.
     fn of_modes(run: &Run<'_>, mut pairs: Vec<Vec<String>>) -> Self {
         let heads = if pairs.is_empty() {
             vec![]
@@ -95,26 +95,26 @@ impl Stability {
         let mut unstable: Vec<String> = pairs.iter().filter(negative).map(state).collect();
         unstable.dedup();
         let words = if unstable.is_empty() {
-            "No lowest eigenvalue that was found is negative.".into()
+            "All eigenvalues found are positive.".into()
         } else {
             format!(
-                "Negative eigenvalues were found of state{} {}.",
+                "Negative eigenvalues were found at state{} {}.",
                 if unstable.len() == 1 { "" } else { "s" },
                 unstable.join(", ")
             )
         };
         Self {
             words,
-            caption: "Lowest eigenvalues of the states' own tangent, in E/D², and the share of each harmonic in their modes.",
+            caption: "Lowest eigenvalues of the tangent, in E/D², and the share of each circumferential mode in their eigenvectors.",
             heads: heads.iter().map(|head| head.replace('_', " ")).collect(),
             lines: pairs,
             pictures: Picture::those(
                 run,
                 &[
-                    ("stability.png", "Lowest eigenvalues, state by state."),
+                    ("stability.png", "Lowest eigenvalues of each state."),
                     (
                         "mode.png",
-                        "The first unstable state, or else the last one looked at, and the tube displaced by its lowest modes.",
+                        "The first unstable state, or else the last tested one, and the tube displaced by its lowest modes.",
                     ),
                 ],
             ),
@@ -122,8 +122,8 @@ impl Stability {
     }
 }
 
-/// What the eigenvalues of all harmonics say, and whether that changes anywhere.
-fn tested(eigenvalues: &[Vec<String>], steady: bool) -> String {
+/// Summarises the eigenvalues of all circumferential modes; `steady` means that no mode changes its stability.
+fn summary(eigenvalues: &[Vec<String>], steady: bool) -> String {
     let Some((heads, lines)) = eigenvalues.split_first() else {
         return String::new();
     };
@@ -131,25 +131,25 @@ fn tested(eigenvalues: &[Vec<String>], steady: bool) -> String {
     let negative = negative.filter_map(|(i, head)| Some((i, head.strip_prefix("negative_")?)));
     let negative: Vec<(usize, &str)> = negative.collect();
     let highest = negative.last().map_or("0", |(_, n)| n);
-    let lost = negative.iter().filter(|(i, _)| {
+    let unstable = negative.iter().filter(|(i, _)| {
         let is = |line: &Vec<String>| {
             line.get(*i)
                 .is_some_and(|count| count != "0" && !count.is_empty())
         };
         lines.iter().any(is)
     });
-    let lost: Vec<&str> = lost.map(|(_, n)| *n).collect();
-    match (lost.is_empty(), steady) {
-        (true, _) => format!(
-            "Every saved state is stable to harmonics 0 to {highest}, as far as was tested."
-        ),
+    let unstable: Vec<&str> = unstable.map(|(_, n)| *n).collect();
+    match (unstable.is_empty(), steady) {
+        (true, _) => {
+            format!("Every tested state is stable to circumferential modes 0 to {highest}.")
+        }
         (false, true) => format!(
-            "The path begins unstable to harmonic(s) {} and stays so; harmonics 0 to {highest} were tested.",
-            lost.join(", ")
+            "The whole path is unstable to circumferential mode(s) {}; modes 0 to {highest} were tested.",
+            unstable.join(", ")
         ),
         (false, false) => format!(
-            "Harmonics 0 to {highest} were tested; somewhere on the path it is unstable to {}.",
-            lost.join(", ")
+            "Circumferential modes 0 to {highest} were tested; part of the path is unstable to mode(s) {}.",
+            unstable.join(", ")
         ),
     }
 }
@@ -164,20 +164,20 @@ mod tests {
     }
 
     #[test]
-    fn a_path_without_changes_is_not_stable_for_that() {
+    fn a_path_without_changes_may_be_unstable() {
         let heads = "state,negative_0,negative_1,lowest_0,lowest_1";
         let stable = table(&[heads, "0,0,0,1.0,1.0", "1,0,0,1.0,0.5"]);
-        assert!(tested(&stable, true).contains("stable to harmonics 0 to 1"));
+        assert!(summary(&stable, true).contains("stable to circumferential modes 0 to 1"));
         let unstable = table(&[heads, "0,0,2,1.0,-1.0", "1,0,2,1.0,-0.5"]);
-        let words = tested(&unstable, true);
+        let words = summary(&unstable, true);
         assert!(
-            words.contains("begins unstable to harmonic(s) 1"),
+            words.contains("whole path is unstable to circumferential mode(s) 1"),
             "{words}"
         );
-        let lost = table(&[heads, "0,0,0,1.0,1.0", "1,0,1,1.0,-0.5"]);
-        let words = tested(&lost, false);
+        let changing = table(&[heads, "0,0,0,1.0,1.0", "1,0,1,1.0,-0.5"]);
+        let words = summary(&changing, false);
         assert!(
-            words.contains("somewhere on the path it is unstable to 1"),
+            words.contains("part of the path is unstable to mode(s) 1"),
             "{words}"
         );
     }

@@ -1,27 +1,28 @@
-//! Which states of several runs are shown together.
+//! Positions of the slider: states of several runs under similar loads.
 
 use plica::saved_state::SavedState;
 use plica::study::{Row, Scale};
 use std::collections::BTreeMap;
 
-/// How near states count as equally near, in what loads vary by: then the one as far along its path is taken.
-const ALIKE: f64 = 1e-9;
+/// Difference of distances below which two states are equally close; the one at the same fraction of its path is chosen.
+const TOLERANCE: f64 = 1e-9;
 
-/// A stop of the slider: of every run the number of a drawn state, and how far its load is from that of the first named, in
-/// what loads vary by.
+/// A position of the slider: for every run the index of a drawn state, and the distance of its load from that of the leading
+/// run, relative to the variation of the loads.
 pub type Stop = Vec<(usize, f64)>;
 
-/// A load by the names of its parts; what has no name here is at rest.
+/// Components of a load by name; missing components are zero.
 pub type Parts = BTreeMap<String, f64>;
 
-/// The states of the run that has most, and of each other run those under the nearest load, as far as both vary; where nothing
-/// varies in both, as far along their paths. And which run has most. Runs are given by the loads of their states.
+/// Returns the index of the leading run, which has the most states, and the positions of the slider: each state of the leading
+/// run with the state of every other run under the nearest load, compared by the components that vary in both. Without
+/// such components, states at the same fraction of their paths are matched. `loads` holds the loads of all states by run.
 pub fn stops(loads: &[Vec<Parts>]) -> (usize, Vec<Stop>) {
-    let all = sizes(loads.iter().flatten());
-    // The first of those that have most.
+    let all = variations(loads.iter().flatten());
+    // The first of the runs with the most states.
     let most = |&a: &usize, &b: &usize| loads[a].len().cmp(&loads[b].len()).then(b.cmp(&a));
     let leader = (0..loads.len()).max_by(most).unwrap_or(0);
-    let varied: Vec<Parts> = loads.iter().map(|loads| sizes(loads.iter())).collect();
+    let varied: Vec<Parts> = loads.iter().map(|loads| variations(loads.iter())).collect();
     let common: Vec<Parts> = varied
         .iter()
         .map(|own| {
@@ -42,7 +43,7 @@ pub fn stops(loads: &[Vec<Parts>]) -> (usize, Vec<Stop>) {
             let least = (0..others.len()).map(off).fold(f64::INFINITY, f64::min);
             let place = along(k, loads[leader].len());
             let late = |&i: &usize| (along(i, others.len()) - place).abs();
-            let near = (0..others.len()).filter(|&i| off(i) <= least + ALIKE);
+            let near = (0..others.len()).filter(|&i| off(i) <= least + TOLERANCE);
             let best = near.min_by(|a, b| late(a).total_cmp(&late(b))).unwrap_or(0);
             (best, apart(&loads[leader][k], &others[best], &all))
         };
@@ -51,14 +52,14 @@ pub fn stops(loads: &[Vec<Parts>]) -> (usize, Vec<Stop>) {
     (leader, (0..loads[leader].len()).map(stop).collect())
 }
 
-/// The load of a saved state.
+/// Returns the load of a saved state.
 pub fn of_state(state: &SavedState) -> Parts {
     let load = &state.load;
     let names = state
         .muscles
         .iter()
         .map(|(name, _)| format!("muscle {name}"));
-    // Of a muscle at rest, 1 as well, and so nothing.
+    // The target of a muscle at rest is 1.
     let muscles = names.zip(load.muscles.iter().map(|target| target - 1.0));
     let [inner, outer] = load.pressures;
     let pressures = [inner.follower, outer.follower, inner.dead, outer.dead];
@@ -69,10 +70,10 @@ pub fn of_state(state: &SavedState) -> Parts {
         colon.twist,
         ileum.twist,
     ];
-    muscles.chain(outside(ends, pressures)).collect()
+    muscles.chain(external(ends, pressures)).collect()
 }
 
-/// The load of a row of the history in the tables' units, as far as it tells it: not of every muscle.
+/// Returns the load of a row of the history, which does not contain all muscles.
 pub fn of_row(row: &Row, scale: &Scale) -> Parts {
     let ends = [
         row.colon_displacement / scale.length,
@@ -87,12 +88,11 @@ pub fn of_row(row: &Row, scale: &Scale) -> Parts {
         row.outer_dead_load,
     ];
     let pressures = pressures.map(|p| p.unwrap_or(0.0) / scale.stress);
-    outside(ends, pressures).collect()
+    external(ends, pressures).collect()
 }
 
-/// What is done to a tube from outside: displacement and twist of its ends; pressures that follow the inner and the outer wall,
-/// and dead ones.
-fn outside(ends: [f64; 4], pressures: [f64; 4]) -> impl Iterator<Item = (String, f64)> {
+/// Names the components of the external load: displacements and twists of the ends, follower pressures, dead loads.
+fn external(ends: [f64; 4], pressures: [f64; 4]) -> impl Iterator<Item = (String, f64)> {
     let names = [
         "displacement colon",
         "displacement ileum",
@@ -107,8 +107,8 @@ fn outside(ends: [f64; 4], pressures: [f64; 4]) -> impl Iterator<Item = (String,
     names.map(String::from).into_iter().zip(values)
 }
 
-/// By how much each part varies.
-fn sizes<'a>(loads: impl Iterator<Item = &'a Parts>) -> Parts {
+/// Returns the variation of every component that varies.
+fn variations<'a>(loads: impl Iterator<Item = &'a Parts>) -> Parts {
     let mut ends: BTreeMap<&String, [f64; 2]> = BTreeMap::new();
     for (name, &x) in loads.flatten() {
         let [low, high] = ends.entry(name).or_insert([x, x]);
@@ -145,7 +145,7 @@ mod tests {
         stops(&[a, b].map(|run| run.iter().map(of_state).collect::<Vec<Parts>>()))
     }
 
-    /// The states of the second run that go with those of the first.
+    /// Returns the states of the second run that are matched with those of the first.
     fn pairs(a: &[SavedState], b: &[SavedState]) -> Vec<usize> {
         let (leader, stops) = both(a, b);
         assert_eq!(leader, 0);
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn like_loads_meet_whatever_their_numbers() {
+    fn states_are_matched_by_load() {
         let a = [1.0, 0.8, 0.6, 0.4, 0.2].map(|x| state(x, 0.0));
         let b = [1.0, 0.6, 0.2].map(|x| state(x, 0.0));
         assert_eq!(pairs(&a, &b), [0, 0, 1, 1, 2]);
@@ -165,13 +165,13 @@ mod tests {
     }
 
     #[test]
-    fn a_path_that_goes_back_meets_the_half_it_is_in() {
+    fn a_path_back_is_matched_with_itself() {
         let there_and_back = [1.0, 0.5, 0.2, 0.5, 1.0].map(|x| state(x, 0.0));
         assert_eq!(pairs(&there_and_back, &there_and_back), [0, 1, 2, 3, 4]);
     }
 
     #[test]
-    fn loads_with_nothing_in_common_go_side_by_side() {
+    fn loads_without_common_components_are_matched_by_fraction() {
         let a = [1.0, 0.8, 0.6, 0.4, 0.2].map(|x| state(x, 0.0));
         let b = [0.0, 1e-3, 2e-3].map(|x| state(1.0, x));
         assert_eq!(pairs(&a, &b), [0, 0, 1, 1, 2]);

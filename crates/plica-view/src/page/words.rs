@@ -1,4 +1,4 @@
-//! What a run came to, and what to beware of, in sentences.
+//! Headline and warnings of a run as sentences.
 
 use super::Run;
 use super::scene::Scene;
@@ -11,63 +11,63 @@ use plica::study::{Findings, Row};
 use plica::tube::Symmetry;
 use std::collections::BTreeMap;
 
-/// How the run ended and what the tube did.
+/// Returns sentences on the end of the run and the final shape of the tube.
 pub fn headline(run: &Run<'_>, findings: &Findings<'_>) -> String {
-    let told = run.directory.state_count().unwrap_or(0);
-    let missing = told.saturating_sub(run.rows.len());
+    let recorded = run.directory.state_count().unwrap_or(0);
+    let missing = recorded.saturating_sub(run.rows.len());
     if missing > 0 {
         return format!(
-            "Only {} of the run's {told} states could be read, and this page tells of no more.",
+            "Only {} of the {recorded} states of the run could be read; this page shows these.",
             run.rows.len()
         );
     }
     let ended = match run.directory.verdict() {
-        Verdict::Complete => "Every stage was done.",
-        Verdict::Lost => "The tube could not be followed to the end.",
-        Verdict::Stopped => "The run was stopped before its end.",
-        Verdict::Running => "The run has not ended, or was killed.",
+        Verdict::Complete => "All stages were completed.",
+        Verdict::Lost => "No equilibrium was found beyond the last state.",
+        Verdict::Stopped => "The run was stopped before it was complete.",
+        Verdict::Running => "The run is still in progress or was killed.",
     };
     let mut sentences = vec![ended.to_owned()];
     if let Some(last) = run.rows.last() {
-        sentences.extend(did(last, findings));
+        sentences.extend(final_shape(last, findings));
         sentences.extend(unstable(run));
     }
     sentences.join(" ")
 }
 
-/// What became of the tube.
-fn did(last: &Row, findings: &Findings<'_>) -> Vec<String> {
+/// Describes the last state.
+fn final_shape(last: &Row, findings: &Findings<'_>) -> Vec<String> {
     let unit = &findings.scale.length_name;
     let shape = match (findings.side(), last.shape) {
-        (Side::None, shape) => format!("At its last state the tube is {}.", shaped(shape)),
+        (Side::None, shape) => format!("In the last state the tube is {}.", described(shape)),
         (side, _) => format!(
-            "The tube invaginates toward the {side}, with an overhang of {:.3} {unit}.",
+            "The tube invaginates towards the {side} with an overhang of {:.3} {unit}.",
             last.overhang
         ),
     };
-    let far = format!("{:.3} {unit}", last.asymmetry);
-    let leans = match last.asymmetry_mode {
+    let amplitude = format!("{:.3} {unit}", last.asymmetry);
+    let asymmetry = match last.asymmetry_mode {
         _ if last.asymmetry <= VISIBLE * findings.scale.length => None,
         1 => Some(format!(
-            "It is not axisymmetric: its wall has moved sideways by {far}."
+            "It is not axisymmetric: its wall is displaced sideways by {amplitude}."
         )),
         2 => Some(format!(
-            "It is not axisymmetric: its wall is oval, by {far}."
+            "It is not axisymmetric: its cross-section is oval with amplitude {amplitude}."
         )),
         n => Some(format!(
-            "It is not axisymmetric: its wall has {n} waves around, of {far}."
+            "It is not axisymmetric: its wall has {n} circumferential waves with amplitude {amplitude}."
         )),
     };
-    let beware = beware(last).map(|what| format!("There {what}."));
-    std::iter::once(shape).chain(leans).chain(beware).collect()
+    let caution = caution(last).map(|what| format!("There {what}."));
+    std::iter::once(shape).chain(asymmetry).chain(caution).collect()
 }
 
-/// What makes of a state less than it seems.
-pub fn beware(row: &Row) -> Option<&'static str> {
+/// Returns the reason why a state is not physical or not an equilibrium, if any.
+pub fn caution(row: &Row) -> Option<&'static str> {
     if row.crosses_itself() {
-        Some("its wall crosses itself, which is not physical")
+        Some("the wall penetrates itself, which is not physical")
     } else if row.has_closed() {
-        Some("its lumen is closed, and what walls do there is not physical")
+        Some("the lumen is closed, and the walls are not physical where they meet")
     } else if !row.in_equilibrium {
         Some("it is not in equilibrium")
     } else {
@@ -75,7 +75,7 @@ pub fn beware(row: &Row) -> Option<&'static str> {
     }
 }
 
-fn shaped(shape: Shape) -> String {
+fn described(shape: Shape) -> String {
     match shape {
         Shape::V | Shape::U => format!("narrowed to a {shape}"),
         Shape::Square => "narrowed, with square walls".into(),
@@ -83,21 +83,22 @@ fn shaped(shape: Shape) -> String {
     }
 }
 
-/// The harmonics that are lost, with the states they are lost at.
+/// Names the unstable circumferential modes and the states at which they are unstable.
 fn unstable(run: &Run<'_>) -> Option<String> {
-    let mut lost: BTreeMap<UnstableMode, Vec<usize>> = BTreeMap::new();
+    let mut unstable: BTreeMap<UnstableMode, Vec<usize>> = BTreeMap::new();
     for row in run.rows {
         for mode in row.stability.unstable_modes() {
-            lost.entry(mode).or_default().push(row.step);
+            unstable.entry(mode).or_default().push(row.step);
         }
     }
-    let told =
-        (lost.iter()).map(|(mode, steps)| format!("to {} in {}", mode.describe(), states(steps)));
-    let told: Vec<String> = told.collect();
-    (!told.is_empty()).then(|| format!("Its path is unstable {}.", told.join(", and ")))
+    let phrase = |(mode, steps): (&UnstableMode, &Vec<usize>)| {
+        format!("to {} in {}", mode.describe(), states(steps))
+    };
+    let phrases: Vec<String> = unstable.iter().map(phrase).collect();
+    (!phrases.is_empty()).then(|| format!("The path is unstable {}.", phrases.join(", and ")))
 }
 
-/// Some states by their numbers.
+/// Lists states by their numbers.
 fn states(steps: &[usize]) -> String {
     match (steps.first(), steps.last()) {
         (Some(first), Some(last)) if steps.len() == 1 || first == last => format!("state {first}"),
@@ -109,8 +110,8 @@ fn states(steps: &[usize]) -> String {
     }
 }
 
-/// Whether the run itself can go the way of a harmonic, or its symmetry keeps it from that.
-fn own(symmetry: Symmetry, mode: UnstableMode) -> bool {
+/// Returns true if the symmetry of the run admits a circumferential mode.
+fn admits(symmetry: Symmetry, mode: UnstableMode) -> bool {
     use UnstableMode::{Circumferential, Lowest};
     match (symmetry, mode) {
         (_, Lowest | Circumferential(0)) | (Symmetry::None, _) => true,
@@ -119,13 +120,13 @@ fn own(symmetry: Symmetry, mode: UnstableMode) -> bool {
     }
 }
 
-/// What a reader must know before trusting it.
+/// Returns the warnings of a run.
 pub fn warnings(run: &Run<'_>, scene: &Scene) -> Vec<String> {
     let mut warnings = vec![];
     let manifest = run.directory.manifest();
     if run.directory.verdict() != Verdict::Complete {
         let text = manifest["verdict_text"].as_str();
-        let text = text.unwrap_or("the run has not ended (or was killed)");
+        let text = text.unwrap_or("the run is still in progress (or was killed)");
         warnings.push(format!("{}.", capital(text)));
     }
     warnings.extend(of_states(run.rows, run.plan.symmetry));
@@ -133,33 +134,33 @@ pub fn warnings(run: &Run<'_>, scene: &Scene) -> Vec<String> {
     let program = env!("CARGO_PKG_VERSION");
     if version != program {
         warnings.push(format!(
-            "The run was written by plica {version}, this page by {program}."
+            "The run was computed by plica {version}; this page was made by plica {program}."
         ));
     }
     if scene.missing > 0 {
         warnings.push(format!(
-            "At {} of the drawn points a field has no value: the wall is turned inside out there, between the points at which the run looks.",
+            "At {} of the drawn points a field has no value: elements are inverted there, between the integration points that the run checks.",
             scene.missing
         ));
     }
-    warnings.extend(run.unread.iter().map(|what| format!("Not read: {what}.")));
+    warnings.extend(run.unread.iter().map(|what| format!("Could not read: {what}.")));
     let drawn = run.states.len();
     if drawn == 0 {
         warnings.push(
-            "No state is saved in full that could be drawn; with `output.states_every` in its case the run would leave some."
+            "No state is saved in full, so none can be drawn. Set `output.states_every` in the case to save states."
                 .into(),
         );
         return warnings;
     }
     if run.left_out > 0 {
         warnings.push(format!(
-            "{} of the saved states are not drawn in three dimensions, so that this page stays small; their numbers are all here.",
+            "{} of the saved states are not drawn in three dimensions to keep this page small; their numbers are included.",
             run.left_out
         ));
     }
     if run.saved < run.rows.len() {
         warnings.push(format!(
-            "{} of {} states are saved in full; the others have their numbers here, and no picture.",
+            "{} of {} states are saved in full; of the others only the numbers are shown.",
             run.saved,
             run.rows.len()
         ));
@@ -167,10 +168,10 @@ pub fn warnings(run: &Run<'_>, scene: &Scene) -> Vec<String> {
     warnings
 }
 
-/// Those that the states give cause for.
+/// Returns the warnings about states.
 fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
     let mut warnings = vec![];
-    let mut those = |which: &dyn Fn(&Row) -> bool, what: &str| {
+    let mut warn = |which: &dyn Fn(&Row) -> bool, what: &str| {
         let steps: Vec<usize> = rows
             .iter()
             .filter(|row| which(row))
@@ -180,55 +181,55 @@ fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
             warnings.push(format!("{}: {what}", capital(&states(&steps))));
         }
     };
-    those(
+    warn(
         &|row| !row.in_equilibrium,
-        "accepted out of equilibrium, as the case's scheme allows.",
+        "accepted without equilibrium, as the scheme of the case permits.",
     );
-    those(
+    warn(
         &|row| row.crosses_itself(),
-        "the wall crosses itself; nothing holds it apart, and what it does there is not physical.",
+        "the wall penetrates itself. There is no contact, so the result is not physical there.",
     );
-    those(
+    warn(
         &|row| row.has_closed(),
-        "the lumen is closed; nothing holds opposite walls apart, and what they do there is not physical.",
+        "the lumen is closed. There is no contact between opposite walls, so the result is not physical there.",
     );
-    those(
+    warn(
         &|row| row.method == Method::Relaxation && row.step > 0,
-        "found by relaxation after Newton's way along the path had failed: on another branch, it may be, than the state before.",
+        "found by relaxation after Newton's method had failed; the state may be on another branch than the previous one.",
     );
-    let lost = |row: &Row, to_own: bool| {
+    let unstable = |row: &Row, admitted: bool| {
         let mut modes = row.stability.unstable_modes();
-        modes.any(|mode| own(symmetry, mode) == to_own)
+        modes.any(|mode| admits(symmetry, mode) == admitted)
     };
-    those(
-        &|row| lost(row, true),
-        "unstable to what this very run allows: saddles of the energy, which the tube would leave.",
+    warn(
+        &|row| unstable(row, true),
+        "unstable to modes that this run can represent: a saddle point of the energy, which a real tube would leave.",
     );
-    those(
-        &|row| lost(row, false),
-        "unstable to harmonics that the run's symmetry keeps from growing; a whole tube would leave them.",
+    warn(
+        &|row| unstable(row, false),
+        "unstable to circumferential modes that the symmetry of the run suppresses; a real tube would leave this state.",
     );
-    those(
+    warn(
         &|row| row.stability == Stability::Unknown,
-        "not shown to be stable or unstable.",
+        "stability not determined.",
     );
     warnings
 }
 
-/// What is said where nothing is to beware of: no more than was looked at.
-pub fn all_well(run: &Run<'_>) -> String {
+/// Returns the sentence for a run without warnings. It names what was checked.
+pub fn no_warnings(run: &Run<'_>) -> String {
     let tested = match run.plan.symmetry {
         Symmetry::Axisymmetric => format!(
-            "no state was found unstable (harmonics 0 to {} were tested; only 0 of one that is twisted)",
+            "no state is unstable (circumferential modes 0 to {} were tested; only mode 0 for twisted states)",
             run.plan.output.stability_modes
         ),
         _ => {
-            "no negative eigenvalue showed in the iterations that were allowed, which proves little"
+            "no negative eigenvalue was found within the permitted iterations, which is no proof of stability"
                 .into()
         }
     };
     format!(
-        "Nothing was found: every state is in equilibrium, no wall crosses itself, and {tested}."
+        "No warnings: every state is in equilibrium, no wall penetrates itself, and {tested}."
     )
 }
 
@@ -242,7 +243,7 @@ fn capital(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// A state of which nothing is to be said.
+    /// A state without warnings.
     fn row(step: usize) -> Row {
         let csv = "step,stage,length_ratio,diameter_ratio,colon_displacement,ileum_displacement,colon_twist_deg,ileum_twist_deg,energy,\
             energy_ungrown_volume,residual,damping_work,method,equilibrium,iterations,cg_iterations,seconds,outer_radius_min,z_at_min,\
@@ -255,19 +256,19 @@ mod tests {
     }
 
     #[test]
-    fn states_are_named_by_their_numbers() {
+    fn states_are_listed_by_number() {
         assert_eq!(states(&[3]), "state 3");
         assert_eq!(states(&[3, 4, 5]), "states 3 to 5");
         assert_eq!(states(&[3, 5]), "2 states from 3 to 5");
     }
 
     #[test]
-    fn nothing_is_said_of_a_sound_path() {
+    fn a_regular_path_has_no_warnings() {
         assert!(of_states(&[row(0), row(1)], Symmetry::Axisymmetric).is_empty());
     }
 
     #[test]
-    fn every_trouble_has_its_sentence() {
+    fn every_condition_has_a_warning() {
         let with = |change: fn(&mut Row)| {
             let mut rows = vec![row(0), row(1), row(2)];
             change(&mut rows[1]);
@@ -277,9 +278,9 @@ mod tests {
             (
                 (|row| row.in_equilibrium = false) as fn(&mut Row),
                 Symmetry::None,
-                "out of equilibrium",
+                "without equilibrium",
             ),
-            (|row| row.gap = 0.0, Symmetry::None, "crosses itself"),
+            (|row| row.gap = 0.0, Symmetry::None, "penetrates itself"),
             (
                 |row| row.lumen = -1e-3,
                 Symmetry::None,
@@ -293,44 +294,44 @@ mod tests {
             (
                 |row| row.stability = "unknown".parse().unwrap(),
                 Symmetry::None,
-                "not shown to be",
+                "not determined",
             ),
             (
                 |row| row.stability = "any:1".parse().unwrap(),
                 Symmetry::None,
-                "saddles",
+                "saddle point",
             ),
             (
                 |row| row.stability = "1:2".parse().unwrap(),
                 Symmetry::None,
-                "saddles",
+                "saddle point",
             ),
             (
                 |row| row.stability = "0:1".parse().unwrap(),
                 Symmetry::Axisymmetric,
-                "saddles",
+                "saddle point",
             ),
             (
                 |row| row.stability = "1:2".parse().unwrap(),
                 Symmetry::Axisymmetric,
-                "keeps from growing",
+                "suppresses",
             ),
             (
                 |row| row.stability = "4:2".parse().unwrap(),
                 Symmetry::Fold(2),
-                "saddles",
+                "saddle point",
             ),
             (
                 |row| row.stability = "3:2".parse().unwrap(),
                 Symmetry::Fold(2),
-                "keeps from growing",
+                "suppresses",
             ),
         ] {
-            let told = of_states(&with(change), symmetry);
-            assert_eq!(told.len(), 1, "{told:?}");
+            let found = of_states(&with(change), symmetry);
+            assert_eq!(found.len(), 1, "{found:?}");
             assert!(
-                told[0].starts_with("State 1: ") && told[0].contains(words),
-                "{told:?}"
+                found[0].starts_with("State 1: ") && found[0].contains(words),
+                "{found:?}"
             );
         }
     }

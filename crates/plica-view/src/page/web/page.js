@@ -1,5 +1,5 @@
 "use strict";
-// The slider and what follows it: tubes, plots, table, words.
+// The slider, and the views that it controls: tubes, plots, table and text.
 
 const $ = (id) => document.getElementById(id);
 
@@ -7,15 +7,15 @@ class Page {
   constructor(data) {
     this.data = data;
     this.runs = data.runs;
-    // Those with a tube, each with its place among all.
-    this.drawn = this.runs.map((run, place) => ({ run, place })).filter(({ run }) => run.scene.drawn);
+    // Runs with a tube, each with its index among all runs.
+    this.drawn = this.runs.map((run, index) => ({ run, index })).filter(({ run }) => run.scene.drawn);
     this.stops = data.stops;
     this.at = data.stops.length - 1;
     this.now = this.stops[this.at];
   }
 
   async begin() {
-    this.choices();
+    this.initialise();
     this.plots = [new Plot($("plot-energy"), (x) => this.goTo(x)), new Plot($("plot-measure"), (x) => this.goTo(x))];
     this.replot();
     this.go(this.at);
@@ -26,8 +26,8 @@ class Page {
       }
       if (this.drawn.length > 0) {
         const runs = this.drawn.map(({ run }) => run);
-        this.view = new View($("stage"), $("canvas"), runs, [this.data.colours, this.data.signed]);
-        this.view.onTurned = () => ($("view").selectedIndex = -1);
+        this.view = new View($("stage"), $("canvas"), runs, [this.data.colours, this.data.diverging]);
+        this.view.onRotate = () => ($("view").selectedIndex = -1);
         this.show();
       }
       $("waiting").remove();
@@ -39,43 +39,44 @@ class Page {
     document.body.dataset.ready = this.view || this.drawn.length === 0 ? "yes" : "no";
   }
 
-  /** Columns of any run, by their names. */
+  /** Returns the columns of all runs by name. */
   columns() {
     const all = new Map();
     this.runs.forEach((run) => run.columns.forEach((column) => all.has(column.name) || all.set(column.name, column)));
     return all;
   }
 
-  choices() {
+  /** Fills the menus and connects all controls. */
+  initialise() {
     for (const { name, label } of this.drawn[0]?.run.scene.fields ?? []) $("field").add(new Option(label, name));
     const columns = this.columns();
     const options = [...columns.values()];
     for (const { name, label, load } of options) {
       if (!load && name !== "energy") $("measure").add(new Option(label, name));
     }
-    // What happens on these paths, if it is one of these.
+    // Select the first of these columns that varies.
     const varies = (name) => this.runs.some((run) => this.column(run, name)?.values.some((x, _, all) => Math.abs((x ?? 0) - (all[0] ?? 0)) > 1e-3));
-    $("measure").value = ["overhang", "departure", "outer_radius_min"].find(varies) ?? options.find(({ load, name }) => !load && name !== "energy").name;
+    $("measure").value = ["overhang", "asymmetry", "outer_radius_min"].find(varies) ?? options.find(({ load, name }) => !load && name !== "energy").name;
     $("along").add(new Option("number of the state", "step"));
-    const driven = options.filter(({ name, load }) => load && this.runs.some((run) => this.rising(run, name).length > 2));
+    const driven = options.filter(({ name, load }) => load && this.runs.some((run) => this.monotone(run, name).length > 2));
     driven.forEach(({ name, label }) => $("along").add(new Option(label, name)));
-    // What most of every path goes along, if there is such a load.
-    const part = ({ name }) => Math.min(...this.runs.map((run) => this.rising(run, name).length / run.stages.length));
-    const most = driven.reduce((best, one) => (best && part(best) >= part(one) ? best : one), null);
-    if (most && part(most) > 0.5) $("along").value = most.name;
+    // Select the load that is monotone along the largest part of every path.
+    const fraction = ({ name }) => Math.min(...this.runs.map((run) => this.monotone(run, name).length / run.stages.length));
+    const most = driven.reduce((best, one) => (best && fraction(best) >= fraction(one) ? best : one), null);
+    if (most && fraction(most) > 0.5) $("along").value = most.name;
     $("stage").classList.toggle("many", this.drawn.length > 2);
     $("state").max = this.stops.length - 1;
-    const again = () => this.show();
-    ["field", "range", "ghost"].forEach((id) => $(id).addEventListener("change", again));
-    $("cut").addEventListener("input", again);
+    const update = () => this.show();
+    ["field", "range", "ghost"].forEach((id) => $(id).addEventListener("change", update));
+    $("cut").addEventListener("input", update);
     $("state").addEventListener("input", () => this.go(Number($("state").value)));
     ["measure", "along"].forEach((id) => $(id).addEventListener("change", () => this.replot()));
     $("view").addEventListener("change", () => this.view.look($("view").value));
     $("play").addEventListener("click", () => this.play());
-    $("keep").addEventListener("click", () => this.keep());
+    $("save").addEventListener("click", () => this.save());
     document.querySelectorAll("tr[data-step]").forEach((line) => {
       const button = line.querySelector("button");
-      // One stop of the tabulator for the table; arrows go on from there.
+      // The tab key reaches the first row only; arrow keys move between rows.
       button.tabIndex = line.previousElementSibling ? -1 : 0;
       button.addEventListener("keydown", (event) => {
         const to = { ArrowDown: line.nextElementSibling, ArrowUp: line.previousElementSibling }[event.key];
@@ -100,27 +101,27 @@ class Page {
     return run.columns.find((column) => column.name === name);
   }
 
-  /** The longest part of a path along which a quantity rises, or falls, all the way; as numbers of rows, the quantity rising. */
-  rising(run, name) {
+  /** Returns the rows of the longest part of a path on which a column is strictly monotone, in the order of increasing values. */
+  monotone(run, name) {
     const values = this.column(run, name)?.values ?? [];
     let best = [0, 0, 0];
     for (let from = 0, to = 1; to < values.length; to++) {
-      const way = Math.sign(values[to] - values[to - 1]);
-      const before = to - 1 > from ? Math.sign(values[to - 1] - values[to - 2]) : way;
-      if (way === 0) from = to;
-      else if (way !== before) from = to - 1;
-      // Of two that are as long, the later.
-      if (to - from >= best[1] - best[0]) best = [from, to, way];
+      const direction = Math.sign(values[to] - values[to - 1]);
+      const before = to - 1 > from ? Math.sign(values[to - 1] - values[to - 2]) : direction;
+      if (direction === 0) from = to;
+      else if (direction !== before) from = to - 1;
+      // Of two equally long parts, take the later one.
+      if (to - from >= best[1] - best[0]) best = [from, to, direction];
     }
     const rows = values.map((_, i) => i).slice(best[0], best[1] + 1);
     return best[2] < 0 ? rows.reverse() : rows;
   }
 
-  /** Rows of a run that the plots show, and their abscissae; none if it has not what is plotted along. */
+  /** Returns the plotted rows of a run and a function for their abscissae; no rows if the run lacks the column. */
   abscissa(run) {
     const name = $("along").value;
     if (name === "step") return { rows: run.stages.map((_, i) => i), of: (row) => row };
-    const rows = this.rising(run, name);
+    const rows = this.monotone(run, name);
     return rows.length < 2 ? { rows: [], of: () => null } : { rows, of: (row) => this.column(run, name).values[row] };
   }
 
@@ -138,44 +139,44 @@ class Page {
       this.plots[which].show(xLabel, label, series);
       this.plots[which].box.setAttribute("aria-label", `Plot: ${label} along ${xLabel}. Its numbers are in the table of states.`);
     });
-    const away = this.runs.map((run) => run.stages.length - this.abscissa(run).rows.length);
-    const names = this.runs.map((run, i) => (this.runs.length > 1 ? `${run.name}: ` : "") + `${away[i]} of ${run.stages.length} states`);
-    $("away").textContent = away.some((n) => n > 0)
-      ? `Not on these axes: ${names.filter((_, i) => away[i] > 0).join("; ")}, where this stands still or goes the other way. Along the number of the state, all are.`
+    const missing = this.runs.map((run) => run.stages.length - this.abscissa(run).rows.length);
+    const names = this.runs.map((run, i) => (this.runs.length > 1 ? `${run.name}: ` : "") + `${missing[i]} of ${run.stages.length} states`);
+    $("not-plotted").textContent = missing.some((n) => n > 0)
+      ? `Not plotted: ${names.filter((_, i) => missing[i] > 0).join("; ")}, because the horizontal quantity is not monotone there. Use the number of the state to plot all states.`
       : "";
     this.mark();
   }
 
-  /** Where the plots are marked: the state that is shown, of every run. */
+  /** Marks the shown state of every run in the plots. */
   mark() {
     ["energy", $("measure").value].forEach((name, which) => {
-      const places = this.runs.map((run, i) => {
+      const points = this.runs.map((run, i) => {
         const row = this.row(i);
         const { rows, of } = this.abscissa(run);
         return rows.includes(row) ? [of(row), this.column(run, name)?.values[row] ?? null] : null;
       });
-      this.plots[which].at(places);
+      this.plots[which].setMarks(points);
     });
   }
 
-  /** The row of the history that is shown of a run. */
+  /** Returns the shown row of the history of a run. */
   row(run) {
     return this.runs[run].scene.rows[this.now[run][0]];
   }
 
-  /** To the state nearest to an abscissa of the plots. */
+  /** Shows the state nearest to an abscissa of the plots. */
   goTo(x) {
     const run = this.runs[this.data.leader];
     const { rows, of } = this.abscissa(run);
-    const off = this.stops.map((stop) => {
+    const distances = this.stops.map((stop) => {
       const row = run.scene.rows[stop[this.data.leader][0]];
       return rows.includes(row) ? Math.abs(of(row) - x) : Infinity;
     });
-    const least = Math.min(...off);
-    if (least < Infinity && off.indexOf(least) !== this.at) this.go(off.indexOf(least));
+    const smallest = Math.min(...distances);
+    if (smallest < Infinity && distances.indexOf(smallest) !== this.at) this.go(distances.indexOf(smallest));
   }
 
-  /** To a row of the table: the stop that has it, or of that run alone where none has. */
+  /** Shows a row of the table: the slider position with this row, or only the state of this run if there is none. */
   goToRow(run, row) {
     const state = this.runs[run].scene.rows.indexOf(row);
     const stop = this.stops.findIndex((stop) => stop[run][0] === state);
@@ -184,7 +185,7 @@ class Page {
     this.show();
   }
 
-  /** To a stop of the slider. */
+  /** Moves the slider. */
   go(stop) {
     this.at = stop;
     this.now = this.stops[stop];
@@ -192,7 +193,7 @@ class Page {
     this.show();
   }
 
-  /** Shows the states that are chosen. */
+  /** Updates all views. */
   show() {
     if (this.drawn.length > 0) {
       const field = $("field").selectedIndex;
@@ -200,43 +201,43 @@ class Page {
       const cut = Number($("cut").value);
       this.view?.tubes.forEach((tube, i) => tube.show(this.state(i), field, range, cut, $("ghost").checked));
       this.view?.draw();
-      $("cut-told").textContent = `${cut}°`;
+      $("cut-value").textContent = `${cut}°`;
       this.labelBar(field, range);
     }
-    this.readOut();
+    this.describe();
     this.mark();
   }
 
-  /** The number among the drawn states of what is shown of the so many-th tube. */
+  /** Returns the index of the shown state of a tube among its drawn states. */
   state(tube) {
-    return this.now[this.drawn[tube].place][0];
+    return this.now[this.drawn[tube].index][0];
   }
 
-  /** Ends of the colours: of the whole of all paths, or of what is shown. */
+  /** Returns the colour range: of all paths, or of the shown states. */
   range(field) {
     const ends = this.drawn.map(({ run }, i) => {
       const one = run.scene.fields[field];
       return $("range").value === "path" ? one.range : one.ends[this.state(i)];
     });
     let [low, high] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
-    // Of a field of two signs zero is in the middle.
-    if (this.signed(field)) [low, high] = [-1, 1].map((sign) => sign * Math.max(-low, high));
+    // The range of a diverging map is symmetric about zero.
+    if (this.diverging(field)) [low, high] = [-1, 1].map((sign) => sign * Math.max(-low, high));
     return high > low ? [low, high] : [low - 0.5, low + 0.5];
   }
 
-  /** What is shown, in words: its load, as far as that varies, its energy and shape. */
-  readOut() {
+  /** Describes the shown states: the varying part of the load, the energy and the shape. */
+  describe() {
     const lines = this.runs.map((run, i) => {
       const row = this.row(i);
       const varies = ({ load, values }) => load && values.some((x) => x !== values[0]);
       const parts = run.columns.filter((column) => varies(column) || column.name === "energy");
-      const numbers = parts.map(({ label, values }) => `${label.replace("strain energy ", "")} ${told(values[row])}`);
+      const numbers = parts.map(({ label, values }) => `${label.replace("strain energy ", "")} ${formatted(values[row])}`);
       const name = this.runs.length > 1 ? `${run.name}, ` : "";
-      const off = this.now[i][1] > 0.02 ? " (the nearest load that this path has)" : "";
-      const beware = run.beware[row] ? `; ${run.beware[row]}` : "";
-      return `${name}state ${row} (${run.stages[row]}): ${numbers.join(", ")}; ${run.shapes[row]}${beware}${off}`;
+      const note = this.now[i][1] > 0.02 ? " (nearest load on this path)" : "";
+      const caution = run.caution[row] ? `; ${run.caution[row]}` : "";
+      return `${name}state ${row} (${run.stages[row]}): ${numbers.join(", ")}; ${run.shapes[row]}${caution}${note}`;
     });
-    $("told").replaceChildren(
+    $("status").replaceChildren(
       ...lines.map((line) => {
         const one = document.createElement("div");
         one.textContent = line;
@@ -248,24 +249,24 @@ class Page {
     this.runs.forEach((_, i) => document.querySelector(`tr[data-run="${i}"][data-step="${this.row(i)}"]`)?.classList.add("here"));
   }
 
-  /** Whether a field has the colours of two signs. */
-  signed(field) {
-    return this.drawn[0].run.scene.fields[field].signed;
+  /** Returns true for a field with a diverging colour map. */
+  diverging(field) {
+    return this.drawn[0].run.scene.fields[field].diverging;
   }
 
-  /** The colours of a field. */
+  /** Returns the colour map of a field. */
   colours(field) {
-    return this.signed(field) ? this.data.signed : this.data.colours;
+    return this.diverging(field) ? this.data.diverging : this.data.colours;
   }
 
-  /** The colour bar, with round numbers beneath; and how far values go beyond it. */
+  /** Draws the colour bar with round numbers below it, and notes values beyond its ends. */
   labelBar(field, [low, high]) {
     const fields = this.drawn.map(({ run }) => run.scene.fields[field]);
-    const ends = fields.map((one, i) => ($("range").value === "path" ? [one.least, one.largest] : one.ends[this.state(i)]));
-    const [least, largest] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
-    const hair = 1e-6 * (high - low);
-    const outside = [least < low - hair && `down to ${told(least, 3)}`, largest > high + hair && `up to ${told(largest, 3)}`].filter(Boolean);
-    const beyond = outside.length > 0 ? ` (${$("range").value === "path" ? "on the path" : "here"} ${outside.join(", ")})` : "";
+    const ends = fields.map((one, i) => ($("range").value === "path" ? [one.min, one.max] : one.ends[this.state(i)]));
+    const [min, max] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
+    const tolerance = 1e-6 * (high - low);
+    const outside = [min < low - tolerance && `down to ${formatted(min, 3)}`, max > high + tolerance && `up to ${formatted(max, 3)}`].filter(Boolean);
+    const beyond = outside.length > 0 ? ` (${$("range").value === "path" ? "on the path" : "in this state"} ${outside.join(", ")})` : "";
     const stops = this.colours(field).filter((_, i) => i % 15 === 0).map((rgb) => `rgb(${rgb})`);
     $("bar").style.background = `linear-gradient(to right, ${stops})`;
     $("bar-label").textContent = fields[0].label + beyond;
@@ -276,7 +277,7 @@ class Page {
     for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; n++) {
       const mark = document.createElement("span");
       mark.style.left = `${(100 * (n * step - low)) / (high - low)}%`;
-      mark.textContent = told(Number((n * step).toPrecision(10)), 4, Math.max(Math.abs(low), Math.abs(high)));
+      mark.textContent = formatted(Number((n * step).toPrecision(10)), 4, Math.max(Math.abs(low), Math.abs(high)));
       marks.push(mark);
     }
     $("bar-marks").replaceChildren(...marks);
@@ -287,12 +288,12 @@ class Page {
       clearInterval(this.playing);
       this.playing = null;
       $("play").textContent = "Play";
-      $("told").setAttribute("aria-live", "polite");
+      $("status").setAttribute("aria-live", "polite");
     };
     if (this.playing) return stop();
     if (this.at === this.stops.length - 1) this.go(0);
-    // No one could follow it read aloud.
-    $("told").setAttribute("aria-live", "off");
+    // A screen reader could not keep up.
+    $("status").setAttribute("aria-live", "off");
     $("play").textContent = "Pause";
     this.playing = setInterval(() => {
       if (this.at === this.stops.length - 1) return stop();
@@ -300,13 +301,13 @@ class Page {
     }, 150);
   }
 
-  /** What the canvas shows, with its colour bar and its words, as a file. */
-  keep() {
+  /** Saves the canvas with its colour bar and description as a PNG file. */
+  save() {
     this.view.now();
     const tube = $("canvas");
     const zoom = tube.width / tube.clientWidth;
     const page = document.createElement("canvas");
-    const lines = [...$("told").children].map((line) => line.textContent);
+    const lines = [...$("status").children].map((line) => line.textContent);
     [page.width, page.height] = [tube.width, tube.height + zoom * (70 + 18 * lines.length)];
     const pen = page.getContext("2d");
     pen.fillStyle = "#ffffff";

@@ -1,51 +1,51 @@
 "use strict";
-// Plots along the path; where the pointer is, there the tubes are.
+// Plots along the path. Moving the pointer over a plot selects a state.
 
-/** Whether the page is on its way to paper; the style hears of it too late. */
+/** True while the page is being printed, because the print style is applied too late for the plots. */
 let printing = false;
 const PRINTED = { "--ink": "#000000", "--rule": "#cccccc", "--faint": "#444444", "--paper": "#ffffff" };
 
-/** A colour of the page's style by its name. */
+/** Returns a colour of the page style. */
 const ink = (name) => (printing ? PRINTED[name] : null) ?? getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+const SUPERSCRIPTS = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 
-/** A number in so many digits; in a power of ten if it goes with some as large or small as `size`. */
-function told(x, digits = 5, size = Math.abs(x)) {
+/** Formats a number; `size` is the magnitude that decides between decimal and scientific notation. */
+function formatted(x, digits = 5, size = Math.abs(x)) {
   if (x === null || x === undefined) return "–";
   if (x === 0) return "0";
   if (size < 1e4 && size >= 1e-2) return String(Number(x.toPrecision(digits))).replace("-", "−");
   const [mantissa, exponent] = x.toExponential(Math.min(digits, 4) - 1).split("e");
-  const power = [...exponent.replace("+", "")].map((letter) => RAISED[letter]).join("");
+  const power = [...exponent.replace("+", "")].map((letter) => SUPERSCRIPTS[letter]).join("");
   return `${String(Number(mantissa)).replace("-", "−")}×10${power}`;
 }
 
-/** Ticks of an axis. */
+/** Formats the ticks of an axis. */
 function ticks(_, splits) {
   const largest = Math.max(...splits.map((x) => Math.abs(x ?? 0)));
-  return splits.map((x) => (x === null ? "" : told(x, 4, largest)));
+  return splits.map((x) => (x === null ? "" : formatted(x, 4, largest)));
 }
 
-/** Room for the longest tick of an axis, beside its name. */
-function wide(_, values) {
+/** Returns the width of an axis from its longest tick. */
+function axisWidth(_, values) {
   const longest = Math.max(0, ...(values ?? []).map((text) => text.length));
   return 44 + 6.5 * longest;
 }
 
-/** A little room at both ends. */
-function roomy(_, low, high) {
-  const room = 0.03 * (high - low) || 0.5;
-  return [low - room, high + room];
+/** Adds a margin at both ends. */
+function withMargins(_, low, high) {
+  const margin = 0.03 * (high - low) || 0.5;
+  return [low - margin, high + margin];
 }
 
-/** From zero where nothing is below. */
-function grounded(_, low, high) {
-  const room = 0.08 * (high - Math.min(low, 0)) || 1;
-  return [low >= 0 ? 0 : low - room, high + room];
+/** Starts at zero unless there are negative values. */
+function fromZero(_, low, high) {
+  const margin = 0.08 * (high - Math.min(low, 0)) || 1;
+  return [low >= 0 ? 0 : low - margin, high + margin];
 }
 
 class Plot {
-  /** `onState(x)` hears where the pointer is. */
+  /** `onState(x)` is called with the abscissa of the pointer. */
   constructor(box, onState) {
     this.box = box;
     this.onState = onState;
@@ -70,7 +70,7 @@ class Plot {
       grid: { stroke: ink("--rule"), width: 1 },
       ticks: { stroke: ink("--rule"), width: 1 },
       font: "12px system-ui, sans-serif",
-      // A long one has no more room than the plot is high.
+      // A long label must fit the height of the plot.
       labelFont: `${label.length > 34 ? 9.5 : 11.5}px system-ui, sans-serif`,
       values: ticks,
       ...more,
@@ -80,17 +80,17 @@ class Plot {
       height: this.height(),
       legend: { show: series.length > 1, live: false, markers: { width: 3 } },
       cursor: { drag: { x: false, y: false }, y: false, points: { size: 9 } },
-      scales: { x: { time: false, range: roomy }, y: { range: grounded } },
-      axes: [axis(xLabel, { size: 40, labelSize: 20 }), axis(yLabel, { size: wide, labelSize: 22 })],
+      scales: { x: { time: false, range: withMargins }, y: { range: fromZero } },
+      axes: [axis(xLabel, { size: 40, labelSize: 20 }), axis(yLabel, { size: axisWidth, labelSize: 22 })],
       series: [
         {},
         ...series.map(({ label, colour }, i) => ({
           label,
           stroke: colour,
           width: 1.8,
-          // One beneath another is seen between the dashes.
+          // Dashes keep coinciding curves visible.
           dash: i === 0 ? undefined : [7, 5],
-          // Between states of one run there may be some of another.
+          // The joined abscissae contain states of other runs.
           spanGaps: series.length > 1,
           points: { show: true, size: i === 0 ? 5 : 3.5, fill: colour, stroke: colour },
         })),
@@ -102,7 +102,7 @@ class Plot {
             if (left >= 0 && idx !== null && idx !== undefined) this.onState(plot.data[0][idx]);
           },
         ],
-        draw: [(plot) => this.mark(plot)],
+        draw: [(plot) => this.drawMarks(plot)],
       },
     };
     this.plot = new uPlot(options, data, this.box);
@@ -116,17 +116,17 @@ class Plot {
     if (this.plot) this.plot.setSize({ width: Math.max(this.box.clientWidth, 160), height: this.height() });
   }
 
-  /** Marks a place of every series: [x, y], or null. */
-  at(places) {
-    this.places = places;
+  /** Sets the marked point of every series: [x, y], or null. */
+  setMarks(points) {
+    this.marks = points;
     this.plot?.redraw(false);
   }
 
-  mark(plot) {
+  drawMarks(plot) {
     const { ctx, bbox } = plot;
-    (this.places ?? []).forEach((place, i) => {
-      if (!place || place[0] === null) return;
-      const x = plot.valToPos(place[0], "x", true);
+    (this.marks ?? []).forEach((point, i) => {
+      if (!point || point[0] === null) return;
+      const x = plot.valToPos(point[0], "x", true);
       if (x < bbox.left - 1 || x > bbox.left + bbox.width + 1) return;
       ctx.save();
       ctx.strokeStyle = ink("--faint");
@@ -135,12 +135,12 @@ class Plot {
       ctx.moveTo(x, bbox.top);
       ctx.lineTo(x, bbox.top + bbox.height);
       ctx.stroke();
-      if (place[1] !== null) {
+      if (point[1] !== null) {
         ctx.fillStyle = this.given.series[i]?.colour ?? ink("--ink");
         ctx.strokeStyle = ink("--paper");
         ctx.lineWidth = 2 * devicePixelRatio;
         ctx.beginPath();
-        ctx.arc(x, plot.valToPos(place[1], "y", true), 6 * devicePixelRatio, 0, 2 * Math.PI);
+        ctx.arc(x, plot.valToPos(point[1], "y", true), 6 * devicePixelRatio, 0, 2 * Math.PI);
         ctx.fill();
         ctx.stroke();
       }

@@ -1,7 +1,7 @@
 "use strict";
-// The walls of a path: unpacked, and made into triangles. How they are packed is told in page/scene.rs.
+// Walls of a path: decoding and triangulation. page/scene.rs describes the encoding.
 
-/** The bytes of zlib in base64. */
+/** Decodes base64 and decompresses zlib data. */
 async function unpacked(base64) {
   const packed = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -16,11 +16,11 @@ class Walls {
     this.scene = scene;
     this.bytes = bytes;
     this.count = this.along * this.through * this.around;
-    this.meridians = this.around * scene.turns;
+    this.meridians = this.around * scene.sectors;
     this.stride = 2 * this.count * (3 + scene.fields.length);
   }
 
-  /** The numbers of the stored points that come so many-th in a state, between two ends. */
+  /** Decodes one array of a state (a coordinate or a field) with values from `low` to `high`. */
   numbers(state, which, low, high, steps) {
     const start = state * this.stride + 2 * which * this.count;
     const out = new Float32Array(this.count);
@@ -31,23 +31,23 @@ class Walls {
     return out;
   }
 
-  /** Coordinates of the stored points of a state, one array each. */
+  /** Returns the coordinates of the stored points of a state, one array each. */
   coordinates(state) {
     const { low, high } = this.scene;
     return [0, 1, 2].map((i) => this.numbers(state, i, low[i], high[i], this.steps));
   }
 
-  /** A field at the stored points of a state; not a number where it has no value. */
+  /** Returns a field at the stored points of a state; NaN for missing values. */
   values(state, field) {
     const [low, high] = this.scene.fields[field].ends[state];
     const values = this.numbers(state, 3 + field, low, high, this.valueSteps);
-    // Beyond the last step, and by more than rounding, is what has no value.
+    // Values beyond the last step by more than rounding are missing.
     const beyond = high + (high - low) / this.valueSteps;
     return values.map((value) => (high > low && value > beyond ? NaN : value));
   }
 }
 
-/** A rectangle of vertices: rows across columns, at an offset in the arrays of a geometry. */
+/** A structured grid of vertices at an offset in the arrays of a geometry. */
 class Grid {
   constructor(offset, columns, rows, closed) {
     Object.assign(this, { offset, columns, rows, closed });
@@ -58,14 +58,14 @@ class Grid {
   at(column, row) {
     return this.offset + row * this.columns + column;
   }
-  /** The triangles between a row and the next. */
+  /** Appends the triangles between a row and the next. */
   strip(row, out) {
     for (let c = 0; c + 1 < this.columns; c++) {
       const [a, b, d, e] = [this.at(c, row), this.at(c + 1, row), this.at(c, row + 1), this.at(c + 1, row + 1)];
       out.push(a, b, d, b, e, d);
     }
   }
-  /** Normals from the differences between neighbours: along a row, times along a column. */
+  /** Computes normals as cross products of differences along rows and columns. */
   normals(position, normal) {
     const last = this.rows - 1;
     for (let r = 0; r < this.rows; r++) {
@@ -85,7 +85,7 @@ class Grid {
   }
 }
 
-/** A tube as two meshes: its faces and ends, and the two sections where it is cut open. */
+/** A tube as two meshes: the faces and ends, and the two cut faces. */
 class Tube {
   constructor(walls, colours) {
     this.walls = walls;
@@ -105,46 +105,46 @@ class Tube {
     this.grids = shell;
 
     this.sides = [0, 1].map((k) => new Grid(k * along * through, along, through, false));
-    this.section = geometry(2 * along * through);
+    this.cuts = geometry(2 * along * through);
     const across = [];
     this.sides.forEach((grid) => {
       for (let k = 0; k + 1 < through; k++) grid.strip(k, across);
     });
-    this.section.setIndex(across);
+    this.cuts.setIndex(across);
 
-    const look = { map: colours, side: THREE.DoubleSide };
-    this.solid = new THREE.MeshLambertMaterial(look);
-    this.ghost = new THREE.MeshLambertMaterial({ ...look, transparent: true, opacity: 0.16, depthWrite: false });
+    const material = { map: colours, side: THREE.DoubleSide };
+    this.solid = new THREE.MeshLambertMaterial(material);
+    this.ghost = new THREE.MeshLambertMaterial({ ...material, transparent: true, opacity: 0.16, depthWrite: false });
     this.group = new THREE.Group();
-    this.sectionMesh = new THREE.Mesh(this.section, this.solid);
-    this.group.add(new THREE.Mesh(this.shell, [this.solid, this.ghost]), this.sectionMesh);
+    this.cutMesh = new THREE.Mesh(this.cuts, this.solid);
+    this.group.add(new THREE.Mesh(this.shell, [this.solid, this.ghost]), this.cutMesh);
     this.group.children.forEach((mesh) => (mesh.frustumCulled = false));
   }
 
-  /** Shows a state, coloured by a field between two values, with degrees of the wall taken away. */
+  /** Shows a state coloured by a field from `low` to `high`, with `degrees` of the wall removed. */
   show(state, field, [low, high], degrees, ghost) {
     const { walls } = this;
     const { along, through, around, meridians } = walls;
     const [z, x, y] = walls.coordinates(state);
     const values = walls.values(state, field);
     const middle = 0.5 * (walls.scene.low[0] + walls.scene.high[0]);
-    const { signed } = walls.scene.fields[field];
+    const { diverging } = walls.scene.fields[field];
     const colour = (value) => (0.5 + 255 * Math.min(Math.max((value - low) / (high - low), 0), 1)) / 256;
-    const turns = Array.from({ length: walls.scene.turns }, (_, t) => {
-      const angle = (2 * Math.PI * t) / walls.scene.turns;
+    const rotations = Array.from({ length: walls.scene.sectors }, (_, sector) => {
+      const angle = (2 * Math.PI * sector) / walls.scene.sectors;
       return [Math.cos(angle), Math.sin(angle)];
     });
-    // A vertex from a stored point, turned.
+    // Sets a vertex to a stored point rotated into its sector.
     const put = (geometry, vertex, meridian, point) => {
-      const [cos, sin] = turns[Math.floor(meridian / around) % turns.length];
+      const [cos, sin] = rotations[Math.floor(meridian / around) % rotations.length];
       const position = geometry.attributes.position.array;
       position[3 * vertex] = z[point] - middle;
       position[3 * vertex + 1] = x[point] * cos - y[point] * sin;
       position[3 * vertex + 2] = x[point] * sin + y[point] * cos;
       const uv = geometry.attributes.uv.array;
       const value = values[point];
-      // The texture's second row is the colour of what has no value, the third are those of two signs.
-      [uv[2 * vertex], uv[2 * vertex + 1]] = Number.isNaN(value) ? [0, 0.5] : [colour(value), signed ? 5 / 6 : 1 / 6];
+      // Rows of the texture: sequential map, colour of missing values, diverging map.
+      [uv[2 * vertex], uv[2 * vertex + 1]] = Number.isNaN(value) ? [0, 0.5] : [colour(value), diverging ? 5 / 6 : 1 / 6];
     };
     const point = (meridian, level, i) => ((meridian % around) * through + level) * along + i;
     for (let j = 0; j <= meridians; j++) {
@@ -164,15 +164,15 @@ class Tube {
     this.shell.addGroup(first * this.perMeridian, (meridians - first) * this.perMeridian, 0);
     this.shell.addGroup(0, first * this.perMeridian, 1);
     this.ghost.visible = ghost;
-    this.sectionMesh.visible = first > 0;
+    this.cutMesh.visible = first > 0;
     [first, meridians].forEach((meridian, side) => {
       for (let k = 0; k < through; k++) {
         for (let i = 0; i < along; i++) {
-          put(this.section, this.sides[side].at(i, k), meridian, point(meridian, k, i));
+          put(this.cuts, this.sides[side].at(i, k), meridian, point(meridian, k, i));
         }
       }
     });
-    refresh(this.section, this.sides);
+    refresh(this.cuts, this.sides);
   }
 }
 

@@ -1,14 +1,14 @@
 "use strict";
-// The tubes on their canvas: light, camera, turning by mouse, touch and keys.
+// Canvas with the tubes: light, camera, and control by mouse, touch and keyboard.
 
-/** Directions of the viewer by name: (along the tube, up, towards the viewer). */
+/** Named directions towards the viewer: (along the tube, up, to the front). */
 const DIRECTIONS = {
   oblique: [-0.35, 0.42, 1],
   front: [0, 0, 1],
   colon: [-1, 0.3, 0.5],
   ileum: [1, 0.3, 0.5],
 };
-/** Room that a tube is given, in its largest diameter and at rest. */
+/** Height of the lane of a tube, in diameters at rest. */
 const LANE = 1.45;
 
 class View {
@@ -21,16 +21,16 @@ class View {
     this.camera = new THREE.PerspectiveCamera(24, 1, 0.05, 500);
     const sun = new THREE.DirectionalLight(0xffffff, 1.7);
     sun.position.set(-0.4, 0.9, 1);
-    // The light comes from over the viewer's shoulder, wherever the viewer is.
+    // The light moves with the viewer and comes from above one shoulder.
     this.camera.add(sun, sun.target);
     sun.target.position.set(0, 0, -1);
     this.scene.add(new THREE.AmbientLight(0xffffff, 1.45), this.camera);
 
-    const [plain, signed] = colours;
-    // Rows of the texture: see Tube.show.
-    const rows = [...plain, ...plain.map(() => [150, 150, 150]), ...signed];
+    const [sequential, diverging] = colours;
+    // Tube.show describes the rows of the texture.
+    const rows = [...sequential, ...sequential.map(() => [150, 150, 150]), ...diverging];
     const flat = new Uint8Array(rows.flatMap(([r, g, b]) => [r, g, b, 255]));
-    const map = new THREE.DataTexture(flat, plain.length, 3, THREE.RGBAFormat);
+    const map = new THREE.DataTexture(flat, sequential.length, 3, THREE.RGBAFormat);
     map.colorSpace = THREE.SRGBColorSpace;
     [map.minFilter, map.magFilter] = [THREE.LinearFilter, THREE.LinearFilter];
     map.needsUpdate = true;
@@ -51,14 +51,14 @@ class View {
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enablePan = true;
     this.controls.addEventListener("change", () => this.draw());
-    this.controls.addEventListener("start", () => this.onTurned?.());
+    this.controls.addEventListener("start", () => this.onRotate?.());
     canvas.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.resize()).observe(stage);
     this.resize();
     this.look("oblique");
   }
 
-  /** A text that stays at a place of the scene. */
+  /** Adds a text at a fixed position of the scene. */
   label(text, style, x, y) {
     const label = document.createElement("span");
     label.className = style;
@@ -67,7 +67,7 @@ class View {
     return { label, place: new THREE.Vector3(x, y, 0) };
   }
 
-  /** Looks at all tubes from a direction that has a name. */
+  /** Shows all tubes from a named direction. */
   look(name) {
     const height = this.lane * this.tubes.length;
     const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
@@ -82,14 +82,14 @@ class View {
 
   key(event) {
     const { camera } = this;
-    const turn = 0.12;
+    const angle = 0.12;
     const place = camera.position.clone().sub(this.controls.target);
     const axis = { ArrowLeft: [0, 1], ArrowRight: [0, -1], ArrowUp: [1, 0], ArrowDown: [-1, 0] }[event.key];
     if (axis) {
       const [over, about] = axis;
       const radius = place.length();
-      const polar = Math.min(Math.max(Math.acos(place.y / radius) - turn * over, 0.02), Math.PI - 0.02);
-      const azimuth = Math.atan2(place.x, place.z) - turn * about;
+      const polar = Math.min(Math.max(Math.acos(place.y / radius) - angle * over, 0.02), Math.PI - 0.02);
+      const azimuth = Math.atan2(place.x, place.z) - angle * about;
       place.set(Math.sin(polar) * Math.sin(azimuth), Math.cos(polar), Math.sin(polar) * Math.cos(azimuth)).multiplyScalar(radius);
     } else if (event.key === "+" || event.key === "=") {
       place.multiplyScalar(1 / 1.15);
@@ -103,7 +103,7 @@ class View {
       return;
     }
     event.preventDefault();
-    this.onTurned?.();
+    this.onRotate?.();
     camera.position.copy(place.add(this.controls.target));
     this.controls.update();
     this.draw();
@@ -118,7 +118,7 @@ class View {
     this.draw();
   }
 
-  /** Draws once, with the next picture of the screen. */
+  /** Requests one redraw with the next frame. */
   draw() {
     if (this.waiting) return;
     this.waiting = true;
