@@ -5,7 +5,7 @@ use super::runs::Ran;
 use plica::measure::{Face, Rotation, Wall};
 use plica::study::Row;
 use plica_view::draw::{Chart, Curve, Cutaway, Inset, Panel, Stroke};
-use plica_view::report::opened;
+use plica_view::report::open_tube_surfaces;
 
 /// Width of pictures, in pixels.
 const WIDTH: usize = 1000;
@@ -16,7 +16,7 @@ pub fn panel(ran: &Ran, row: &Row, label: impl Into<String>) -> Result<Panel, Tr
     let upwards = row.asymmetry_angle_deg.to_radians();
     Ok(Panel {
         label: label.into(),
-        surfaces: opened(ran.tube(), &state.load, &state.u, upwards),
+        surfaces: open_tube_surfaces(ran.tube(), &state.load, &state.u, upwards),
         ..Panel::default()
     })
 }

@@ -4,9 +4,10 @@
 //! |---|---|
 //! | `scene` | walls of all states, sampled, quantised and compressed |
 //! | `stops` | positions of the slider: states of several runs under similar loads |
-//! | `known` | data of a run for the scripts |
-//! | `sheet` | data of a run for the template: tables and pictures |
-//! | `words` | headline and warnings |
+//! | `data` | data of a run for the scripts |
+//! | `content` | data of a run for the template: tables and pictures |
+//! | `summary` | headline and warnings |
+//! | `picture` | pictures of the run directory |
 //! | `stability` | results of `plica stability` |
 //! | `web/page.html` | template |
 //! | `web/page.css` | style for screens, print, light and dark mode |
@@ -15,23 +16,24 @@
 //!
 //! The page contains the numbers as JSON and, compressed, as base64. Without scripts it still shows text, tables and pictures.
 
-mod known;
+mod content;
+mod data;
+mod picture;
 mod scene;
-mod sheet;
 mod stability;
 mod stops;
-mod words;
+mod summary;
 
 use crate::draw::ColourMap;
 use crate::draw::line_colour;
-use crate::report::{Column, upright};
-use known::Known;
+use crate::report::{Column, upward_angle};
+use content::Content;
+use data::RunData;
 use minijinja::value::{Serde, Value};
 use minijinja::{Environment, context};
 use plica::run_directory::RunDirectory;
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row, Scale};
-use sheet::Sheet;
 use stops::Parts;
 
 /// Number of colours per colour map.
@@ -75,7 +77,7 @@ pub enum PageError {
 impl Run<'_> {
     /// Returns the angle that points up, in radians.
     fn upwards(&self) -> f64 {
-        upright(self.rows, &Scale::of(self.plan.units.as_ref()))
+        upward_angle(self.rows, &Scale::of(self.plan.units.as_ref()))
     }
 
     /// Returns the loads of its states.
@@ -122,12 +124,12 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
             return Err(PageError::Units([a, b]));
         }
     }
-    let (mut known, mut sheets) = (vec![], vec![]);
+    let (mut data, mut contents) = (vec![], vec![]);
     for run in runs {
         let columns = Column::of(run.rows, &Scale::of(run.plan.units.as_ref()));
-        let one = Known::of(run, &columns, MAX_BYTES / runs.len());
-        sheets.push(Sheet::of(run, &columns, &one));
-        known.push(one);
+        let one = RunData::of(run, &columns, MAX_BYTES / runs.len());
+        contents.push(Content::of(run, &columns, &one));
+        data.push(one);
     }
     let loads: Vec<Vec<Parts>> = runs.iter().map(Run::loads).collect();
     let (leader, stops) = stops::stops(&loads);
@@ -137,7 +139,7 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
     };
     let lines = [1, 2, 3, 4].map(line_colour);
     let data = serde_json::json!({
-        "runs": known,
+        "runs": data,
         "leader": leader,
         "stops": stops,
         "steps": scene::STEPS,
@@ -150,7 +152,7 @@ pub fn page(runs: &[Run<'_>]) -> Result<String, PageError> {
     templates.add_template("page.html", include_str!("web/page.html"))?;
     let page = templates.get_template("page.html")?;
     Ok(page.render(context! {
-        runs => Serde(&sheets),
+        runs => Serde(&contents),
         drawn => runs.iter().any(|run| !run.states.is_empty()),
         version => env!("CARGO_PKG_VERSION"),
         style => include_str!("web/page.css"),

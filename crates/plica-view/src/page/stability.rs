@@ -1,7 +1,7 @@
 //! Stability of a run as sentences and tables.
 
 use super::Run;
-use super::sheet::Picture;
+use super::picture::Picture;
 use serde::Serialize;
 
 /// Data of the section on stability.
@@ -63,10 +63,10 @@ impl Stability {
         let words = summary(eigenvalues, changes.is_empty());
         Self {
             words,
-            caption: "Points where the path loses or regains stability, for each circumferential mode; lengths in D, pressures in E.",
+            caption: "Sampling where the path loses or regains stability, for each circumferential mode; lengths in D, pressures in E.",
             heads,
             lines: changes,
-            pictures: Picture::those(
+            pictures: Picture::read_all(
                 run,
                 &[
                     (
@@ -108,7 +108,7 @@ impl Stability {
             caption: "Lowest eigenvalues of the tangent, in E/D², and the share of each circumferential mode in their eigenvectors.",
             heads: heads.iter().map(|head| head.replace('_', " ")).collect(),
             lines: pairs,
-            pictures: Picture::those(
+            pictures: Picture::read_all(
                 run,
                 &[
                     ("stability.png", "Lowest eigenvalues of each state."),

@@ -1,39 +1,45 @@
-//! Numbers of states that are tabled and plotted.
+//! Columns of numbers for tables and plots.
 
-use super::Abscissa;
+use super::selection::Abscissa;
 use plica::study::{Row, Scale};
 
-/// What a column is good for.
+/// Use of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Part of the load.
     Load,
-    /// Worth a place in a table of states.
-    Tabled,
-    /// Worth a plot.
+    /// Shown in the table of states and in plots.
+    Table,
+    /// Shown in plots only.
     Other,
 }
 
-/// A number of every state.
+/// A quantity with one value per state.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// Its name in `history.csv`, or the like.
+    /// Name as in `history.csv`.
     pub name: String,
-    /// What it is called, with its unit, in the markup of [`crate::draw::label`].
+    /// Label with unit; it may contain the markup of [`crate::draw::Chart`].
     pub label: String,
-    /// What it is good for.
+    /// Use of the column.
     pub role: Role,
-    /// Its values; none where there is none, or none finite.
+    /// Values; `None` if missing or not finite.
     pub values: Vec<Option<f64>>,
 }
 
-/// What is read off a row of an end, and of a wall.
-type Held = fn(&Row) -> f64;
-type Pressed = fn(&Row) -> Option<f64>;
+/// Reads a property of an end from a row.
+type OfEnd = fn(&Row) -> f64;
+/// Reads a pressure on a wall from a row.
+type OfWall = fn(&Row) -> Option<f64>;
 
 impl Column {
-    /// Under a label with markup.
-    pub fn new(name: &str, label: &str, role: Role, values: impl Iterator<Item = f64>) -> Self {
+    /// Creates a column; values that are not finite become `None`.
+    pub(crate) fn new(
+        name: &str,
+        label: &str,
+        role: Role,
+        values: impl Iterator<Item = f64>,
+    ) -> Self {
         Self {
             name: name.into(),
             label: label.into(),
@@ -42,7 +48,7 @@ impl Column {
         }
     }
 
-    /// Those of a path that are plotted, those first that a reader asks for first; those that a run has not are left out.
+    /// Returns the columns of a path, the most important ones first, without those that do not occur.
     pub fn of(rows: &[Row], scale: &Scale) -> Vec<Self> {
         let length = |what: &str| format!("{what} ({})", unit(&scale.length_name));
         let energy = |what: &str| format!("{what} ({})", unit(&scale.energy_name));
@@ -62,7 +68,7 @@ impl Column {
         add("diameter_ratio", diameter_ratio, Role::Load, &|row| {
             Some(row.diameter_ratio)
         });
-        let ends: [(&str, String, Held); 4] = [
+        let ends: [(&str, String, OfEnd); 4] = [
             (
                 "colon_displacement",
                 length("displacement of the colon end"),
@@ -89,54 +95,47 @@ impl Column {
                 add(name, label, Role::Load, &|row| Some(of(row)));
             }
         }
-        let pressures: [(&str, &str, Pressed); 4] = [
+        let pressures: [(&str, &str, OfWall); 4] = [
             ("inner_pressure", "pressure on the inner wall", |row| {
                 row.inner_pressure
             }),
             ("outer_pressure", "pressure on the outer wall", |row| {
                 row.outer_pressure
             }),
-            (
-                "inner_dead_load",
-                "dead pressure on the inner wall",
-                |row| row.inner_dead_load,
-            ),
-            (
-                "outer_dead_load",
-                "dead pressure on the outer wall",
-                |row| row.outer_dead_load,
-            ),
+            ("inner_dead_load", "dead load on the inner wall", |row| {
+                row.inner_dead_load
+            }),
+            ("outer_dead_load", "dead load on the outer wall", |row| {
+                row.outer_dead_load
+            }),
         ];
         for (name, words, of) in pressures {
             if rows.iter().any(|row| of(row).is_some_and(|p| p != 0.0)) {
                 add(name, stress(words), Role::Load, &of);
             }
         }
-        add(
-            "energy",
-            energy("strain energy *W*"),
-            Role::Tabled,
-            &|row| Some(row.energy),
-        );
+        add("energy", energy("strain energy *W*"), Role::Table, &|row| {
+            Some(row.energy)
+        });
         add(
             "potential",
-            energy("strain energy and potential of the pressures"),
+            energy("strain energy plus potential of the pressures"),
             Role::Other,
             &|row| row.potential,
         );
         add(
             "max_wall_angle_deg",
             "steepest wall angle (°)".into(),
-            Role::Tabled,
+            Role::Table,
             &|row| Some(row.max_wall_angle_deg),
         );
-        add("overhang", length("overhang"), Role::Tabled, &|row| {
+        add("overhang", length("overhang"), Role::Table, &|row| {
             Some(row.overhang)
         });
         add(
             "outer_radius_min",
             length("smallest radius of the outer wall"),
-            Role::Tabled,
+            Role::Table,
             &|row| Some(row.outer_radius_min),
         );
         add("flatness", "flatness".into(), Role::Other, &|row| {
@@ -144,23 +143,20 @@ impl Column {
         });
         add(
             "gap",
-            length("nearest approach of the wall to itself"),
-            Role::Tabled,
+            length("smallest distance between parts of the wall"),
+            Role::Table,
             &|row| Some(row.gap),
         );
         add(
             "lumen",
-            length("narrowest width of the lumen"),
-            Role::Tabled,
+            length("smallest width of the lumen"),
+            Role::Table,
             &|row| Some(row.lumen),
         );
         if rows.iter().any(|row| row.asymmetry_mode > 0) {
-            add(
-                "asymmetry",
-                length("asymmetry from axisymmetry"),
-                Role::Tabled,
-                &|row| Some(row.asymmetry),
-            );
+            add("asymmetry", length("asymmetry"), Role::Table, &|row| {
+                Some(row.asymmetry)
+            });
         }
         add(
             "min_det_fe",
@@ -170,29 +166,29 @@ impl Column {
         );
         add(
             "damping_work",
-            energy("energy spent on drag"),
+            energy("work of damping"),
             Role::Other,
             &|row| Some(row.damping_work),
         );
         add(
             "residual",
-            "residual over the forces in play".into(),
+            "relative residual".into(),
             Role::Other,
             &|row| Some(row.residual),
         );
-        add("iterations", "linear solves".into(), Role::Other, &|row| {
+        add("iterations", "iterations".into(), Role::Other, &|row| {
             Some(row.iterations as f64)
         });
         columns
     }
 }
 
-/// A length that tells the scale of a picture: in D, and in words.
-pub(super) fn bar(scale: &Scale) -> (f64, String) {
+/// Returns the length of the scale bar of a picture in units of D, and its label.
+pub(super) fn scale_bar(scale: &Scale) -> (f64, String) {
     if scale.length_name == "D" {
         return (1.0, "*D*".into());
     }
-    // The round length that is next below a diameter.
+    // The largest round length up to one diameter.
     let ten = 10f64.powf(scale.length.log10().floor());
     let round = [5.0, 2.0, 1.0]
         .into_iter()
@@ -204,7 +200,7 @@ pub(super) fn bar(scale: &Scale) -> (f64, String) {
     )
 }
 
-/// A unit as it is set, with markup.
+/// Returns the label of a unit.
 pub(super) fn unit(name: &str) -> String {
     match name {
         "E D^3" => "*E* *D*^{3}".into(),

@@ -1,40 +1,40 @@
-//! Fields that a picture may be coloured by.
+//! Fields for the colours of a picture.
 
 use crate::draw::{ColourMap, Range};
 use plica::assembly::Sample;
 use plica::study::{Plan, Scale};
 
-/// A number at every point of the wall.
+/// A scalar field on the wall.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Field {
-    /// Strain energy density w, per grown volume.
+    /// Strain energy density w, per volume after growth.
     #[default]
     EnergyDensity,
     /// Von Mises stress.
     VonMises,
     /// Mean pressure −tr σ/3.
     Pressure,
-    /// Elastic change of volume, det Fe.
+    /// Elastic volume ratio det Fe.
     VolumeChange,
     /// Largest principal stretch of Fe.
     LargestStretch,
     /// Smallest principal stretch of Fe.
     SmallestStretch,
-    /// Grown over ungrown length along, θζ.
+    /// Longitudinal growth stretch θζ.
     GrownAlong,
-    /// Grown over ungrown length around, θη.
+    /// Circumferential growth stretch θη.
     GrownAround,
-    /// How far a point has moved from where it was at rest.
+    /// Magnitude of the displacement from the stress-free state.
     Displacement,
 }
 
-/// Energy densities below this, in E, are what rounding leaves of a wall without stress.
-const NOTHING: f64 = 1e-12;
-/// Stresses, in E, and displacements, in D, below this are the same.
+/// Energy densities below this, in units of E, are rounding errors of a stress-free wall.
+const ENERGY_ROUNDING: f64 = 1e-12;
+/// Stresses, in units of E, and displacements, in units of D, below this are rounding errors.
 const ROUNDING: f64 = 1e-12;
 
 impl Field {
-    /// All of them.
+    /// All fields.
     pub const ALL: [Self; 9] = [
         Self::EnergyDensity,
         Self::VonMises,
@@ -47,7 +47,7 @@ impl Field {
         Self::Displacement,
     ];
 
-    /// What it is asked for by.
+    /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::EnergyDensity => "energy",
@@ -62,7 +62,7 @@ impl Field {
         }
     }
 
-    /// Its colours: those of two signs where the sign says what it is.
+    /// Returns the colour map: diverging for a field of two signs.
     pub fn map(self) -> ColourMap {
         match self {
             Self::Pressure => ColourMap::Diverging,
@@ -70,7 +70,7 @@ impl Field {
         }
     }
 
-    /// What its colours span where nothing else is asked for.
+    /// Returns the default rule for the colour range.
     pub fn range(self) -> Range {
         match self.map() {
             ColourMap::Diverging => Range::Symmetric,
@@ -78,11 +78,11 @@ impl Field {
         }
     }
 
-    /// Its value at a point, dimensionless.
+    /// Returns the dimensionless value at a point.
     pub fn of(self, sample: &Sample) -> f64 {
         let s = sample.stress.0;
         match self {
-            Self::EnergyDensity if sample.energy_density < NOTHING => 0.0,
+            Self::EnergyDensity if sample.energy_density < ENERGY_ROUNDING => 0.0,
             Self::EnergyDensity => sample.energy_density,
             Self::VonMises => above_rounding(sample.von_mises()),
             Self::Pressure => above_rounding(-(s[0][0] + s[1][1] + s[2][2]) / 3.0),
@@ -98,7 +98,7 @@ impl Field {
         }
     }
 
-    /// What it is called beside a colour bar, with its unit, and by how much its values are to be multiplied.
+    /// Returns the label of the colour bar with the unit, and the factor from dimensionless values to this unit.
     pub fn label(self, plan: &Plan) -> (String, f64) {
         let scale = Scale::of(plan.units.as_ref());
         let bare = plan.units.is_none();
@@ -117,11 +117,11 @@ impl Field {
             Self::EnergyDensity => stress("strain energy density", "*w*"),
             Self::VonMises => stress("von Mises stress", "*σ*_{v}"),
             Self::Pressure => stress("pressure in the wall", "*p*"),
-            Self::VolumeChange => plain("elastic change of volume det *F*_{e}"),
+            Self::VolumeChange => plain("elastic volume ratio det *F*_{e}"),
             Self::LargestStretch => plain("largest elastic stretch *λ*_{1}"),
             Self::SmallestStretch => plain("smallest elastic stretch *λ*_{3}"),
-            Self::GrownAlong => plain("grown length along *θ*_{ζ}"),
-            Self::GrownAround => plain("grown length around *θ*_{η}"),
+            Self::GrownAlong => plain("longitudinal growth stretch *θ*_{ζ}"),
+            Self::GrownAround => plain("circumferential growth stretch *θ*_{η}"),
             Self::Displacement if bare => plain("displacement/*D*"),
             Self::Displacement => {
                 let unit = scale.length_name.replace("um", "µm");
@@ -131,7 +131,7 @@ impl Field {
     }
 }
 
-/// A number, or zero where it is what rounding leaves of a wall at rest.
+/// Replaces rounding errors by zero.
 fn above_rounding(x: f64) -> f64 {
     if x.abs() < ROUNDING { 0.0 } else { x }
 }

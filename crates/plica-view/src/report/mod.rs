@@ -1,27 +1,24 @@
-//! What a finished run looks like: charts of its path, its walls and its tube; and of what a test
-//! of its stability found.
+//! Pictures, plots and animations of a run and of its stability analysis.
 
 mod columns;
 mod field;
 mod modes;
-mod opened;
+mod orientation;
 mod pictures;
 mod plots;
+mod render;
+mod sampling;
+mod selection;
 mod stability;
-mod states;
-mod story;
-mod tolerance;
-mod upright;
+mod surfaces;
 mod walls;
 
 pub use columns::{Column, Role};
 pub use field::Field;
 pub use modes::mode_pictures;
-pub use opened::{Look, Points, looked_at, opened};
+pub(crate) use orientation::{VISIBLE_ASYMMETRY, upward_angle};
 pub use pictures::pictures;
 pub use plots::{plot, plot_walls};
+pub use render::{Appearance, Shown, animate, render};
 pub use stability::stability_pictures;
-pub use states::{Appearance, Shown, animate, render};
-pub use story::{Abscissa, Story};
-pub use tolerance::Tolerance;
-pub use upright::{VISIBLE, upright};
+pub use surfaces::open_tube_surfaces;

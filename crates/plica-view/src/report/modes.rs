@@ -1,4 +1,4 @@
-//! The pictures of the lowest modes of a three-dimensional run.
+//! Pictures of the lowest modes of a three-dimensional run.
 
 use crate::draw::{
     Chart, ColourMap, Curve, Cutaway, DrawError, Opening, Panel, REAR_HALF, Range, Stroke, Surface,
@@ -8,17 +8,17 @@ use plica::stability::{Eigenvalue, Shown, Spectra, Spectrum};
 use plica::study::Plan;
 use plica::tube::Tube;
 
-/// Width of every picture, in pixels.
+/// Width of the pictures in pixels.
 const WIDTH: usize = 1800;
-/// Amplitude to which a mode is drawn, in D.
-const VISIBLE: f64 = 0.08;
-/// Modes that are drawn at most.
-const MODES: usize = 3;
+/// Amplitude of the drawn modes, in units of D.
+const MODE_AMPLITUDE: f64 = 0.08;
+/// Maximum number of modes drawn.
+const MAX_MODES: usize = 3;
 
-/// Draws the lowest eigenpairs that were found: names of files and their PNG bytes.
+/// Draws the lowest eigenpairs; returns file names and PNG data.
 ///
-/// - `stability.png`: the lowest eigenvalues state by state, if there are several states;
-/// - `mode.png`: a state and the tube displaced by each of its lowest modes.
+/// - `stability.png`: the lowest eigenvalues of every state, if there are several states;
+/// - `mode.png`: a state, and the tube displaced by each of its lowest modes.
 ///
 /// # Errors
 /// [`DrawError`] if there is nothing to draw.
@@ -35,7 +35,7 @@ pub fn mode_pictures(plan: &Plan, found: &Spectra) -> Result<Vec<(String, Vec<u8
     Ok(pictures)
 }
 
-/// The lowest, the second, … eigenvalue of every state.
+/// Plots the lowest eigenvalues of all states.
 fn eigenvalues(states: &[Spectrum]) -> Chart {
     let x = |state: &Spectrum| state.row as f64;
     let (first, last) = (x(&states[0]), x(&states[states.len() - 1]));
@@ -63,13 +63,13 @@ fn eigenvalues(states: &[Spectrum]) -> Chart {
     }
 }
 
-/// The state, and the tube displaced by each mode.
+/// Draws the state, and the tube displaced by each mode.
 fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
     let rings = plan.mesh.rings(plan.symmetry);
     let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
     let panel = |(number, (shape, eigenvalue)): (usize, (&Vec<f64>, &Eigenvalue))| Panel {
         label: format!(
-            "mode {number}, *ν* = {:.2e} *E*/*D*^{{2}}, harmonics {} (drawn to {VISIBLE} *D*)",
+            "mode {number}, *ν* = {:.2e} *E*/*D*^{{2}}, circumferential modes {} (drawn with amplitude {MODE_AMPLITUDE} *D*)",
             eigenvalue.value,
             eigenvalue.content()
         ),
@@ -90,7 +90,7 @@ fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
     Cutaway {
         title: plan.title.clone(),
         panels: std::iter::once(state)
-            .chain(numbered.take(MODES).map(panel))
+            .chain(numbered.take(MAX_MODES).map(panel))
             .collect(),
         value_label: "radial displacement of the mode".into(),
         range: Range::Given(-1.0, 1.0),
@@ -99,8 +99,8 @@ fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
     }
 }
 
-/// The surfaces of the tube with its near half taken away, displaced by a mode and coloured by its
-/// radial displacement in units of its largest displacement.
+/// Returns the surfaces of the tube without its near half, displaced by a mode and coloured by the radial displacement
+/// divided by the largest displacement.
 fn surfaces(tube: &SplineTube, shown: &Shown, shape: Option<&Vec<f64>>) -> Vec<Surface> {
     let along = tube.axial.elements();
     let opening = Opening::uniform(REAR_HALF, [2 * along + 1, 97, 9]);
@@ -129,7 +129,7 @@ fn surfaces(tube: &SplineTube, shown: &Shown, shape: Option<&Vec<f64>>) -> Vec<S
         let mut value = 0.0;
         if let Some(shape) = shape {
             let (_, [dz, dx, dy]) = moved(shape, at);
-            let scale = VISIBLE / largest;
+            let scale = MODE_AMPLITUDE / largest;
             (z, x, y) = (z + scale * dz, x + scale * dx, y + scale * dy);
             let (sin, cos) = angle.sin_cos();
             value = ((dx * cos + dy * sin) / largest).clamp(-1.0, 1.0);

@@ -1,10 +1,11 @@
-//! The pictures of a run.
+//! Standard pictures of a run.
 
-use super::columns::{bar, unit};
-use super::opened::{Look, looked_at};
-use super::upright::upright;
+use super::Field;
+use super::columns::{scale_bar, unit};
+use super::orientation::upward_angle;
+use super::selection::Selection;
+use super::surfaces::{SurfaceOptions, tube_surfaces};
 use super::walls::{Wall, walls};
-use super::{Field, Story};
 use crate::draw::{Chart, Compression, Curve, Cutaway, DrawError, Marker, Panel, VerticalLine};
 use plica::assembly::SplineTube;
 use plica::measure::Shape;
@@ -12,38 +13,41 @@ use plica::run_directory::{Snapshot, Summary};
 use plica::study::{Plan, Row, Scale};
 use rayon::prelude::*;
 
-/// Width of the pictures of a run, in pixels: a first look, for which somebody waits.
+/// Width of the pictures in pixels; small, because they are drawn while the user waits.
 const WIDTH: usize = 1200;
 
-/// Pieces along and points through the wall at which its energy is looked at first: it peaks at the faces.
+/// Intervals along the tube and points through the wall of the first sampling of the energy density, which peaks at the faces.
 const COARSE: [usize; 2] = [160, 5];
 
-/// Draws a run: names of files and their PNG bytes. Nothing if the run kept no snapshots; of a chosen state without one no more
-/// than its energy.
+/// Draws a run; returns file names and PNG data. The result is empty for a run without snapshots; a selected state without a
+/// snapshot appears only in the energy.
 ///
 /// - `energy.png`: strain energy along the path;
-/// - `walls.png`: outer and inner wall at chosen states;
+/// - `walls.png`: outer and inner wall at selected states;
 /// - `tube.png`: the tube cut open at the same states, coloured by strain energy density.
+///
+/// # Errors
+/// [`DrawError`] if a picture has no finite value.
 pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
     if summary.snapshots().is_empty() || summary.rows().len() < 2 {
         return Ok(vec![]);
     }
     let rings = plan.mesh.rings(plan.symmetry);
     let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
-    let story = Story::of(summary);
+    let selection = Selection::of(summary);
     let scale = Scale::of(plan.units.as_ref());
     let state = |row: &&Row| {
         let Snapshot { load, u } = summary.snapshots()[row.step].as_ref()?;
-        let label = label(&story, &scale, row);
+        let label = label(&selection, &scale, row);
         Some(Wall { label, load, u })
     };
-    let chosen: Vec<Wall<'_>> = story.chosen.iter().filter_map(state).collect();
-    let upwards = upright(story.chosen.iter().copied(), &scale);
-    let energy = || energy(plan, summary, &story).png(WIDTH);
+    let chosen: Vec<Wall<'_>> = selection.chosen.iter().filter_map(state).collect();
+    let upwards = upward_angle(selection.chosen.iter().copied(), &scale);
+    let energy = || energy(plan, summary, &selection).png(WIDTH);
     if chosen.is_empty() {
         return Ok(vec![("energy.png".to_owned(), energy()?)]);
     }
-    // The tube takes longest: whoever is done with the plots helps.
+    // The tube takes longest; rayon moves idle threads to it.
     let (tube, plots) = rayon::join(
         || cutaway(plan, &tube, &chosen, upwards)?.png_with(WIDTH, Compression::Fast),
         || Ok([energy()?, walls(plan, &tube, &chosen).png(WIDTH)?]),
@@ -57,29 +61,33 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     Ok(pictures.map(|(name, png)| (name.to_owned(), png)).into())
 }
 
-/// What the axis of energies is called.
+/// Returns the label of the energy axis.
 pub(super) fn energy_label(plan: &Plan) -> String {
     let scale = Scale::of(plan.units.as_ref());
     format!("strain energy *W* ({})", unit(&scale.energy_name))
 }
 
-/// Strain energy against what changes along the path.
-fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
-    let x = |row: &Row| story.abscissa.of(row);
-    let within = |row: &&Row| story.rows.iter().any(|r| r.step == row.step);
+/// Plots the strain energy along the path.
+fn energy(plan: &Plan, summary: &Summary, selection: &Selection<'_>) -> Chart {
+    let x = |row: &Row| selection.abscissa.of(row);
+    let within = |row: &&Row| selection.rows.iter().any(|r| r.step == row.step);
     let minimum = summary.findings().energy_minimum().filter(within);
-    let rule = |shape: Shape, label: &str| {
-        let row = story.rows.iter().find(|row| row.shape == shape)?;
+    let line = |shape: Shape, label: &str| {
+        let row = selection.rows.iter().find(|row| row.shape == shape)?;
         Some(VerticalLine {
             at: x(row),
             label: label.to_owned(),
         })
     };
     Chart {
-        x_label: story.abscissa.label(&Scale::of(plan.units.as_ref())),
+        x_label: selection.abscissa.label(&Scale::of(plan.units.as_ref())),
         y_label: energy_label(plan),
         curves: vec![Curve {
-            points: story.rows.iter().map(|row| (x(row), row.energy)).collect(),
+            points: selection
+                .rows
+                .iter()
+                .map(|row| (x(row), row.energy))
+                .collect(),
             dots: true,
             colour: 1,
             ..Curve::default()
@@ -87,20 +95,20 @@ fn energy(plan: &Plan, summary: &Summary, story: &Story<'_>) -> Chart {
         markers: minimum
             .map(|row| Marker {
                 at: (x(row), row.energy),
-                label: format!("minimum at {}", story.abscissa.told(row)),
+                label: format!("minimum at {}", selection.abscissa.format(row)),
                 colour: 2,
             })
             .into_iter()
             .collect(),
-        vertical_lines: rule(Shape::Square, "square")
+        vertical_lines: line(Shape::Square, "square")
             .into_iter()
-            .chain(rule(Shape::Invaginated, "overhang"))
+            .chain(line(Shape::Invaginated, "overhang"))
             .collect(),
         ..Chart::default()
     }
 }
 
-/// The tube cut open at the chosen states, along the plane of an angle, which points up.
+/// Draws the tube cut open at the selected states, with the angle `upwards` pointing up.
 fn cutaway(
     plan: &Plan,
     tube: &SplineTube,
@@ -108,36 +116,39 @@ fn cutaway(
     upwards: f64,
 ) -> Result<Cutaway, DrawError> {
     let (value_label, factor) = Field::EnergyDensity.label(plan);
-    let look = Look {
+    let look = SurfaceOptions {
         factor,
-        ..Look::half(tube)
+        ..SurfaceOptions::half(tube)
     };
-    let panel = |look: &Look, state: &Wall<'_>| Panel {
+    let panel = |look: &SurfaceOptions, state: &Wall<'_>| Panel {
         label: state.label.clone(),
-        surfaces: looked_at(tube, state.load, state.u, upwards, look),
+        surfaces: tube_surfaces(tube, state.load, state.u, upwards, look),
         ..Panel::default()
     };
     let picture = Cutaway {
         title: plan.title.clone(),
         value_label,
-        scale_bar: bar(&Scale::of(plan.units.as_ref())),
+        scale_bar: scale_bar(&Scale::of(plan.units.as_ref())),
         ..Cutaway::default()
     };
-    let seen = |look: &Look| Cutaway {
+    let drawn = |look: &SurfaceOptions| Cutaway {
         panels: chosen.par_iter().map(|state| panel(look, state)).collect(),
         ..picture.clone()
     };
-    let (fine, range) = look.fine(&seen(&look.coarse(tube, COARSE)), WIDTH)?;
+    let (fine, range) = look.fine(&drawn(&look.coarse(tube, COARSE)), WIDTH)?;
     Ok(Cutaway {
         range,
-        ..seen(&fine)
+        ..drawn(&fine)
     })
 }
 
-/// What a state is called in a legend.
-fn label(story: &Story<'_>, scale: &Scale, row: &Row) -> String {
-    let (label, value) = (story.abscissa.label(scale), story.abscissa.told(row));
-    // The unit stands behind the number here.
+/// Returns the label of a state.
+fn label(selection: &Selection<'_>, scale: &Scale, row: &Row) -> String {
+    let (label, value) = (
+        selection.abscissa.label(scale),
+        selection.abscissa.format(row),
+    );
+    // The unit follows the number.
     match label.rsplit_once(" (") {
         Some((name, unit)) => format!(
             "{name} = {value} {} ({})",

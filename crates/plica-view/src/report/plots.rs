@@ -1,4 +1,4 @@
-//! Numbers of a run's states as plots, and its walls.
+//! Plots of columns and of wall profiles.
 
 use super::walls::{Wall, walls};
 use super::{Column, Shown};
@@ -6,7 +6,7 @@ use crate::draw::{Chart, Curve, VerticalLine};
 use plica::assembly::SplineTube;
 use plica::study::{Plan, Row, Scale};
 
-/// A column against another, or against the number of the state; none if the run has no such column.
+/// Plots a column against another one or against the number of the state; `None` if a column does not exist.
 pub fn plot(plan: &Plan, rows: &[Row], name: &str, along: Option<&str>) -> Option<Chart> {
     let columns = Column::of(rows, &Scale::of(plan.units.as_ref()));
     let find = |name: &str| columns.iter().find(|column| column.name == name);
@@ -21,7 +21,7 @@ pub fn plot(plan: &Plan, rows: &[Row], name: &str, along: Option<&str>) -> Optio
             rows.iter().map(|row| Some(row.step as f64)).collect(),
         ),
     };
-    // Where a stage begins, if that has a place on the abscissa.
+    // Starts of the stages, shown only along the number of the state.
     let stages = rows
         .windows(2)
         .filter(|pair| pair[0].stage != pair[1].stage && pair[0].step > 0);
@@ -47,7 +47,7 @@ pub fn plot(plan: &Plan, rows: &[Row], name: &str, along: Option<&str>) -> Optio
     })
 }
 
-/// Outer and inner wall at states.
+/// Plots the outer and the inner wall at states.
 pub fn plot_walls(plan: &Plan, states: &[Shown]) -> Chart {
     let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
     let chosen: Vec<Wall<'_>> = states.iter().map(wall).collect();

@@ -1,4 +1,4 @@
-//! The pictures of a test of stability.
+//! Pictures of a stability analysis.
 
 use crate::draw::{
     Chart, ColourMap, Compression, Curve, Cutaway, DrawError, Image, Marker, Opening, Panel,
@@ -12,22 +12,23 @@ use plica::tube::Tube;
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-/// So many states are marked one by one.
-const FEW: usize = 25;
-/// Width of every picture, in pixels.
+/// Maximum number of states with a dot each.
+const MAX_DOTS: usize = 25;
+/// Width of the pictures in pixels.
 const WIDTH: usize = 1800;
-/// Printed width of the charts and of the page, in points.
+/// Printed width of the charts in points.
 const COLUMN: f64 = 300.0;
+/// Printed width of a page in points.
 const PAGE: f64 = 510.0;
-/// Amplitude to which a mode is drawn, in D.
-const VISIBLE: f64 = 0.08;
-/// Eigenvalues over those at the beginning of a stage, as far as they are drawn.
-const DRAWN: [f64; 2] = [-0.8, 1.6];
+/// Amplitude of the drawn modes, in units of D.
+const MODE_AMPLITUDE: f64 = 0.08;
+/// Range of the drawn eigenvalues, relative to those at the beginning of a stage.
+const RANGE: [f64; 2] = [-0.8, 1.6];
 
-/// Draws what a test of stability found: names of files and their PNG bytes.
+/// Draws the result of a stability analysis; returns file names and PNG data.
 ///
-/// - `stability.png`: the lowest eigenvalue of each harmonic along every stage that changes one;
-/// - `mode.png`: the first mode to go, if any.
+/// - `stability.png`: the lowest eigenvalue of each circumferential mode along every stage in which one changes sign;
+/// - `mode.png`: the first unstable mode, if any.
 ///
 /// # Errors
 /// [`DrawError`] if there is nothing to draw.
@@ -43,7 +44,7 @@ pub fn stability_pictures(
     Ok(pictures)
 }
 
-/// The stages with a change, or else the last, one below the other.
+/// Plots the stages with a change of stability, or else the last stage, one below the other.
 fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
     let changes = |name: &str| found.changes.iter().any(|change| change.stage == name);
     let mut stages: Vec<&str> = plan
@@ -63,7 +64,7 @@ fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
     Image::stacked(&images)?.to_png(COLUMN * 25.4 / 72.0, Compression::LineArt)
 }
 
-/// The lowest eigenvalue of each harmonic along a stage.
+/// Plots the lowest eigenvalue of each circumferential mode along a stage.
 fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
     let inside: Vec<usize> = (0..found.stations.len())
         .filter(|&i| found.stations[i].stage == stage)
@@ -71,7 +72,7 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
     let (Some(&first), Some(&last)) = (inside.first(), inside.last()) else {
         return Chart::default();
     };
-    // A stage begins with the last state of the one before.
+    // A stage begins with the last state of the previous one.
     let stations = &found.stations[first.saturating_sub(1)..=last];
     let [begin, end] = [&stations[0], &stations[stations.len() - 1]];
     let quantity = Quantity::between(&plan.tube, &begin.load, &end.load);
@@ -103,16 +104,16 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
         }
         curves.push(Curve {
             label: name(n),
-            // Between few states a line says less than they do.
-            dots: points.len() <= FEW,
+            // Dots show the states as long as there are few.
+            dots: points.len() <= MAX_DOTS,
             points,
             colour: n + 1,
             ..Curve::default()
         });
     }
-    let (low, high) = (low.max(DRAWN[0]), high.min(DRAWN[1]));
-    let room = 0.06 * (high - low);
-    // The first eigenvalue of a harmonic is the one that is drawn.
+    let (low, high) = (low.max(RANGE[0]), high.min(RANGE[1]));
+    let margin = 0.06 * (high - low);
+    // Only the first eigenvalue of a mode is drawn.
     let marked: Vec<&&Change> = changes
         .iter()
         .filter(|c| c.negative.contains(&0) && c.how == How::Smooth)
@@ -137,7 +138,7 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
             })
             .collect(),
         x_range: Some((ends[0], ends[1])),
-        y_range: Some((low - room, high + room)),
+        y_range: Some((low - margin, high + margin)),
         width_pt: COLUMN,
         ..Chart::default()
     }
@@ -148,7 +149,7 @@ fn is_snap_between(change: &Change, [from, to]: [f64; 2]) -> bool {
     change.how == How::Snap && change.between.iter().all(|&x| inside(x))
 }
 
-/// A harmonic in a legend.
+/// Returns the name of a circumferential mode in the legend.
 fn name(harmonic: usize) -> String {
     match harmonic {
         0 => "*n* = 0 (round)".into(),
@@ -158,7 +159,7 @@ fn name(harmonic: usize) -> String {
     }
 }
 
-/// The title of an axis.
+/// Returns the label of an axis.
 fn label(quantity: Quantity, tube: &Tube) -> String {
     match quantity {
         Quantity::LengthRatio => "*L*_{max}/*L*".into(),
@@ -166,12 +167,12 @@ fn label(quantity: Quantity, tube: &Tube) -> String {
         Quantity::ColonDisplacement => "displacement of the colon end/*D*".into(),
         Quantity::IleumDisplacement => "displacement of the ileum end/*D*".into(),
         Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
-        Quantity::DeadPressure(wall) => format!("dead *p*/*E* {}", ["inside", "outside"][wall]),
+        Quantity::DeadPressure(wall) => format!("dead load/*E* {}", ["inside", "outside"][wall]),
         Quantity::Muscle(_) => quantity.name(tube),
     }
 }
 
-/// The tube at the critical state and with its mode, open and closed, over the mode's amplitudes.
+/// Draws the tube at the critical state and displaced by the mode, open and closed, above the amplitudes of the mode.
 fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, DrawError> {
     let tube = SplineTube::new(&plan.tube, &plan.mesh, 1);
     let meridian = Meridian::new(&tube, mode);
@@ -194,16 +195,20 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
     let cutaway = Cutaway {
         title: plan.title.clone(),
         panels: vec![
-            panel(format!("{at}, where it loses harmonic {n}"), &half, 0.0),
+            panel(
+                format!("{at}, where it loses stability to circumferential mode {n}"),
+                &half,
+                0.0,
+            ),
             panel(
                 format!(
-                    "it {} (drawn to an amplitude of {VISIBLE} *D*)",
+                    "it {} (drawn with amplitude {MODE_AMPLITUDE} *D*)",
                     mode_effect(n)
                 ),
                 &half,
-                VISIBLE,
+                MODE_AMPLITUDE,
             ),
-            panel("the same from outside".into(), &closed, VISIBLE),
+            panel("the same from outside".into(), &closed, MODE_AMPLITUDE),
         ],
         value_label: "radial displacement of the mode".into(),
         range: Range::Given(-1.0, 1.0),
@@ -215,7 +220,7 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
     Image::stacked(&images)?.to_png(PAGE * 25.4 / 72.0, Compression::Small)
 }
 
-/// A state and its mode along one meridian, from which the others follow.
+/// A state and its mode on one meridian, which determine all others.
 struct Meridian<'a> {
     tube: &'a SplineTube,
     mode: &'a Mode,
@@ -223,11 +228,11 @@ struct Meridian<'a> {
     radial: f64,
     /// Largest displacement anywhere on the outer wall.
     largest: f64,
-    known: RefCell<HashMap<[u64; 2], Place>>,
+    known: RefCell<HashMap<[u64; 2], Sampled>>,
 }
 
 /// Position (z, r) of a point at angle zero, and the amplitudes (z, r, θ) of the mode there.
-type Place = ([f64; 2], [f64; 3]);
+type Sampled = ([f64; 2], [f64; 3]);
 
 impl<'a> Meridian<'a> {
     fn new(tube: &'a SplineTube, mode: &'a Mode) -> Self {
@@ -239,7 +244,7 @@ impl<'a> Meridian<'a> {
             known: RefCell::default(),
         };
         for z in tube.axial.spread(4 * tube.axial.elements() + 1) {
-            let (_, amplitude) = meridian.place(z, Tube::OUTER_RADIUS);
+            let (_, amplitude) = meridian.sample(z, Tube::OUTER_RADIUS);
             meridian.radial = meridian.radial.max(amplitude[1].abs());
             let size = amplitude.iter().fold(0.0, |size: f64, a| size.hypot(*a));
             meridian.largest = meridian.largest.max(size);
@@ -247,20 +252,20 @@ impl<'a> Meridian<'a> {
         meridian
     }
 
-    fn place(&self, z: f64, radius: f64) -> Place {
+    fn sample(&self, z: f64, radius: f64) -> Sampled {
         let at = Point {
             z,
             radius,
             angle: 0.0,
         };
-        let sample = |u| self.tube.sample(&self.mode.state.load, u, at);
-        let (state, mode) = (sample(&self.mode.state.u), sample(&self.mode.shape));
+        let at_point = |u| self.tube.sample(&self.mode.state.load, u, at);
+        let (state, mode) = (at_point(&self.mode.state.u), at_point(&self.mode.shape));
         let amplitude = [0, 1, 2].map(|i| mode.position[i] - mode.reference[i]);
         ([state.position[0], state.position[1]], amplitude)
     }
 
-    /// The surfaces of the tube, coloured by the radial displacement of the mode; in units of its
-    /// largest, if that is not small beside the others.
+    /// Returns the surfaces of the tube, coloured by the radial displacement of the mode, relative to the larger of its
+    /// maximum and a tenth of the largest displacement.
     fn surfaces(&self, opening: &Opening, amplitude: f64) -> Vec<Surface> {
         let (along, n) = (self.tube.axial.elements(), self.mode.harmonic as f64);
         let scale = amplitude / self.largest;
@@ -268,7 +273,7 @@ impl<'a> Meridian<'a> {
             let key = [zeta.to_bits(), xi.to_bits()];
             let ([z, r], mode) = *self.known.borrow_mut().entry(key).or_insert_with(|| {
                 let inner = self.tube.tube.inner_radius();
-                self.place(
+                self.sample(
                     self.tube.axial.elements_on(zeta * along as f64),
                     inner + xi * self.tube.tube.thickness,
                 )
@@ -290,18 +295,18 @@ impl<'a> Meridian<'a> {
         })
     }
 
-    /// The amplitudes of the mode along the outer wall.
+    /// Plots the amplitudes of the mode along the outer wall.
     fn amplitudes(&self) -> Chart {
         let z = self.tube.axial.spread(4 * self.tube.axial.elements() + 1);
-        let places: Vec<Place> = z
+        let samples: Vec<Sampled> = z
             .iter()
-            .map(|&z| self.place(z, Tube::OUTER_RADIUS))
+            .map(|&z| self.sample(z, Tube::OUTER_RADIUS))
             .collect();
         let curve = |i: usize, label: &str, colour| Curve {
             label: label.into(),
             points: z
                 .iter()
-                .zip(&places)
+                .zip(&samples)
                 .map(|(&z, p)| (z, p.1[i] / self.largest))
                 .collect(),
             colour,

@@ -1,6 +1,6 @@
-//! Outer and inner wall at several states.
+//! Profiles of the outer and inner wall at several states.
 
-use super::VISIBLE;
+use super::VISIBLE_ASYMMETRY;
 use super::columns::unit;
 use crate::draw::{Chart, Curve, Stroke};
 use plica::assembly::SplineTube;
@@ -8,37 +8,37 @@ use plica::measure::{Asymmetry, Face, Meridians};
 use plica::study::{Plan, Scale};
 use plica::tube::Load;
 
-/// Points per element along a drawn wall.
+/// Sampling per element along a drawn wall.
 const POINTS_PER_ELEMENT: usize = 4;
 
-/// A state, and what it is called in a legend.
+/// A state and its label.
 #[derive(Clone, Debug)]
-pub struct Wall<'a> {
-    /// Its name.
+pub(super) struct Wall<'a> {
+    /// Name in the legend.
     pub label: String,
-    /// Its load.
+    /// Load.
     pub load: &'a Load,
-    /// Its unknowns.
+    /// Vector of unknowns.
     pub u: &'a [f64],
 }
 
-/// The largest departure from axisymmetry among states: all are drawn in its plane.
-pub(super) fn asymmetry(tube: &SplineTube, states: &[Wall<'_>]) -> Asymmetry {
+/// Returns the largest asymmetry of the states; all are drawn in its plane.
+fn asymmetry(tube: &SplineTube, states: &[Wall<'_>]) -> Asymmetry {
     let of = |state: &Wall<'_>| Meridians::of(tube, state.load, state.u).asymmetry();
     let largest = states.iter().map(of);
     let largest = largest.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
     largest.unwrap_or_default()
 }
 
-/// Outer and inner wall of states; of a tube that is visibly not axisymmetric two meridians, that at the crest above
-/// the axis and that at the trough below it.
+/// Plots the outer and inner wall of states. A visibly asymmetric tube is shown by two meridians: at the crest above the axis
+/// and at the trough below it.
 pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Chart {
     let scale = Scale::of(plan.units.as_ref());
     let length = scale.length;
     let asymmetry = asymmetry(tube, states);
     let both = asymmetry.crest_and_trough();
-    let one_line = asymmetry.amplitude < VISIBLE;
-    let angles = if one_line { &both[..1] } else { &both };
+    let axisymmetric = asymmetry.amplitude < VISIBLE_ASYMMETRY;
+    let angles = if axisymmetric { &both[..1] } else { &both };
     let z = tube
         .axial
         .spread(tube.axial.elements() * POINTS_PER_ELEMENT + 1);
@@ -77,7 +77,7 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
     let finite = |p: &&(f64, f64)| p.0.is_finite();
     let points = || curves.iter().flat_map(|curve| &curve.points).filter(finite);
     let highest = points().map(|p| p.1).fold(0.55 * length, f64::max);
-    let lowest = if one_line {
+    let lowest = if axisymmetric {
         0.0
     } else {
         points().map(|p| p.1).fold(-0.55 * length, f64::min) - 0.05 * length
@@ -85,7 +85,7 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
     let (low, high) = points().fold((0.0_f64, length * plan.tube.length), |(low, high), p| {
         (low.min(p.0), high.max(p.0))
     });
-    if !one_line {
+    if !axisymmetric {
         let axis = Curve {
             points: vec![(low, 0.0), (high, 0.0)],
             stroke: Stroke::Dashed,
@@ -95,10 +95,10 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
     }
     let [crest, trough] = both.map(|angle| (angle.to_degrees().round() + 0.0).rem_euclid(360.0));
     Chart {
-        title: if one_line {
+        title: if axisymmetric {
             String::new()
         } else {
-            format!("above *r* = 0 the meridian at {crest}°, below it that at {trough}°")
+            format!("meridian at {crest}° above *r* = 0, at {trough}° below")
         },
         x_label: format!("*z* ({})", unit(&scale.length_name)),
         y_label: format!("*r* ({})", unit(&scale.length_name)),

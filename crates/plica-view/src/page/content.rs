@@ -1,19 +1,18 @@
 //! Data of a run for the template of the page.
 
-use super::known::Known;
+use super::data::RunData;
+use super::picture::Picture;
 use super::stability::Stability;
-use super::{Run, words};
+use super::{Run, summary};
 use crate::draw::label;
 use crate::report::{Column, Role};
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use plica::run_directory::Verdict;
 use plica::study::{Findings, Row, Scale};
 use serde::Serialize;
 
 /// Text, tables and pictures of a run.
 #[derive(Serialize)]
-pub struct Sheet {
+pub struct Content {
     name: String,
     title: String,
     headline: String,
@@ -48,27 +47,9 @@ struct Line {
     drawn: bool,
 }
 
-/// A picture from the run directory.
-#[derive(Serialize)]
-pub struct Picture {
-    words: &'static str,
-    data: String,
-}
-
-impl Picture {
-    /// Reads those of the given pictures that exist; each name comes with a caption.
-    pub fn read_all(run: &Run<'_>, names: &[(&str, &'static str)]) -> Vec<Self> {
-        let read = |&(name, words): &(&str, &'static str)| {
-            let data = STANDARD.encode(run.directory.read(name)?);
-            Some(Self { words, data })
-        };
-        names.iter().filter_map(read).collect()
-    }
-}
-
-impl Sheet {
+impl Content {
     /// Collects the data of a run.
-    pub fn of(run: &Run<'_>, columns: &[Column], known: &Known) -> Self {
+    pub fn of(run: &Run<'_>, columns: &[Column], data: &RunData) -> Self {
         let scale = Scale::of(run.plan.units.as_ref());
         let findings = Findings {
             rows: run.rows,
@@ -83,7 +64,7 @@ impl Sheet {
             unstable: row.stability.to_string(),
             method: row.method.to_string(),
             numbers: tabled.iter().map(|c| number(c.values[i])).collect(),
-            drawn: known.scene.rows.contains(&row.step),
+            drawn: data.scene.rows.contains(&row.step),
         };
         let mesh = &run.plan.mesh;
         let [axial, around, thickness] = [mesh.axial, mesh.around, mesh.thickness];
@@ -95,27 +76,27 @@ impl Sheet {
         };
         let seconds: f64 = run.rows.iter().map(|row| row.seconds).sum();
         let case = run.directory.read("case.toml").unwrap_or_default();
-        let [along, through, meridians] = known.scene.points;
+        let [along, through, meridians] = data.scene.points;
         let modes = run.plan.modes.iter().map(|mode| mode.file.clone());
         let start = run.plan.start.iter().map(|start| start.file.clone());
         Self {
             name: run.name.clone(),
             title: run.plan.title.clone(),
-            headline: words::headline(run, &findings),
+            headline: summary::headline(run, &findings),
             complete: run.directory.verdict() == Verdict::Complete,
             findings: findings.lines().into_iter().map(formatted).collect(),
-            warnings: words::warnings(run, &known.scene),
-            no_warnings: words::no_warnings(run),
+            warnings: summary::warnings(run, &data.scene),
+            no_warnings: summary::no_warnings(run),
             case: String::from_utf8_lossy(&case).into_owned(),
             needs: start.chain(modes).collect(),
             manifest: run.directory.manifest(),
             mesh: format!("{axial} × {around} × {thickness} control points, {symmetry}"),
             unknowns: 3 * axial * rings * thickness,
             seconds: format!("{seconds:.1}"),
-            drawn: if known.scene.drawn {
+            drawn: if data.scene.drawn {
                 format!(
                     "{along} × {} × {through} points per state (along, around, through the wall)",
-                    meridians * known.scene.sectors
+                    meridians * data.scene.sectors
                 )
             } else {
                 "nothing, because no state is saved in full".into()
@@ -171,7 +152,10 @@ fn with_superscripts(text: &str) -> String {
             _ => word.to_owned(),
         }
     };
-    text.split(' ').map(format).collect::<Vec<String>>().join(" ")
+    text.split(' ')
+        .map(format)
+        .collect::<Vec<String>>()
+        .join(" ")
 }
 
 #[cfg(test)]

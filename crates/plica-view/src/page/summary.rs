@@ -2,7 +2,7 @@
 
 use super::Run;
 use super::scene::Scene;
-use crate::report::VISIBLE;
+use crate::report::VISIBLE_ASYMMETRY;
 use plica::equilibrium::{Stability, UnstableMode};
 use plica::measure::{Shape, Side};
 use plica::run_directory::Verdict;
@@ -41,13 +41,13 @@ fn final_shape(last: &Row, findings: &Findings<'_>) -> Vec<String> {
     let shape = match (findings.side(), last.shape) {
         (Side::None, shape) => format!("In the last state the tube is {}.", described(shape)),
         (side, _) => format!(
-            "The tube invaginates towards the {side} with an overhang of {:.3} {unit}.",
+            "The tube invaginates toward the {side} with an overhang of {:.3} {unit}.",
             last.overhang
         ),
     };
     let amplitude = format!("{:.3} {unit}", last.asymmetry);
     let asymmetry = match last.asymmetry_mode {
-        _ if last.asymmetry <= VISIBLE * findings.scale.length => None,
+        _ if last.asymmetry <= VISIBLE_ASYMMETRY * findings.scale.length => None,
         1 => Some(format!(
             "It is not axisymmetric: its wall is displaced sideways by {amplitude}."
         )),
@@ -59,7 +59,10 @@ fn final_shape(last: &Row, findings: &Findings<'_>) -> Vec<String> {
         )),
     };
     let caution = caution(last).map(|what| format!("There {what}."));
-    std::iter::once(shape).chain(asymmetry).chain(caution).collect()
+    std::iter::once(shape)
+        .chain(asymmetry)
+        .chain(caution)
+        .collect()
 }
 
 /// Returns the reason why a state is not physical or not an equilibrium, if any.
@@ -143,7 +146,11 @@ pub fn warnings(run: &Run<'_>, scene: &Scene) -> Vec<String> {
             scene.missing
         ));
     }
-    warnings.extend(run.unread.iter().map(|what| format!("Could not read: {what}.")));
+    warnings.extend(
+        run.unread
+            .iter()
+            .map(|what| format!("Could not read: {what}.")),
+    );
     let drawn = run.states.len();
     if drawn == 0 {
         warnings.push(
@@ -228,9 +235,7 @@ pub fn no_warnings(run: &Run<'_>) -> String {
                 .into()
         }
     };
-    format!(
-        "No warnings: every state is in equilibrium, no wall penetrates itself, and {tested}."
-    )
+    format!("No warnings: every state is in equilibrium, no wall penetrates itself, and {tested}.")
 }
 
 fn capital(text: &str) -> String {

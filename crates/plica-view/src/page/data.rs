@@ -1,14 +1,14 @@
 //! Data of a run for the scripts of the page.
 
 use super::scene::Scene;
-use super::{Run, words};
+use super::{Run, summary};
 use crate::draw::label;
 use crate::report::{Column, Role};
 use serde::Serialize;
 
 /// Numbers of a run.
 #[derive(Serialize)]
-pub struct Known {
+pub struct RunData {
     name: String,
     /// Walls of all drawn states.
     pub scene: Scene,
@@ -30,7 +30,7 @@ struct Plotted {
     values: Vec<Option<f64>>,
 }
 
-impl Known {
+impl RunData {
     /// Collects the data of a run; the walls take at most `max_bytes`.
     pub fn of(run: &Run<'_>, columns: &[Column], max_bytes: usize) -> Self {
         let plotted = |column: &Column| Plotted {
@@ -49,7 +49,7 @@ impl Known {
             scene,
             stages: run.rows.iter().map(|row| row.stage.clone()).collect(),
             shapes: run.rows.iter().map(|row| row.shape.to_string()).collect(),
-            caution: run.rows.iter().map(words::caution).collect(),
+            caution: run.rows.iter().map(summary::caution).collect(),
             columns: all.chain(eigenvalues(run).iter().map(plotted)).collect(),
         }
     }

@@ -1,4 +1,4 @@
-//! Which states tell the story of a path, and against what it is plotted.
+//! Selection of the abscissa and of the states shown in the pictures of a run.
 
 use super::columns::unit;
 use crate::draw::format_number;
@@ -6,25 +6,25 @@ use plica::measure::Shape;
 use plica::run_directory::Summary;
 use plica::study::{Row, Scale};
 
-/// What changes along a path: the abscissa of its charts.
+/// Quantity that varies along a path, used as abscissa.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Abscissa {
+pub(super) enum Abscissa {
     /// Lmax/L.
     LengthRatio,
     /// Dmin/D.
     DiameterRatio,
-    /// Displacement of the ileum end less that of the colon end.
+    /// Displacement of the ileum end minus that of the colon end.
     Stretch,
-    /// True pressure on the inner wall.
+    /// Follower pressure on the inner wall.
     InnerPressure,
-    /// True pressure on the outer wall.
+    /// Follower pressure on the outer wall.
     OuterPressure,
-    /// The number of the state.
+    /// Number of the state.
     Step,
 }
 
 impl Abscissa {
-    /// Its value at a state.
+    /// Returns the value at a state.
     pub fn of(self, row: &Row) -> f64 {
         match self {
             Self::LengthRatio => row.length_ratio,
@@ -36,22 +36,22 @@ impl Abscissa {
         }
     }
 
-    /// Its label on an axis, with its unit.
+    /// Returns the axis label with the unit.
     pub fn label(self, scale: &Scale) -> String {
         let length = unit(&scale.length_name);
         let stress = unit(&scale.stress_name);
         match self {
             Self::LengthRatio => "*L*_{max}/*L*".into(),
             Self::DiameterRatio => "*D*_{min}/*D*".into(),
-            Self::Stretch => format!("displacement of the ends, apart ({length})"),
+            Self::Stretch => format!("relative displacement of the ends ({length})"),
             Self::InnerPressure => format!("pressure on the inner wall ({stress})"),
             Self::OuterPressure => format!("pressure on the outer wall ({stress})"),
             Self::Step => "state".into(),
         }
     }
 
-    /// Its value at a state as a text.
-    pub fn told(self, row: &Row) -> String {
+    /// Formats the value at a state.
+    pub fn format(self, row: &Row) -> String {
         let value = self.of(row);
         match self {
             Self::LengthRatio | Self::DiameterRatio => format!("{value:.2}"),
@@ -62,20 +62,20 @@ impl Abscissa {
     }
 }
 
-/// The part of a path that is plotted, and its chosen states.
+/// The plotted part of a path and the states shown in detail.
 #[derive(Clone, Debug)]
-pub struct Story<'a> {
-    /// What it is plotted against.
+pub(super) struct Selection<'a> {
+    /// Abscissa of the plots.
     pub abscissa: Abscissa,
-    /// The states of that part.
+    /// States of the plotted part.
     pub rows: Vec<&'a Row>,
-    /// Up to four states to look at closely: where it begins, the least energy, the last square
-    /// wall, the end.
+    /// Up to four states shown in detail: the first one, the minimum of the energy, the last square wall, the last one.
     pub chosen: Vec<&'a Row>,
 }
 
-impl<'a> Story<'a> {
-    /// The story of a run: its last stages, as far back as one quantity alone changes (twists and dead pressures, which are not plotted against, aside).
+impl<'a> Selection<'a> {
+    /// Selects the last part of a run in which a single quantity changes. Twists and dead loads, which are no abscissae, are
+    /// ignored.
     pub fn of(summary: &'a Summary) -> Self {
         let all = summary.rows();
         let quantities = [
@@ -130,7 +130,7 @@ impl<'a> Story<'a> {
     }
 }
 
-/// Which quantity wins a tie.
+/// Preference among quantities that vary over equally many states.
 fn rank(quantity: Abscissa) -> usize {
     match quantity {
         Abscissa::LengthRatio => 3,

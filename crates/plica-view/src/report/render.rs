@@ -1,10 +1,10 @@
-//! Pictures of single states, and the whole path as one that moves.
+//! Pictures of single states, and animations of a path.
 
 use super::Field;
-use super::columns::bar;
-use super::opened::{ALONG, Look, looked_at};
+use super::columns::scale_bar;
+use super::orientation::upward_angle;
 use super::pictures::energy_label;
-use super::upright::upright;
+use super::surfaces::{MIN_ALONG, SurfaceOptions, tube_surfaces};
 use crate::draw::{
     Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Surface, VerticalLine, animation,
 };
@@ -14,24 +14,24 @@ use plica::study::{Plan, Row, Scale};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Samples along either side of a pixel of a single picture, for which there is time.
-const FINEST: usize = 3;
+/// Samples along each side of a pixel of a single picture.
+const SAMPLES: usize = 3;
 
-/// Pieces along and points through the wall at which fields are looked at first: they may peak anywhere.
-const COARSE: [usize; 2] = [ALONG, 13];
+/// Intervals along the tube and points through the wall of the first sampling of fields, which may peak anywhere.
+const COARSE: [usize; 2] = [MIN_ALONG, 13];
 
-/// How states are shown.
+/// Appearance of states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Appearance {
-    /// What they are coloured by.
+    /// Field of the colours.
     pub field: Field,
-    /// Degrees of the wall that are taken away, 0 to 350.
+    /// Angle of the wall that is removed, in degrees from 0 to 350.
     pub cutaway: f64,
-    /// Whether those are shown as if of glass.
+    /// Shows the removed part as translucent.
     pub see_through: bool,
-    /// Direction of the viewer: (up, towards the viewer, along the tube).
+    /// Direction towards the viewer: (up, to the front, along the tube).
     pub toward: [f64; 3],
-    /// Ends of the colour bar, if not chosen from what is there.
+    /// Ends of the colour bar; chosen from the values if `None`.
     pub range: Option<[f64; 2]>,
     /// Width in pixels.
     pub width: usize,
@@ -50,70 +50,71 @@ impl Default for Appearance {
     }
 }
 
-/// A state with its row of the history.
+/// A saved state and its row of the history.
 pub type Shown = (SavedState, Row);
 
-/// States, one below the other, under one colour bar.
+/// Draws states, one below the other, with one colour bar; returns PNG data.
 ///
 /// # Errors
-/// [`DrawError`] for sizes and ranges that are none.
+/// [`DrawError`] for an invalid size or range.
 pub fn render(plan: &Plan, states: &[Shown], look: &Appearance) -> Result<Vec<u8>, DrawError> {
     let tube = spline_tube(plan);
-    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
+    let upwards = upward_angle(states.iter().map(|(_, row)| row), &scale(plan));
     let coarse = coarse(&tube, plan, states, upwards, look);
-    let (finest, range) = look_of(&tube, plan, look).fine(&coarse, look.width)?;
+    let (finest, range) = surface_options(&tube, plan, look).fine(&coarse, look.width)?;
     let panels = states
         .par_iter()
         .map(|shown| panel(&tube, shown, upwards, &finest, look));
     let picture = Cutaway {
         panels: panels.collect(),
-        samples: FINEST,
+        samples: SAMPLES,
         range,
         ..coarse
     };
     picture.png(look.width)
 }
 
-/// The tube above its energy, state after state, as an animated PNG; `told` hears how many frames are done, and says
-/// whether to go on.
+/// Draws an animated PNG of the tube above its energy, one frame per state, each shown for `seconds`.
+///
+/// `proceed` receives the number of finished frames and returns false to cancel; the result is then `None`.
 ///
 /// # Errors
-/// [`DrawError`] for sizes and ranges that are none; none and no bytes if it was not to go on.
+/// [`DrawError`] for an invalid size or range.
 pub fn animate(
     plan: &Plan,
     states: &[Shown],
     rows: &[Row],
     look: &Appearance,
     seconds: f64,
-    told: &(dyn Fn(usize) -> bool + Sync),
+    proceed: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Option<Vec<u8>>, DrawError> {
     let tube = spline_tube(plan);
-    let upwards = upright(states.iter().map(|(_, row)| row), &scale(plan));
-    // A coarse look at all states for the frame and the colours that they share; of each no more than these is kept.
-    let looked = states.par_iter().map(|shown| {
+    let upwards = upward_angle(states.iter().map(|(_, row)| row), &scale(plan));
+    // A coarse sampling of all states determines their common bounds and colours; only these are kept.
+    let sampled = states.par_iter().map(|shown| {
         let state = coarse(&tube, plan, std::slice::from_ref(shown), upwards, look);
         let surfaces = state.panels.iter().flat_map(|panel| &panel.surfaces);
         let values: Vec<f64> = surfaces.flat_map(|s| &s.values).copied().collect();
         Ok((state.bounding_box()?, values))
     });
-    let looked: Result<Vec<_>, DrawError> = looked.collect();
-    let (rooms, values): (Vec<_>, Vec<_>) = looked?.into_iter().unzip();
-    let seen = Surface {
+    let sampled: Result<Vec<_>, DrawError> = sampled.collect();
+    let (bounds, values): (Vec<_>, Vec<_>) = sampled?.into_iter().unzip();
+    let surface = Surface {
         values: values.concat(),
         ..Surface::default()
     };
-    let seen = Panel {
-        surfaces: vec![seen],
+    let values = Panel {
+        surfaces: vec![surface],
         ..Panel::default()
     };
     let coarse = Cutaway {
-        bounds: rooms.concat(),
-        ..picture(plan, vec![seen], look)
+        bounds: bounds.concat(),
+        ..picture(plan, vec![values], look)
     };
-    let (finest, range) = look_of(&tube, plan, look).fine(&coarse, look.width)?;
+    let (finest, range) = surface_options(&tube, plan, look).fine(&coarse, look.width)?;
     let done = AtomicUsize::new(0);
     let frame = |shown: &Shown| -> Result<Option<Image>, DrawError> {
-        if !told(done.load(Ordering::Relaxed)) {
+        if !proceed(done.load(Ordering::Relaxed)) {
             return Ok(None);
         }
         let panel = panel(&tube, shown, upwards, &finest, look);
@@ -127,7 +128,7 @@ pub fn animate(
         done.fetch_add(1, Ordering::Relaxed);
         Image::stacked(&[tube, energy]).map(Some)
     };
-    // As many at a time as there are threads: a picture that moves is large before it is packed.
+    // One frame per thread at a time, because uncompressed frames are large.
     let batch = rayon::current_num_threads();
     let frames = states.chunks(batch).flat_map(|some| {
         let frames: Vec<_> = some.par_iter().map(frame).collect();
@@ -144,15 +145,15 @@ fn spline_tube(plan: &Plan) -> SplineTube {
     SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry))
 }
 
-fn look_of(tube: &SplineTube, plan: &Plan, look: &Appearance) -> Look {
-    Look {
+fn surface_options(tube: &SplineTube, plan: &Plan, look: &Appearance) -> SurfaceOptions {
+    SurfaceOptions {
         field: look.field,
         factor: look.field.label(plan).1,
-        ..Look::half(tube).cut(look.cutaway)
+        ..SurfaceOptions::half(tube).cut(look.cutaway)
     }
 }
 
-/// A coarse look at states.
+/// Draws states with a coarse sampling.
 fn coarse(
     tube: &SplineTube,
     plan: &Plan,
@@ -160,7 +161,7 @@ fn coarse(
     upwards: f64,
     look: &Appearance,
 ) -> Cutaway {
-    let coarse = look_of(tube, plan, look).coarse(tube, COARSE);
+    let coarse = surface_options(tube, plan, look).coarse(tube, COARSE);
     let panels = states
         .par_iter()
         .map(|shown| panel(tube, shown, upwards, &coarse, look));
@@ -171,15 +172,16 @@ fn panel(
     tube: &SplineTube,
     (state, row): &Shown,
     upwards: f64,
-    look: &Look,
+    look: &SurfaceOptions,
     shown: &Appearance,
 ) -> Panel {
-    let surfaces = |look: &Look| looked_at(tube, &state.load, &state.u, upwards, look);
-    let glass = look.taken_away().filter(|_| shown.see_through);
+    let surfaces =
+        |look: &SurfaceOptions| tube_surfaces(tube, &state.load, &state.u, upwards, look);
+    let removed = look.removed().filter(|_| shown.see_through);
     Panel {
         label: label(row),
         surfaces: surfaces(look),
-        translucent: glass.map(|look| surfaces(&look)).unwrap_or_default(),
+        translucent: removed.map(|look| surfaces(&look)).unwrap_or_default(),
     }
 }
 
@@ -188,7 +190,7 @@ fn picture(plan: &Plan, panels: Vec<Panel>, look: &Appearance) -> Cutaway {
         title: plan.title.clone(),
         panels,
         value_label: look.field.label(plan).0,
-        scale_bar: bar(&scale(plan)),
+        scale_bar: scale_bar(&scale(plan)),
         toward: look.toward,
         range: range(look),
         map: look.field.map(),
@@ -203,7 +205,7 @@ fn range(look: &Appearance) -> Range {
     }
 }
 
-/// What a state is called.
+/// Returns the label of a state.
 fn label(row: &Row) -> String {
     format!(
         "state {}: *L*_{{max}}/*L* = {:.2}, *D*_{{min}}/*D* = {:.2} ({})",
@@ -211,13 +213,13 @@ fn label(row: &Row) -> String {
     )
 }
 
-/// The energy of all states, one of them marked.
+/// Plots the energy of all states and marks one of them.
 fn energy(plan: &Plan, rows: &[Row], at: &Row) -> Chart {
-    let place = |row: &Row| (row.step as f64, row.energy);
-    let begin = rows
+    let point = |row: &Row| (row.step as f64, row.energy);
+    let starts = rows
         .windows(2)
         .filter(|pair| pair[0].stage != pair[1].stage);
-    let vertical_lines = begin.map(|pair| VerticalLine {
+    let vertical_lines = starts.map(|pair| VerticalLine {
         at: pair[0].step as f64,
         label: pair[1].stage.clone(),
     });
@@ -226,12 +228,12 @@ fn energy(plan: &Plan, rows: &[Row], at: &Row) -> Chart {
         x_label: "state".into(),
         y_label: energy_label(plan),
         curves: vec![Curve {
-            points: rows.iter().map(place).collect(),
+            points: rows.iter().map(point).collect(),
             colour: 1,
             ..Curve::default()
         }],
         markers: vec![Marker {
-            at: place(at),
+            at: point(at),
             label: String::new(),
             colour: 2,
         }],
