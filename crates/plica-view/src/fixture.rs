@@ -1,4 +1,4 @@
-//! A small tube, a plan and its states for tests.
+//! A small tube, plan and state for tests.
 
 use plica::assembly::SplineTube;
 use plica::material::{Material, NeoHookean};
@@ -6,7 +6,7 @@ use plica::saved_state::SavedState;
 use plica::study::{Output, Plan};
 use plica::tube::{Mesh, Support, Symmetry, Tube};
 
-/// A tube as long as it is wide, with free ends and nothing to drive it.
+/// A tube of length D with free ends and without muscles.
 pub fn short() -> Tube {
     Tube {
         length: 1.0,
@@ -30,7 +30,7 @@ pub fn coarse() -> Mesh {
     }
 }
 
-/// The small tube under a symmetry, without stages.
+/// A plan of the small tube with a symmetry and without stages.
 pub fn plan(symmetry: Symmetry) -> Plan {
     Plan {
         title: String::new(),
@@ -46,10 +46,10 @@ pub fn plan(symmetry: Symmetry) -> Plan {
     }
 }
 
-/// A state of a plan's tube that widens along it and twists, the more so the later.
+/// A state of the tube of a plan that widens along the axis and twists, proportional to `row`.
 pub fn state(plan: &Plan, row: usize) -> SavedState {
     let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
-    let late = row as f64;
+    let factor = row as f64;
     SavedState {
         stage: String::new(),
         row,
@@ -58,7 +58,7 @@ pub fn state(plan: &Plan, row: usize) -> SavedState {
         load: plan.tube.rest(),
         layout: plan.layout(),
         u: tube.control_values_from(|z, r, _| {
-            [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * late)
+            [0.1 * z * z, 0.2 * z * r, 0.3 * z * r].map(|x| x * factor)
         }),
         arrays: Default::default(),
     }

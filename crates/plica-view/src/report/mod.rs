@@ -2,6 +2,7 @@
 
 mod columns;
 mod field;
+mod labels;
 mod modes;
 mod orientation;
 mod pictures;

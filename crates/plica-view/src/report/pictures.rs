@@ -1,7 +1,7 @@
 //! Standard pictures of a run.
 
 use super::Field;
-use super::columns::{scale_bar, unit};
+use super::labels::{scale_bar, unit};
 use super::orientation::upward_angle;
 use super::selection::Selection;
 use super::surfaces::{SurfaceOptions, tube_surfaces};

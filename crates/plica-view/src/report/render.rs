@@ -1,7 +1,7 @@
 //! Pictures of single states, and animations of a path.
 
 use super::Field;
-use super::columns::scale_bar;
+use super::labels::scale_bar;
 use super::orientation::upward_angle;
 use super::pictures::energy_label;
 use super::surfaces::{MIN_ALONG, SurfaceOptions, tube_surfaces};

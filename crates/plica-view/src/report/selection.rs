@@ -1,6 +1,6 @@
 //! Selection of the abscissa and of the states shown in the pictures of a run.
 
-use super::columns::unit;
+use super::labels::unit;
 use crate::draw::format_number;
 use plica::measure::Shape;
 use plica::run_directory::Summary;

@@ -1,7 +1,7 @@
 //! Profiles of the outer and inner wall at several states.
 
 use super::VISIBLE_ASYMMETRY;
-use super::columns::unit;
+use super::labels::unit;
 use crate::draw::{Chart, Curve, Stroke};
 use plica::assembly::SplineTube;
 use plica::measure::{Asymmetry, Face, Meridians};

@@ -1,11 +1,7 @@
-//! Random cases that are sound: they run to their end, or end with a reason that has a name, and nothing that they leave is odd.
+//! Random valid cases: each run completes or ends with a reason, and its output contains only finite numbers.
 //!
-//! Cases come from a seed. Among the other tests they are few; `PLICA_SOUND_CASES=2000 cargo test --release -p plica --test sound`
-//! runs more.
+//! `PLICA_RANDOM_CASES=2000 cargo test --release -p plica-view --test random_cases` runs more cases than by default.
 
-mod common;
-
-use common::Chance;
 use plica::case;
 use plica::monitor::Monitor;
 use plica::run_directory::{self, RunDirectory, RunError, Verdict};
@@ -18,12 +14,23 @@ use std::fmt::Write;
 use std::io::Read;
 use std::path::Path;
 
-/// Cases among the other tests.
-const FEW: usize = 25;
-/// After so many solves a run is asked to stop, and does.
-const MANY: usize = 100;
+/// Default number of cases.
+const COUNT: usize = 25;
+/// Number of solves after which a run is cancelled.
+const MAX_SOLVES: usize = 100;
 
-impl Chance {
+/// Deterministic random numbers (xorshift); the seed must not be 0.
+struct Random(u64);
+
+impl Random {
+    /// Returns a number from 0 to n − 1.
+    fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % n as u64) as usize
+    }
+
     fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }
@@ -32,15 +39,15 @@ impl Chance {
         words[self.below(words.len())]
     }
 
-    /// Between two numbers, with three digits.
+    /// Returns a number between `low` and `high` with three decimals.
     fn between(&mut self, low: f64, high: f64) -> f64 {
         let x = low + (high - low) * self.below(1001) as f64 / 1000.0;
         (1000.0 * x).round() / 1000.0
     }
 }
 
-/// A case whose values are each within their range; now and then they do not go together.
-fn random(chance: &mut Chance) -> String {
+/// Returns a case in which every value is valid by itself; occasionally the combination is not.
+fn random_case(chance: &mut Random) -> String {
     let mut case = String::new();
     let around = 4 * (2 + chance.below(3));
     let fold = chance.of(&["1", "1", "2", "none"]);
@@ -155,22 +162,22 @@ fn random(chance: &mut Chance) -> String {
     case
 }
 
-/// Counts what takes time, from solve to solve.
+/// Cancels a run after a number of solves.
 #[derive(Default)]
-struct Patience {
+struct Limit {
     solves: usize,
 }
 
-impl Monitor for Patience {
+impl Monitor for Limit {
     fn working(&mut self, _: &dyn Display, _: f64) {
         self.solves += 1;
         assert!(
-            self.solves <= MANY + 1,
+            self.solves <= MAX_SOLVES + 1,
             "the run went on after it was cancelled"
         );
     }
     fn is_cancelled(&self) -> bool {
-        self.solves >= MANY
+        self.solves >= MAX_SOLVES
     }
 }
 
@@ -181,19 +188,19 @@ fn check(row: &Row) {
     assert!(!row.in_equilibrium || row.residual <= 1e-6 || row.method == Method::Rest);
 }
 
-/// The floating-point numbers in a file of VTK as Plica writes it: columns in packed blocks, behind a head in XML.
+/// Returns the floating-point numbers in a VTK file: compressed arrays after an XML header.
 fn numbers(file: &[u8]) -> Vec<f64> {
     let mark = b"<AppendedData encoding=\"raw\">\n_";
     let at = file.windows(mark.len()).position(|window| window == mark);
-    let (head, data) = file.split_at(at.unwrap() + mark.len());
-    let head = String::from_utf8_lossy(head);
-    let word = |tag: &str, name: &str| -> Option<String> {
+    let (header, data) = file.split_at(at.unwrap() + mark.len());
+    let header = String::from_utf8_lossy(header);
+    let attribute = |tag: &str, name: &str| -> Option<String> {
         let value = tag.split_once(&format!(" {name}=\""))?.1;
         Some(value.split_once('"')?.0.to_owned())
     };
     let mut found = vec![];
-    for tag in head.split("<DataArray").skip(1) {
-        let offset: usize = word(tag, "offset").unwrap().parse().unwrap();
+    for tag in header.split("<DataArray").skip(1) {
+        let offset: usize = attribute(tag, "offset").unwrap().parse().unwrap();
         let length = |k: usize| {
             let bytes = data[offset + 8 * k..][..8].try_into().unwrap();
             u64::from_le_bytes(bytes) as usize
@@ -206,7 +213,7 @@ fn numbers(file: &[u8]) -> Vec<f64> {
             block.read_to_end(&mut bytes).unwrap();
             from = to;
         }
-        match word(tag, "type").unwrap().as_str() {
+        match attribute(tag, "type").unwrap().as_str() {
             "Float32" => {
                 let words = bytes.chunks_exact(4);
                 found.extend(words.map(|w| f64::from(f32::from_le_bytes(w.try_into().unwrap()))));
@@ -221,10 +228,10 @@ fn numbers(file: &[u8]) -> Vec<f64> {
     found
 }
 
-/// Runs a case and looks at what it leaves; how it ended.
+/// Runs a case, checks its output, and returns the ending.
 fn run(plan: &Plan, text: &str, path: &Path) -> Ending {
     let mut directory = RunDirectory::create(path, text, "", true).unwrap();
-    let summary = run_directory::run(plan, &mut directory, &mut Patience::default()).unwrap();
+    let summary = run_directory::run(plan, &mut directory, &mut Limit::default()).unwrap();
     summary.rows().iter().for_each(check);
     let rows = directory.history().unwrap_or_default();
     let states = directory.states().unwrap();
@@ -232,22 +239,22 @@ fn run(plan: &Plan, text: &str, path: &Path) -> Ending {
     for name in ["history.csv", "manifest.json"] {
         let bytes = directory.read(name).unwrap_or_default();
         let text = String::from_utf8(bytes).unwrap().to_ascii_lowercase();
-        let odd = text
+        let not_finite = text
             .split(|c: char| !c.is_alphanumeric())
             .any(|word| ["nan", "inf"].contains(&word));
-        assert!(!odd, "{name}: {text}");
+        assert!(!not_finite, "{name}: {text}");
     }
     if let (Some(row), Some(state)) = (rows.last(), states.last()) {
         let state = SavedState::read(state).unwrap();
         plan.accepts(&state).unwrap();
-        // The inside of a whole tube that is not round takes too long.
-        let round = plan.mesh.rings(plan.symmetry) == 1;
-        for what in [Geometry::Walls, Geometry::Linear] {
-            if what == Geometry::Linear && !round {
+        // The volume of a tube without symmetry takes too long.
+        let axisymmetric = plan.mesh.rings(plan.symmetry) == 1;
+        for geometry in [Geometry::Walls, Geometry::Linear] {
+            if geometry == Geometry::Linear && !axisymmetric {
                 continue;
             }
-            let numbers = numbers(&Exporter::new(plan).file(what, &state, row));
-            // Three coordinates and 32 fields of every point.
+            let numbers = numbers(&Exporter::new(plan).file(geometry, &state, row));
+            // Three coordinates and 32 field components per point.
             assert!(numbers.len() > 1000, "{}", numbers.len());
             assert!(numbers.iter().all(|x| x.is_finite()));
         }
@@ -256,20 +263,20 @@ fn run(plan: &Plan, text: &str, path: &Path) -> Ending {
 }
 
 #[test]
-fn sound_cases_run_or_end_with_a_reason() {
-    let count = std::env::var("PLICA_SOUND_CASES").ok();
-    let count = count.and_then(|text| text.parse().ok()).unwrap_or(FEW);
-    let path = std::env::temp_dir().join(format!("plica-sound-{}", std::process::id()));
+fn random_cases_complete_or_end_with_a_reason() {
+    let count = std::env::var("PLICA_RANDOM_CASES").ok();
+    let count = count.and_then(|text| text.parse().ok()).unwrap_or(COUNT);
+    let path = std::env::temp_dir().join(format!("plica-random-{}", std::process::id()));
     let mut ended = [0; 3];
     let (mut seed, mut refused) = (0, 0);
     while ended.iter().sum::<usize>() < count {
         seed += 1;
-        let mut chance = Chance(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(seed));
-        let text = random(&mut chance);
+        let mut chance = Random(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(seed));
+        let text = random_case(&mut chance);
         let plan = match case::read(&text, "random") {
             Ok(plan) => plan,
             Err(error) => {
-                // Told by its key and line; most do go together.
+                // The combination of values is invalid.
                 assert!(
                     error
                         .problems
@@ -277,6 +284,7 @@ fn sound_cases_run_or_end_with_a_reason() {
                         .all(|problem| !problem.rule.is_empty())
                 );
                 refused += 1;
+                assert!(refused < count, "{refused}");
                 continue;
             }
         };
@@ -292,21 +300,20 @@ fn sound_cases_run_or_end_with_a_reason() {
         }
     }
     std::fs::remove_dir_all(path).unwrap();
-    println!("complete, lost, stopped: {ended:?}; {refused} did not go together");
-    assert!(refused < count, "{refused}");
+    println!("complete, lost, stopped: {ended:?}; {refused} invalid");
     assert!(3 * ended[0] > count, "{ended:?}");
 }
 
-/// A scale that is none makes every number of a table so.
+/// A NaN in the units makes every number of the history NaN.
 #[test]
-fn a_number_that_is_none_ends_a_run_as_lost() {
+fn a_nan_in_the_history_ends_the_run() {
     let case = "[mesh]\ncontrol_points = { axial = 5, around = 8, thickness = 4 }\n[units]\nlength = 'mm'\nstress = 'kPa'\n\
         [muscles.circular]\ndirection = 'circular'\nzone = [1.0, 2.0]\n[[stages]]\nsteps = 2\ndrive.circular.diameter_ratio = 0.95\n";
-    let mut plan = case::read(case, "none").unwrap();
+    let mut plan = case::read(case, "nan").unwrap();
     plan.units.as_mut().unwrap().diameter = f64::NAN;
-    let path = std::env::temp_dir().join(format!("plica-none-{}", std::process::id()));
+    let path = std::env::temp_dir().join(format!("plica-nan-{}", std::process::id()));
     let mut directory = RunDirectory::create(&path, case, "", true).unwrap();
-    let ended = run_directory::run(&plan, &mut directory, &mut Patience::default());
+    let ended = run_directory::run(&plan, &mut directory, &mut Limit::default());
     assert!(matches!(ended, Err(RunError::NotFinite { .. })));
     assert_eq!(directory.verdict(), Verdict::Lost);
     let manifest = std::fs::read_to_string(path.join("manifest.json")).unwrap();

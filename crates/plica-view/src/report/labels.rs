@@ -1,0 +1,29 @@
+//! Labels of units and of the scale bar.
+
+use plica::study::Scale;
+
+/// Returns the length of the scale bar of a picture in units of D, and its label.
+pub(super) fn scale_bar(scale: &Scale) -> (f64, String) {
+    if scale.length_name == "D" {
+        return (1.0, "*D*".into());
+    }
+    // The largest round length up to one diameter.
+    let ten = 10f64.powf(scale.length.log10().floor());
+    let round = [5.0, 2.0, 1.0]
+        .into_iter()
+        .find(|n| n * ten <= scale.length * (1.0 + 1e-9));
+    let length = round.unwrap_or(1.0) * ten;
+    (
+        length / scale.length,
+        format!("{length} {}", unit(&scale.length_name)),
+    )
+}
+
+/// Returns the label of a unit.
+pub(super) fn unit(name: &str) -> String {
+    match name {
+        "E D^3" => "*E* *D*^{3}".into(),
+        "E" | "D" => format!("*{name}*"),
+        other => other.replace('u', "µ"),
+    }
+}
