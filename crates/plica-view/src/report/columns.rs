@@ -177,7 +177,7 @@ impl Column {
             Role::Other,
             &|row| Some(row.residual),
         );
-        add("iterations", "iterations".into(), Role::Other, &|row| {
+        add("iterations", "linear solves".into(), Role::Other, &|row| {
             Some(row.iterations as f64)
         });
         columns
