@@ -3,5 +3,6 @@
 mod imperfections;
 mod loads;
 mod rigid_body_motions;
+mod study;
 mod tangents;
 mod three_dimensions;

@@ -1,6 +1,7 @@
-//! The tangent of a tube of many rings: conjugate gradients around the harmonic solver.
+//! The tangent of a tube of several rings, without a matrix, and its solver: conjugate gradients with the harmonic
+//! solver as preconditioner.
 
-use super::spare::Spare;
+use super::buffers::Buffers;
 use crate::assembly::{LowHarmonics, MatrixFreeTangent, RingDamping, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::monitor::Monitor;
@@ -10,34 +11,34 @@ use crate::tube::Load;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
-/// Displacement from ring to ring, in D, up to which a state counts as the same at every ring.
+/// Largest difference of displacements between rings of a state that counts as symmetric, in D.
 const SYMMETRIC: f64 = 1e-9;
 
-/// The same from which low harmonics are coupled.
+/// Smallest difference of displacements between rings from which low harmonics are coupled, in D.
 const COUPLED: f64 = 1e-2;
 
-/// The highest harmonics of the sector that may be coupled: four times the one that the state itself
-/// has. An oval 0.24 D out of round takes 111, 94, 61, 36 and 20 iterations with 1, 2, 4, 6 and 8 coupled; a tilt
-/// of 0.13 D 57, 36, 21, 20 and 20. The matrix costs the third power of the harmonic.
+/// The highest coupled harmonics of the cyclic sector, for states of mode 1 and of higher modes: four times the harmonic of
+/// the state. An oval with an asymmetry of 0.24 D takes 111, 94, 61, 36 and 20 iterations with 1, 2, 4, 6 and 8
+/// coupled harmonics; a tilt of 0.13 D takes 57, 36, 21, 20 and 20. The cost of the matrix grows with the third power.
 const HIGHEST: [usize; 2] = [4, 8];
 
-/// The share of the waves in a state from which a harmonic counts as one that it has.
+/// Smallest share of a harmonic in the waves of a state that counts as a harmonic of the state.
 const SHARE: f64 = 0.1;
 
-/// Iterations after which a solve is cut off; what there is still leads down.
+/// Largest number of iterations of a solve. The iterate reached then still is a descent direction.
 const ITERATIONS: usize = 400;
 
-/// A tube of many rings, and what its tangents share.
+/// A tube of several rings, and the data that its tangents share.
 #[derive(Debug)]
 pub struct HarmonicTube {
     tube: Arc<SplineTube>,
     damping: RingDamping,
-    /// Low harmonics, as many as a state needs, once one does.
+    /// Low harmonics up to each of [`HIGHEST`], made when a state first needs them.
     low: [OnceLock<Arc<LowHarmonics>>; 2],
-    /// Memory of tangents, of blocks of harmonics, and of matrices of low harmonics.
-    linearised: Spare<MatrixFreeTangent>,
-    blocks: Spare<BlockBanded>,
-    coupled: Spare<BlockBanded>,
+    /// Buffers of tangents, of blocks of harmonics, and of matrices of low harmonics.
+    linearised: Buffers<MatrixFreeTangent>,
+    blocks: Buffers<BlockBanded>,
+    coupled: Buffers<BlockBanded>,
 }
 
 /// The tangent stiffness K of a state, without its matrix.
@@ -46,16 +47,16 @@ pub struct HarmonicTangent {
     state: Arc<Linear>,
 }
 
-/// A linearised state; its memory goes back to its tube.
+/// A linearised state. It returns its buffers to the tube when it is dropped.
 #[derive(Debug)]
 struct Linear {
     tube: Arc<HarmonicTube>,
     at: MatrixFreeTangent,
-    /// Whether the state is the same at every ring.
+    /// Whether the displacements are the same at every ring.
     symmetric: bool,
-    /// The low harmonics that the state couples, if it does.
+    /// The low harmonics that the state couples, if any.
     low: Option<Arc<LowHarmonics>>,
-    /// The tangent on them, unless it was used up.
+    /// The tangent on them, until a solver takes it.
     coupled: Option<BlockBanded>,
 }
 
@@ -64,9 +65,9 @@ struct Linear {
 pub struct HarmonicSystem {
     state: Arc<Linear>,
     alpha: f64,
-    /// None only while it is dropped.
+    /// None only while `self` is dropped.
     preconditioner: Option<HarmonicSolver>,
-    /// Of the averaged block of each harmonic of the sector.
+    /// Negative pivots of the averaged block of each harmonic of the cyclic sector.
     negative_pivots: Vec<usize>,
 }
 
@@ -95,24 +96,24 @@ impl Drop for HarmonicSystem {
 }
 
 impl HarmonicTube {
-    /// Of a tube.
+    /// Prepares the tangents of a tube.
     pub fn new(tube: Arc<SplineTube>) -> Self {
         Self {
             damping: tube.ring_damping(),
             tube,
             low: Default::default(),
-            linearised: Spare::default(),
-            blocks: Spare::default(),
-            coupled: Spare::default(),
+            linearised: Buffers::default(),
+            blocks: Buffers::default(),
+            coupled: Buffers::default(),
         }
     }
 
-    /// y += factor · C v.
+    /// Adds factor · C v to y.
     pub fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         self.damping.multiply_add(factor, v, y);
     }
 
-    /// The tangent stiffness at a state.
+    /// Returns the tangent stiffness at a state.
     pub fn tangent(self: &Arc<Self>, load: &Load, u: &[f64]) -> HarmonicTangent {
         let mut at = self.linearised.take().unwrap_or_default();
         self.tube.linearise_into(load, u, &mut at);
@@ -136,7 +137,7 @@ impl HarmonicTube {
         }
     }
 
-    /// The low harmonics that a state couples.
+    /// Returns the low harmonics that a state couples.
     fn low_harmonics(&self, u: &[f64]) -> Arc<LowHarmonics> {
         let mut shares = Transform::new(self.tube.sector.rings).dot_by_harmonic(u, u);
         shares[0] = 0.0;
@@ -147,7 +148,7 @@ impl HarmonicTube {
         self.low[which].get_or_init(low).clone()
     }
 
-    /// Memory for a matrix of low harmonics.
+    /// Returns a buffer for a matrix of low harmonics.
     fn low_matrix(&self, low: &LowHarmonics) -> BlockBanded {
         let (rows, size, band) = (
             self.tube.axial.functions(),
@@ -158,7 +159,7 @@ impl HarmonicTube {
         fits.unwrap_or_else(|| BlockBanded::zeros(rows, size, band))
     }
 
-    /// Memory for the block of a harmonic.
+    /// Returns a buffer for the block of a harmonic.
     fn block(&self) -> BlockBanded {
         let (rows, points) = (self.tube.axial.functions(), self.tube.wall.functions());
         let new = || BlockBanded::zeros(rows, 3 * points, self.tube.degree());
@@ -167,7 +168,7 @@ impl HarmonicTube {
 }
 
 impl HarmonicTangent {
-    /// Unknowns to a row of the matrix of low harmonics, of k rings; where it is needed.
+    /// Returns the number of unknowns per row of the matrix of low harmonics, for a number of rings.
     pub fn low_row(rings: usize) -> usize {
         9 * (2 * HIGHEST[1].min(LowHarmonics::highest_resolved(rings)) + 1)
     }
@@ -205,7 +206,7 @@ impl Tangent for HarmonicTangent {
 }
 
 impl HarmonicTangent {
-    /// The system, and the tangent on low harmonics to make its own of.
+    /// Prepares K + α C for solving, with the tangent on low harmonics if they are coupled.
     fn system(&self, alpha: f64, coupled: Option<BlockBanded>) -> Result<HarmonicSystem, Singular> {
         let tube = &self.state.tube;
         let rings = tube.tube.sector.rings;
@@ -242,20 +243,20 @@ impl HarmonicTangent {
     }
 }
 
-/// The factored block of a harmonic, made positive definite by more drag if need be.
+/// The factored block of a harmonic, made positive definite by additional damping if needed.
 struct Block {
     factor: Factor,
-    /// Of the block as it would be without that drag.
+    /// Negative pivots of the block without the additional damping.
     negative_pivots: usize,
-    /// The block on the functions through the wall that low harmonics have, for those that are coupled.
+    /// The block on the functions through the wall of the coupled harmonics, if the harmonic is coupled.
     averaged: Option<Factor>,
 }
 
-/// The first drag that is tried to make a block positive definite, and what it grows by.
+/// First additional damping to make a block positive definite, and its growth factor.
 const SHIFT: (f64, f64) = (1e-3, 4.0);
 
 impl Linear {
-    /// K_n + α C_n of the average, of harmonic n of the sector.
+    /// Factors K_n + α C_n of the averaged tangent, for harmonic n of the cyclic sector.
     fn block(&self, n: usize, alpha: f64) -> Result<Block, Singular> {
         let (tube, waves) = (&self.tube.tube, n * self.waves());
         let prescribed = tube.prescribed_in_harmonic(waves);
@@ -280,7 +281,7 @@ impl Linear {
                 .map_or(1, |(factor, _)| factor.negative_pivots())
         };
         let mut found = factored(alpha);
-        // A singular block is at the edge of stability, and counts as lost; of a state that is not
+        // A singular block is at the limit of stability and counts as unstable; for a state that is not
         // symmetric it proves nothing.
         let negative_pivots = match &found {
             Err(_) if !self.symmetric => 0,
@@ -295,7 +296,7 @@ impl Linear {
             found = factored(alpha + shift);
         }
         let (mut factor, averaged) = found?;
-        // Whatever the drag left negative.
+        // The pivots that are still negative.
         factor.make_positive();
         Ok(Block {
             factor,
@@ -304,13 +305,13 @@ impl Linear {
         })
     }
 
-    /// Waves around the whole tube of harmonic 1 of the sector.
+    /// Returns the circumferential mode of the whole tube of harmonic 1 of the cyclic sector.
     fn waves(&self) -> usize {
         let sector = &self.tube.tube.sector;
         sector.around / sector.rings
     }
 
-    /// A block, every unknown free, on the functions through the wall that low harmonics have.
+    /// Projects a block without boundary conditions on the functions through the wall of the low harmonics, and factors it.
     fn averaged(
         &self,
         low: &LowHarmonics,
@@ -357,17 +358,16 @@ impl Operator for HarmonicSystem {
 }
 
 impl HarmonicSystem {
-    /// Negative eigenvalues of harmonics 0, 1, … of the sector, of a state that is the same at every
-    /// ring; none of any other, whose tangent does not part into harmonics. Of a tube that is twisted,
-    /// or imperfect in its geometry or its muscles, they are those of the average: if that has any,
-    /// the tangent has one at least.
+    /// Returns the number of negative eigenvalues of harmonics 0, 1, … of the cyclic sector for a symmetric state; none for any
+    /// other, whose tangent does not separate into harmonics. For a twisted tube, or one with imperfect geometry or
+    /// muscles, they are those of the averaged tangent: if it has any, the tangent has at least one.
     pub fn negative_in_harmonics(&self) -> Option<&[usize]> {
         self.state.symmetric.then_some(&self.negative_pivots)
     }
 
-    /// Whether the average of the tangent around the tube is indefinite. Then the tangent is, too: what
-    /// the average makes of a displacement is the mean of what the tangent makes of it turned to every
-    /// ring, and mirrored, and the supports are the same turned and mirrored.
+    /// Returns whether the average of the tangent around the tube is indefinite. Then the tangent is indefinite, too: the
+    /// average is the mean of the tangents rotated to every ring and mirrored, and the boundary conditions do not
+    /// change under rotation and mirroring.
     pub fn average_is_indefinite(&self) -> bool {
         self.negative_pivots.iter().any(|negative| *negative > 0)
     }
@@ -379,7 +379,7 @@ impl Solver for HarmonicSystem {
             .map_or(0, |harmonics| harmonics[0])
     }
 
-    /// A state that is the same at every ring stays so, whatever other harmonics it has lost.
+    /// A symmetric state stays symmetric even if it is unstable to other harmonics.
     fn is_unstable(&self) -> bool {
         match self.negative_in_harmonics() {
             Some(harmonics) => harmonics[0] > 0,
@@ -404,7 +404,7 @@ mod tests {
     use crate::tube::{Mesh, Support, Tube};
 
     #[test]
-    fn memory_that_another_state_has_used_changes_nothing() {
+    fn reused_buffers_do_not_change_results() {
         let tube = Tube {
             length: 1.0,
             thickness: 0.06,
@@ -451,7 +451,7 @@ mod tests {
             assert_eq!(found, solved(&alone, &u));
             couplings.push(found.0);
         }
-        // A tilt needs fewer harmonics than an oval, a round tube none.
+        // A tilt needs fewer coupled harmonics than an oval, an axisymmetric tube none.
         assert_eq!(couplings, [Some(8), Some(4), None, Some(8), Some(4)]);
     }
 }

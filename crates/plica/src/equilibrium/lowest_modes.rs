@@ -1,4 +1,4 @@
-//! The lowest eigenpairs of the tangent of a tube of many rings, whatever its state.
+//! The lowest eigenpairs of the tangent of a tube of several rings.
 
 use super::TubeProblem;
 use super::problem::TubeSolver;
@@ -7,13 +7,14 @@ use crate::solve::{Equilibrium, Lowest, Operator, Search, Tangent, lowest};
 use crate::tube::Load;
 
 impl TubeProblem {
-    /// The lowest eigenpairs of K x = ν C x on the free unknowns, with the tangent K of a state that
-    /// is not inverted and the mass C of unit density ([`crate::assembly::RingDamping`]), ν in E/D². As
-    /// many as `block` are searched for together: more than are wanted, since a search is as slow as
-    /// the next eigenvalue is near, and on a tube that is nearly round eigenvalues come in pairs.
-    /// Where it starts is noise of a fixed seed, made smooth, so that no symmetry hides a mode.
+    /// Returns the lowest eigenpairs of K x = ν C x on the free unknowns, with the tangent K of a state that is not
+    /// inverted and the mass C of unit density ([`crate::assembly::RingDamping`]), ν in E/D².
     ///
-    /// None for a tube of one ring, whose tangent is assembled, or where the preconditioner is singular.
+    /// Searches for `block` eigenpairs together, which should be more than wanted: the search slows down if the next
+    /// eigenvalue is close, and nearly axisymmetric tubes have pairs of eigenvalues. It starts from smooth noise with a fixed
+    /// seed, so that no symmetry hides a mode.
+    ///
+    /// Returns none for a tube of one ring, or if the preconditioner is singular.
     pub fn lowest_modes(
         &self,
         load: &Load,
@@ -38,12 +39,12 @@ impl TubeProblem {
     }
 }
 
-/// Numbers from −1 to 1 without order, the same for ever (SplitMix64, Steele et al. 2014).
+/// Pseudo-random numbers from −1 to 1, always the same (SplitMix64, Steele et al. 2014).
 #[derive(Debug, Default)]
 pub(super) struct Noise(u64);
 
 impl Noise {
-    /// The next of them.
+    /// Returns the next number.
     pub(super) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

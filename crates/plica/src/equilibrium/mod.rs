@@ -1,10 +1,10 @@
 //! The tube as a solver problem: its tangent, its linear solver, its stability, and its transfer to another mesh.
 
+mod buffers;
 mod harmonic_tangent;
 mod lowest_modes;
 mod problem;
 mod prolong;
-mod spare;
 mod stability;
 mod verdict;
 

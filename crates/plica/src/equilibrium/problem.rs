@@ -1,4 +1,4 @@
-//! A spline tube as the solver sees it.
+//! A spline tube as a problem for the solver.
 
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
 use crate::assembly::{Inverted, SplineTube};
@@ -11,47 +11,47 @@ use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// The equilibrium of a spline tube under muscles and moved ends.
+/// The equilibrium of a spline tube under muscles, moved ends and pressures.
 #[derive(Clone, Debug)]
 pub struct TubeProblem {
     /// The tube.
     pub tube: Arc<SplineTube>,
     rings: Rings,
     prescribed: Arc<[bool]>,
-    /// Reference volume of the sector.
+    /// Reference volume of the cyclic sector.
     volume: f64,
-    /// Forces in play that a tube at rest is credited with, so that what rounding leaves of it
-    /// (some 1e-17 times the stiffness of the wall) is small against them.
+    /// Smallest residual scale. The rounding errors of a tube at rest, about 1e-17 times the stiffness of the wall, are small
+    /// relative to it.
     at_rest: f64,
 }
 
-/// The drag matrix of one ring, assembled as its tangents are; or what the tangents of many share.
+/// The assembled damping matrix of one ring, or the shared data of the tangents of several rings.
 #[derive(Clone, Debug)]
 enum Rings {
     One(Arc<BlockBanded>),
     Many(Arc<HarmonicTube>),
 }
 
-/// The tangent stiffness of a tube: assembled and factored for one ring, without a matrix for more.
+/// The tangent stiffness of a tube: assembled for one ring, matrix-free for several.
 #[derive(Clone, Debug)]
 pub enum TubeTangent {
-    /// For one ring.
+    /// One ring.
     Direct(Direct),
-    /// For more.
+    /// Several rings.
     Harmonic(HarmonicTangent),
 }
 
-/// What solves with a [`TubeTangent`].
+/// The solver of a [`TubeTangent`].
 #[derive(Debug)]
 pub enum TubeSolver {
-    /// For one ring.
+    /// One ring.
     Direct(Factor),
-    /// For more.
+    /// Several rings.
     Harmonic(HarmonicSystem),
 }
 
 impl TubeProblem {
-    /// Puts a tube before the solver.
+    /// Makes the problem of a tube.
     pub fn new(tube: SplineTube) -> Self {
         let at_rest = 3e-11 * tube.tube.material.longitudinal_modulus();
         let (outer, inner) = (Tube::OUTER_RADIUS, tube.tube.inner_radius());
@@ -87,14 +87,14 @@ impl Equilibrium for TubeProblem {
     fn forces(&self, load: &Load, u: &[f64]) -> Result<ResidualEvaluation, Inverted> {
         let mut forces = self.tube.forces(load, u)?;
         self.tube.project_out_constraints(&mut forces.residual);
-        // The solver sees one sector: its energy is that whose derivative the residual is.
+        // The energy of one cyclic sector, whose derivative is the residual.
         let [strain, energy] =
             [forces.energy, forces.potential].map(|x| x / self.tube.sector.repeats());
         Ok(ResidualEvaluation {
             energy,
             residual: forces.residual,
             residual_scale: forces.residual_scale.max(self.at_rest),
-            // Every point adds an energy density of rounding size.
+            // Every quadrature point adds a rounding error of its energy density.
             rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * strain.abs().max(energy.abs()),
         })
     }

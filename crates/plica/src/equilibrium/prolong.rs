@@ -1,18 +1,16 @@
-//! A state of one mesh and symmetry, on another.
+//! Transfer of a state to another mesh and symmetry.
 
 use crate::assembly::SplineTube;
 use crate::rings::Sector;
 use crate::spline::transfer;
 use std::f64::consts::TAU;
 
-/// The unknowns on `to` of the displacements that have the unknowns `u` on `from`: two meshes and
-/// symmetries of one tube. If `from` repeats around, `to` repeats as often or less often (a sector
-/// of one ring repeats as often as anything).
+/// Returns the unknowns on `to` of the displacements with the unknowns `u` on `from`, for two meshes and symmetries of one
+/// tube. The symmetry of `to` must be that of `from` or a lower one.
 ///
-/// Along the tube and through the wall the new spline goes through the old one at Greville points;
-/// around it at the angles of the rings. Where knots are only added, the tube moves as before
-/// everywhere. With as many rings around and one degree, every ring moves as the ring of its place
-/// did, to the bit.
+/// The new spline interpolates the old one at Greville points along the tube and through the wall, and at the angles of
+/// the rings around it. If the new mesh only adds knots, the displacements are the same everywhere. With the
+/// same degree and number of rings, the displacements of every ring are the same to the bit.
 pub fn prolong(from: &SplineTube, to: &SplineTube, u: &[f64]) -> Vec<f64> {
     assert_eq!(u.len(), from.unknowns());
     let (old, new) = (from.sector.rings, to.sector.rings);
@@ -31,11 +29,11 @@ pub fn prolong(from: &SplineTube, to: &SplineTube, u: &[f64]) -> Vec<f64> {
     prolonged
 }
 
-/// The way from the rings of one sector to those of another.
+/// Transfer from the rings of one cyclic sector to those of another.
 enum Around {
-    /// Ring by ring.
+    /// Every new ring has the displacements of one old ring.
     Same,
-    /// For every new ring, weights of the old ones: of the axial component, and of u_r + i u_θ.
+    /// Weights of the old rings for every new ring: of the axial component, and of u_r + i u_θ.
     Weights(Vec<Vec<(f64, Complex)>>),
 }
 
@@ -66,7 +64,7 @@ impl Around {
         Self::Weights((0..k).map(weights).collect())
     }
 
-    /// The components of one place in the cross-section, ring by ring.
+    /// Transfers the components of one point of the cross-section, ring by ring.
     fn apply(&self, old: &[f64], new: &mut [f64]) {
         let (m, k) = (old.len() / 3, new.len() / 3);
         for j in 0..k {
@@ -86,12 +84,12 @@ impl Around {
     }
 }
 
-/// What every ring of a sector adds at an angle: to the axial displacement, and to u_r + i u_θ at
+/// Returns the weights of the rings of a cyclic sector at an angle: of the axial displacement, and of u_r + i u_θ at
 /// that angle.
 fn at_angle(sector: &Sector, angle: f64) -> Vec<(f64, Complex)> {
     // Element 0 is centred on angle zero.
     let turns = angle / sector.angle() + 0.5;
-    // A ring's own angle is an edge or the middle of an element, whatever rounding says.
+    // The angle of a ring is an edge or the middle of an element; rounding must not decide otherwise.
     let turns = if (2.0 * turns - (2.0 * turns).round()).abs() < 1e-9 {
         (2.0 * turns).round() / 2.0
     } else {
@@ -99,7 +97,7 @@ fn at_angle(sector: &Sector, angle: f64) -> Vec<(f64, Complex)> {
     };
     let (element, s) = (turns.floor(), turns - turns.floor());
     let first = (element as i64).rem_euclid(sector.rings as i64) as usize;
-    // From the frame of the element to that of the angle.
+    // Rotates from the frame of the element to that of the angle.
     let (sin, cos) = (element * sector.angle() - angle).sin_cos();
     let mut weights = vec![(0.0, (0.0, 0.0)); sector.rings];
     for (r, slot) in sector.at(s).iter().enumerate() {
@@ -111,7 +109,7 @@ fn at_angle(sector: &Sector, angle: f64) -> Vec<(f64, Complex)> {
     weights
 }
 
-/// The row of the inverse of a circulant matrix: c with Σ_d c_d w_{j+d} = v_j for
+/// Returns a row of the inverse of a circulant matrix: c with Σ_d c_d w_{j+d} = v_j for
 /// w_j = Σ_d a_d v_{j+d}.
 fn inverse(a: &[Complex]) -> Vec<Complex> {
     let k = a.len();
@@ -122,7 +120,7 @@ fn inverse(a: &[Complex]) -> Vec<Complex> {
     let sum = |terms: &mut dyn Iterator<Item = Complex>| {
         terms.fold((0.0, 0.0), |s, x| (s.0 + x.0, s.1 + x.1))
     };
-    // The eigenvalues' inverses, and back.
+    // Inverts the eigenvalues and transforms back.
     let eigen = |m: usize| {
         let (re, im) = sum(&mut (0..k).map(|d| times(a[d], wave(m * d))));
         let size = re * re + im * im;
@@ -179,7 +177,7 @@ mod tests {
             .collect()
     }
 
-    /// Control values along smooth waves.
+    /// Returns control values of smooth waves.
     fn smooth(tube: &SplineTube) -> Vec<f64> {
         let (points, rings) = (tube.wall.functions(), tube.sector.rings);
         let place = |i: usize| {
@@ -196,7 +194,7 @@ mod tests {
         (0..tube.unknowns()).map(place).collect()
     }
 
-    /// Largest difference of the displacements at points all over the wall.
+    /// Returns the largest difference of the displacements at points across the wall.
     fn apart(a: (&SplineTube, &[f64]), b: (&SplineTube, &[f64])) -> f64 {
         let rest = tube().rest();
         let mut most = 0.0_f64;
@@ -219,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn every_ring_of_a_fold_moves_as_the_one_ring_did_to_the_bit() {
+    fn rings_of_a_lower_symmetry_get_the_same_displacements_to_the_bit() {
         let one = laid([4, 12, 2], 3, 1);
         let u = wavy(&one);
         let energy = one.forces(&tube().rest(), &u).unwrap().energy;
@@ -232,24 +230,24 @@ mod tests {
             let found = fold.forces(&tube().rest(), &prolonged).unwrap().energy;
             assert!((found / energy - 1.0).abs() < 1e-12, "{rings} rings");
         }
-        // And from a sector to one that is a multiple of it.
+        // From a cyclic sector to a multiple of it.
         let (three, six) = (laid([4, 12, 2], 3, 3), laid([4, 12, 2], 3, 6));
         let u = wavy(&three);
         assert!(apart((&three, &u), (&six, &prolong(&three, &six, &u))) < 1e-15);
     }
 
     #[test]
-    fn a_finer_mesh_moves_everywhere_as_the_coarse_one_did() {
+    fn a_mesh_with_added_knots_has_the_same_displacements_everywhere() {
         for degree in 1..=5 {
             for rings in [1, 4, 12] {
-                // Three elements for one around the tube: their edges meet.
+                // Three elements for one around the tube, so that their edges coincide.
                 let coarse = laid([4, 12, 2], degree, rings);
                 let fine = laid([8, 36, 6], degree, 3 * rings);
                 let u = wavy(&coarse);
                 let prolonged = prolong(&coarse, &fine, &u);
                 let error = apart((&coarse, &u), (&fine, &prolonged));
                 assert!(error < 1e-13, "degree {degree}, {rings} rings: {error:e}");
-                // What was coarse comes back from the fine.
+                // The transfer back to the coarse mesh restores the unknowns.
                 let back = prolong(&fine, &coarse, &prolonged);
                 let error = back.iter().zip(&u).map(|(a, b)| (a - b).abs());
                 assert!(error.fold(0.0, f64::max) < 1e-13);
@@ -258,8 +256,8 @@ mod tests {
     }
 
     #[test]
-    fn a_finer_mesh_stores_the_same_energy() {
-        // The circle stays the same, and strains are so smooth that quadrature is exact to rounding.
+    fn a_mesh_with_added_knots_has_the_same_energy() {
+        // The circle is the same, and the strains are so smooth that quadrature is exact to rounding.
         let (coarse, fine) = (laid([16, 12, 3], 4, 6), laid([48, 12, 6], 4, 12));
         let u = smooth(&coarse);
         let rest = tube().rest();
@@ -272,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn other_meshes_come_close() {
+    fn other_meshes_approximate_the_displacements() {
         let fine = laid([60, 60, 3], 3, 60);
         let u = smooth(&fine);
         let error = |n: usize| {

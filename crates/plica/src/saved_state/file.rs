@@ -250,14 +250,14 @@ mod tests {
     }
 
     #[test]
-    fn a_saved_state_comes_back_to_the_last_bit() {
+    fn a_saved_state_is_read_as_it_was_written_to_the_bit() {
         let bytes = state().to_bytes().unwrap();
         assert_eq!(SavedState::from_bytes(&bytes).unwrap(), state());
         assert_eq!(state().to_bytes().unwrap(), bytes);
     }
 
     #[test]
-    fn a_file_cut_short_is_told_from_one_that_is_whole() {
+    fn a_truncated_file_is_reported_as_such() {
         let bytes = state().to_bytes().unwrap();
         for length in 0..bytes.len() {
             let error = SavedState::from_bytes(&bytes[..length]).unwrap_err();
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn no_flipped_bit_goes_unnoticed() {
+    fn every_flipped_bit_is_detected() {
         let bytes = state().to_bytes().unwrap();
         for bit in 0..8 * bytes.len() {
             let mut flipped = bytes.clone();
@@ -284,23 +284,23 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_go_together_is_refused_though_its_checksum_is_right() {
+    fn an_inconsistent_state_with_a_valid_checksum_is_refused() {
         let refused = |change: &dyn Fn(&mut SavedState)| {
             let mut state = state();
             change(&mut state);
             let bytes = state.to_bytes().unwrap();
             SavedState::from_bytes(&bytes).unwrap_err().to_string()
         };
-        let told = refused(&|state| state.layout.mesh.around = 11);
-        assert!(told.contains("do not repeat"), "{told}");
-        let told = refused(&|state| state.layout.mesh.degree = 0);
-        assert!(told.contains("degree"), "{told}");
-        let told = refused(&|state| state.layout.length = -1.0);
-        assert!(told.contains("no length"), "{told}");
+        let message = refused(&|state| state.layout.mesh.around = 11);
+        assert!(message.contains("do not divide"), "{message}");
+        let message = refused(&|state| state.layout.mesh.degree = 0);
+        assert!(message.contains("degree"), "{message}");
+        let message = refused(&|state| state.layout.length = -1.0);
+        assert!(message.contains("no length"), "{message}");
     }
 
     #[test]
-    fn a_number_that_is_none_is_neither_written_nor_read() {
+    fn a_number_that_is_not_finite_is_neither_written_nor_read() {
         let mut state = state();
         state.u[5] = 123.25;
         let mut bytes = state.to_bytes().unwrap();
@@ -312,11 +312,11 @@ mod tests {
         bytes[at..at + BLANK.len()].copy_from_slice(BLANK.as_bytes());
         let checksum = blake3::hash(&bytes).to_string();
         bytes[at..at + BLANK.len()].copy_from_slice(checksum.as_bytes());
-        let told = SavedState::from_bytes(&bytes).unwrap_err().to_string();
-        assert!(told.contains("`u` is NaN at 5"), "{told}");
+        let message = SavedState::from_bytes(&bytes).unwrap_err().to_string();
+        assert!(message.contains("`u` is NaN at 5"), "{message}");
         state.u[5] = f64::NAN;
-        let told = state.to_bytes().unwrap_err().to_string();
-        assert!(told.contains("`u` is NaN at 5"), "{told}");
+        let message = state.to_bytes().unwrap_err().to_string();
+        assert!(message.contains("`u` is NaN at 5"), "{message}");
     }
 
     #[test]
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn a_later_format_and_a_foreign_file_are_named() {
+    fn later_formats_and_foreign_files_are_reported_as_such() {
         let text = String::from_utf8_lossy(&state().to_bytes().unwrap()).into_owned();
         assert!(text.contains(r#"\"format\":1,"#), "{text}");
         let header = r#"{"__metadata__":{"plica":"{\"format\":9}"}}"#;

@@ -1,4 +1,4 @@
-//! What a study will take, without running it.
+//! Forecast of the size and the cost of a study.
 
 use super::{Plan, StudyError};
 use crate::assembly::SplineTube;
@@ -14,26 +14,26 @@ pub struct Forecast {
     pub unknowns: usize,
     /// Elements of the whole tube.
     pub elements: usize,
-    /// Unknowns of the sector that is solved for.
+    /// Unknowns of the cyclic sector that is solved for.
     pub unknowns_solved: usize,
-    /// Peak memory.
+    /// Peak memory, in bytes.
     pub memory_bytes: u64,
-    /// Wall time on this machine, roughly: it is measured on a piece of the tube, and how many
-    /// solves a path needs is only known on the way.
+    /// Rough wall time on this machine, in seconds: the time of a solve is measured on a piece of the tube, and the number of
+    /// solves of the path is an estimate.
     pub seconds_estimate: f64,
 }
 
-/// Linear solves per state on a smooth branch, and once in a while through a snap.
+/// Average number of linear solves per state.
 const SOLVES_PER_STATE: f64 = 10.0;
-/// Memory of the program itself and its pictures.
+/// Memory of the program itself and of its pictures.
 const PROGRAM_BYTES: u64 = 80 << 20;
-/// Elements along the piece of tube on which the speed is measured.
+/// Elements along the piece of the tube on which the time of a solve is measured.
 const PIECE: usize = 16;
 
-/// Iterations of conjugate gradients in a linear solve of many rings, on average.
+/// Average number of conjugate-gradient iterations per linear solve with several rings.
 const ITERATIONS_PER_SOLVE: f64 = 10.0;
 
-/// Forecasts a study.
+/// Forecasts the size and the cost of a study.
 pub fn forecast(plan: &Plan) -> Forecast {
     let mesh = &plan.mesh;
     let unknowns = 3 * mesh.axial * mesh.around * mesh.thickness;
@@ -68,19 +68,18 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
     };
     let kept = 8 * kept * mesh.axial as u64 * row;
     if rings > 1 {
-        // What the product keeps at quadrature points, the blocks of all harmonics (and those they
-        // are made of), the low harmonics coupled, and vectors.
+        // The tangent data at quadrature points, the blocks of all harmonics and their ingredients, the coupled low
+        // harmonics, and vectors.
         let [along, _, through] = mesh.elements();
         let points = along * through * (mesh.degree + 1).pow(3) * mesh.rings(plan.symmetry);
         let points = (points as f64 * 1.1) as u64;
         let geometry = |imperfection: &Imperfection| imperfection.of == Part::Geometry;
-        // In single precision; and the stress-free shape in double.
+        // Bytes of the tangent data in single precision, and of the stress-free shape in double precision.
         let at_point = match plan.tube.imperfections.iter().any(geometry) {
             true => 40 + 48,
             false => 40,
         };
-        // The resistance to a change of volume has points of its own where it is integrated apart.
-        // And an average of their own.
+        // With reduced integration, the volumetric part has points and an average of its own.
         let (at_point, averages) = match mesh.volumetric {
             Integration::Full => (at_point, 1),
             Integration::Reduced => (2 * at_point, 2),
@@ -92,11 +91,11 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
         return PROGRAM_BYTES + kept + at_point * points + harmonics + low + vectors;
     }
     let matrix = banded(row);
-    // Tangent, its factor, the factor of the state, the drag matrix, the slabs before their sum.
+    // Tangent, its factor, the factor of the last state, the damping matrix, and the batches before their sum.
     PROGRAM_BYTES + kept + 5 * matrix + (512 << 20).min(matrix)
 }
 
-/// Times one linear solve on a short piece of the tube with the same cross-section.
+/// Measures the time of a linear solve on a short piece of the tube with the same cross-section.
 fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
     let (mesh, p) = (&plan.mesh, plan.mesh.degree);
     let whole = mesh.axial - p;
@@ -146,7 +145,7 @@ pub fn check_memory(plan: &Plan) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// Free memory in bytes, where the system tells (Linux).
+/// Returns the free memory in bytes, where the system reports it (Linux).
 fn available_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text
