@@ -138,12 +138,12 @@ impl BoundaryConditions {
 
     /// Returns for every unknown of a ring whether an end prescribes it, without rigid-body
     /// constraints.
-    pub fn prescribed_at_ends(&self) -> Vec<bool> {
+    pub(crate) fn prescribed_at_ends(&self) -> Vec<bool> {
         prescribed_at_ends(&self.ends, self.prescribed.len(), self.rings)
     }
 
     /// Projects a displacement onto those that satisfy the rigid-body constraints of many rings.
-    pub fn project_out_constraints(&self, u: &mut [f64]) {
+    pub(crate) fn project_out_constraints(&self, u: &mut [f64]) {
         for RigidBodyConstraint { unknown, wave } in &self.constraints {
             let u = &mut u[unknown * self.rings..][..self.rings];
             let part: f64 = wave.iter().zip(&*u).map(|(w, u)| w * u).sum();
@@ -203,7 +203,7 @@ fn waves(unknown: usize, n: usize, rings: usize) -> impl Iterator<Item = RigidBo
 /// Returns the infinitesimal rigid motions of circumferential harmonic n of an axisymmetric tube
 /// without twist with control points at (z, r): along and about the axis; a sideways shift and a
 /// tilt.
-pub fn rigid_motions_in_harmonic(n: usize, points: &[[f64; 2]]) -> Vec<Vec<f64>> {
+pub(crate) fn rigid_motions_in_harmonic(n: usize, points: &[[f64; 2]]) -> Vec<Vec<f64>> {
     let motion = |of: &dyn Fn(f64, f64) -> [f64; 3]| -> Vec<f64> {
         points.iter().flat_map(|&[z, r]| of(z, r)).collect()
     };

@@ -11,7 +11,7 @@ use crate::tube::Load;
 use rayon::prelude::*;
 
 /// Energy and residual at a state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Forces {
     /// ∫ w det Fp dV₀ of the whole tube: the paper's W, in E·D³.
     pub energy: f64,
@@ -86,12 +86,9 @@ impl SplineTube {
 
         let repeats = self.sector.repeats();
         let mut forces = Forces {
-            energy: 0.0,
-            energy_ungrown: 0.0,
-            potential: 0.0,
             residual: vec![0.0; u.len()],
-            residual_scale: 0.0,
             smallest_jacobian: f64::INFINITY,
+            ..Forces::default()
         };
         for (batch, part) in self.batches.iter().zip(&batches) {
             let SmallestJacobian {

@@ -40,7 +40,7 @@ impl SplineTube {
     ///
     /// Waves are zero at fixed ends. Other ends, and modes, are fixed at u₀, so that u = u₀ is free
     /// of stress and the equilibrium at rest is the stress-free shape.
-    pub fn geometric_imperfection(&self) -> Option<&[f64]> {
+    pub(crate) fn geometric_imperfection(&self) -> Option<&[f64]> {
         let imperfect = self.stress_free_shape.as_ref();
         imperfect.map(|imperfect| &imperfect.displacement[..])
     }
@@ -49,7 +49,10 @@ impl SplineTube {
     ///
     /// # Errors
     /// [`Inverted`] if the shape is folded: det ∂(X + u₀)/∂X is not positive.
-    pub fn check_imperfections(&self, imperfections: &[Imperfection]) -> Result<(), Inverted> {
+    pub(crate) fn check_imperfections(
+        &self,
+        imperfections: &[Imperfection],
+    ) -> Result<(), Inverted> {
         let bases = [&self.axial, &self.wall];
         let Some(u) = geometry(&self.tube, imperfections, &self.sector, bases) else {
             return Ok(());

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 impl SplineTube {
     /// Assembles Eᵀ K E at a state into a matrix with blocks of [`LowHarmonics::row_size`]; every
     /// unknown is free.
-    pub fn low_harmonic_tangent(
+    pub(crate) fn low_harmonic_tangent(
         &self,
         low: &LowHarmonics,
         load: &Load,

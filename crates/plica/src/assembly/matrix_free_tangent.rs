@@ -29,26 +29,19 @@ pub struct MatrixFreeTangent {
 }
 
 impl SplineTube {
-    /// Linearises at a state: returns the tangent stiffness ∂R/∂u_cp of the sector. The state must
-    /// not be inverted (see [`SplineTube::forces`]). Stores the
-    /// tangent data of the law at every quadrature point, in single precision.
-    pub fn matrix_free_tangent(&self, load: &Load, u: &[f64]) -> MatrixFreeTangent {
-        let mut at = MatrixFreeTangent::default();
-        self.linearise_into(load, u, &mut at);
-        at
-    }
-
-    /// Linearises at a state, reusing the memory of an earlier tangent.
-    pub fn linearise_into(&self, load: &Load, u: &[f64], at: &mut MatrixFreeTangent) {
-        at.pressure = self.pressure_tangent(load, u);
-        self.linearise_elastic(load, u, at);
-        if let Some(volume) = &self.volumetric {
-            let apart = at.volumetric.get_or_insert_default();
-            volume.linearise_elastic(load, u, apart);
-            at.average.add(&apart.average);
+    /// Linearises at a state: makes `tangent` the stiffness ∂R/∂u_cp of the sector, reusing its memory.
+    /// The state must not be inverted (see [`SplineTube::forces`]). Stores the tangent data of the law
+    /// at every quadrature point, in single precision.
+    pub(crate) fn linearise(&self, load: &Load, u: &[f64], tangent: &mut MatrixFreeTangent) {
+        tangent.pressure = self.pressure_tangent(load, u);
+        self.linearise_elastic(load, u, tangent);
+        if let Some(part) = &self.volumetric {
+            let volumetric = tangent.volumetric.get_or_insert_default();
+            part.linearise_elastic(load, u, volumetric);
+            tangent.average.add(&volumetric.average);
         }
-        if let Some(pressure) = &at.pressure {
-            self.add_average_pressure(pressure, &mut at.average);
+        if let Some(pressure) = &tangent.pressure {
+            self.add_average_pressure(pressure, &mut tangent.average);
         }
     }
 
@@ -98,7 +91,7 @@ impl SplineTube {
     }
 
     /// Computes y += factor · K v.
-    pub fn add_tangent_product(
+    pub(crate) fn add_tangent_product(
         &self,
         at: &MatrixFreeTangent,
         factor: f64,
@@ -110,8 +103,8 @@ impl SplineTube {
         }
         let v = self.padded_rings.pad(v);
         self.add_elastic_product(at, factor, &v, y);
-        if let (Some(volume), Some(apart)) = (&self.volumetric, &at.volumetric) {
-            volume.add_elastic_product(apart, factor, &v, y);
+        if let (Some(part), Some(at)) = (&self.volumetric, &at.volumetric) {
+            part.add_elastic_product(at, factor, &v, y);
         }
     }
 

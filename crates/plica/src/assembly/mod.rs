@@ -57,10 +57,10 @@ mod tangent;
 mod tests;
 
 pub use forces::{Forces, Inverted};
-pub use low_harmonics::LowHarmonics;
-pub use matrix_free_tangent::MatrixFreeTangent;
+pub(crate) use low_harmonics::LowHarmonics;
+pub(crate) use matrix_free_tangent::MatrixFreeTangent;
 pub use place::Place;
 pub use reference::{ReferenceForces, ReferenceTube};
-pub use ring_damping::RingDamping;
+pub(crate) use ring_damping::RingDamping;
 pub use sample::{Point, Sample};
 pub use spline_tube::SplineTube;

@@ -47,7 +47,7 @@ impl SplineTube {
     }
 
     /// Returns the place at rest of the control point of an unknown.
-    pub fn place_of_unknown(&self, unknown: usize) -> Place {
+    pub(crate) fn place_of_unknown(&self, unknown: usize) -> Place {
         let (row, within) = (unknown / self.row_size(), unknown % self.row_size());
         let (through, ring) = (within / (3 * self.sector.rings), within % self.sector.rings);
         let place = self.place(self.axial.greville()[row], self.wall.greville()[through], 0);
@@ -60,7 +60,7 @@ impl SplineTube {
     /// Returns the place with the highest strain energy density of a state, and the density in E.
     /// Evaluates the middle of every element, and the points above and below it on both walls. The
     /// density is infinite where the wall is inverted.
-    pub fn max_energy_density(&self, load: &Load, u: &[f64]) -> Option<(Place, f64)> {
+    pub(crate) fn max_energy_density(&self, load: &Load, u: &[f64]) -> Option<(Place, f64)> {
         let tube = &self.tube;
         let (inner, thickness) = (tube.inner_radius(), tube.thickness);
         let radii = [inner, inner + 0.5 * thickness, inner + thickness];
@@ -100,7 +100,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, TAU};
 
     #[test]
-    fn a_place_is_told_in_words() {
+    fn place_is_described_in_words() {
         let angle_and_depth = |angle: Option<f64>, depth| {
             let z = 0.75;
             Place { z, angle, depth }.angle_and_depth()
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_lies_where_its_control_point_does() {
+    fn place_of_unknown_is_that_of_its_control_point() {
         for rings in [1, 6] {
             let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 6], rings);
             let along = tube.control_values_from(|z, _, _| [z; 3]);
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_is_strained_hardest_where_it_is_bent_most() {
+    fn max_energy_density_is_found_at_the_largest_deformation() {
         let TubeAndLoad { tube, load } = tube_and_load(3, [12, 2, 12], 12);
         let rest = tube.tube.rest();
         // Wider, and more so at the inside or at the outside.

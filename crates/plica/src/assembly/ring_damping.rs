@@ -215,7 +215,7 @@ fn add(to: &mut [f64], factor: f64, from: &[f64]) {
 
 impl SplineTube {
     /// Returns the damping matrix of the sector as a product of three small matrices.
-    pub fn ring_damping(&self) -> RingDamping {
+    pub(crate) fn ring_damping(&self) -> RingDamping {
         RingDamping::new(self)
     }
 }

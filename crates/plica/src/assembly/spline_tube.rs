@@ -194,7 +194,7 @@ impl SplineTube {
     /// a sector of many rings. For each rigid motion that the ends permit, one unknown of a ring
     /// has no mean over the rings (motion along and about z), or no cosine and sine (two shifts,
     /// two tilts). Leaves `u` unchanged for one ring, whose constrained unknowns are prescribed.
-    pub fn project_out_constraints(&self, u: &mut [f64]) {
+    pub(crate) fn project_out_constraints(&self, u: &mut [f64]) {
         self.boundary_conditions.project_out_constraints(u);
     }
 
@@ -205,20 +205,20 @@ impl SplineTube {
 
     /// Returns for every unknown of circumferential harmonic n of the tube whether the ends or a
     /// rigid-body constraint prescribe it.
-    pub fn prescribed_in_harmonic(&self, n: usize) -> Vec<bool> {
+    pub(crate) fn prescribed_in_harmonic(&self, n: usize) -> Vec<bool> {
         self.boundary_conditions.prescribed_in_harmonic(n)
     }
 
     /// Returns for every unknown of one ring whether an end prescribes it, without rigid-body
     /// constraints.
-    pub fn prescribed_at_ends(&self) -> Vec<bool> {
+    pub(crate) fn prescribed_at_ends(&self) -> Vec<bool> {
         self.ring_boundary_conditions.prescribed_at_ends()
     }
 
     /// Returns the infinitesimal rigid motions of circumferential harmonic n that the ends permit,
     /// at an axisymmetric state without twist, as displacements like those of
     /// [`SplineTube::tangent_in_harmonic`].
-    pub fn rigid_motions_in_harmonic(&self, u: &[f64], n: usize) -> Vec<Vec<f64>> {
+    pub(crate) fn rigid_motions_in_harmonic(&self, u: &[f64], n: usize) -> Vec<Vec<f64>> {
         assert!(self.sector.rings == 1);
         let (rows, points) = (self.axial.greville(), self.wall.greville());
         let points: Vec<[f64; 2]> = u

@@ -25,7 +25,7 @@ impl SplineTube {
     /// Assembles the block of the whole tube's tangent for circumferential harmonic n ≥ 1, at an
     /// axisymmetric state without twist: there the tangent is block-circulant, and real on
     /// displacements (z cos nφ, r cos nφ, −θ sin nφ). Scaled by 2/N_C; every unknown is free.
-    pub fn tangent_in_harmonic(&self, load: &Load, u: &[f64], n: usize) -> BlockBanded {
+    pub(crate) fn tangent_in_harmonic(&self, load: &Load, u: &[f64], n: usize) -> BlockBanded {
         assert!(self.sector.rings == 1 && n >= 1);
         let rotations = |at: &CircumferentialPoint| {
             self.sector

@@ -116,7 +116,7 @@ impl HarmonicTube {
     /// Returns the tangent stiffness at a state.
     pub fn tangent(self: &Arc<Self>, load: &Load, u: &[f64]) -> HarmonicTangent {
         let mut at = self.linearised.take().unwrap_or_default();
-        self.tube.linearise_into(load, u, &mut at);
+        self.tube.linearise(load, u, &mut at);
         let rings = u.chunks_exact(self.tube.sector.rings);
         let difference = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs()));
         let differs = rings.map(difference).fold(0.0, f64::max);

@@ -33,6 +33,7 @@ impl Circulant {
 
     /// Returns B_n, the matrix on circumferential harmonic n of the whole tube; every unknown is
     /// free.
+    #[cfg(test)]
     pub fn harmonic(&self, n: usize) -> BlockBanded {
         let like = &self.offsets[0];
         let mut block = BlockBanded::zeros(like.blocks(), like.size(), like.band());

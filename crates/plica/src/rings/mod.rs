@@ -26,10 +26,10 @@ mod harmonic_solver;
 mod low_harmonic_correction;
 mod transform;
 
-pub use circulant::Circulant;
-pub use harmonic_solver::HarmonicSolver;
-pub use low_harmonic_correction::LowHarmonicCorrection;
-pub use transform::{HarmonicColumns, Transform};
+pub(crate) use circulant::Circulant;
+pub(crate) use harmonic_solver::HarmonicSolver;
+pub(crate) use low_harmonic_correction::LowHarmonicCorrection;
+pub(crate) use transform::{HarmonicColumns, Transform};
 
 use crate::spline::{self, Basis};
 use std::f64::consts::TAU;
@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sector_of_one_ring_adds_up_the_whole_sector() {
+    fn one_ring_sector_sums_all_functions() {
         let (one, whole) = (Sector::new(3, 12, 1), Sector::new(3, 12, 12));
         let (folded, ring_values) = (one.at(0.3), whole.at(0.3));
         assert_eq!((folded.len(), ring_values.len()), (1, 4));
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shifted_tube_is_shifted_everywhere() {
+    fn rigid_shift_is_reproduced_at_every_point() {
         // The rigid motion u = e_x: ring j moves by (cos φ_j, −sin φ_j) in its own components.
         let sector = Sector::new(3, 12, 12);
         let (element, s) = (5, 0.8);

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn back_undoes_forward() {
+    fn inverse_inverts_forward() {
         for rings in [1, 2, 3, 4, 7, 12, 60] {
             let transform = Transform::new(rings);
             let u: Vec<f64> = (0..5 * rings).map(|i| (i as f64 * 0.37).sin()).collect();
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn products_of_harmonics_add_up_to_the_whole() {
+    fn dot_products_by_harmonic_add_up() {
         for rings in [1, 2, 5, 12] {
             let transform = Transform::new(rings);
             let u: Vec<f64> = (0..4 * rings).map(|i| (i as f64 * 0.37).sin()).collect();
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wave_is_found_in_its_column() {
+    fn wave_has_coefficients_in_its_column_only() {
         let (rings, n) = (12, 3);
         let transform = Transform::new(rings);
         let u: Vec<f64> = (0..rings)

@@ -1,7 +1,7 @@
-//! That a tube by circumferential batches is the tube by batches, whose matrices are assembled.
+//! Circumferential batches against axial batches, whose matrices are assembled.
 
 use crate::assembly::tests::{
-    TubeAndLoad, direction, dot, largest, repeated, tube_and_load, unknowns, wavy,
+    TubeAndLoad, direction, dot, largest, linearised, repeated, tube_and_load, unknowns, wavy,
 };
 use crate::assembly::{LowHarmonics, SplineTube};
 use crate::matrix::BlockBanded;
@@ -20,7 +20,7 @@ const SECTORS: [(usize, [usize; 3], usize); 8] = [
     (5, [2, 1, 12], 6),
 ];
 
-/// Of an axisymmetric state: waves along the tube, the same at every ring.
+/// Returns an axisymmetric displacement: waves along the tube, the same at every ring.
 fn axisymmetric(tube: &SplineTube) -> Vec<f64> {
     unknowns(tube, |z, r, _| {
         [
@@ -38,16 +38,16 @@ fn multiplied(matrix: &BlockBanded, v: &[f64]) -> Vec<f64> {
 }
 
 #[test]
-fn the_product_is_that_of_the_assembled_tangent() {
+fn product_equals_the_assembled_tangent_times_vector() {
     for (degree, elements, rings) in SECTORS {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, rings);
         let (u, v) = (wavy(&tube), direction(&tube));
         let assembled = multiplied(&tube.tangent(&load, &u), &v);
         let mut product = vec![0.0; v.len()];
-        tube.add_tangent_product(&tube.matrix_free_tangent(&load, &u), 1.0, &v, &mut product);
+        tube.add_tangent_product(&linearised(&tube, &load, &u), 1.0, &v, &mut product);
         let scale = largest(&assembled);
         for (a, b) in product.iter().zip(&assembled) {
-            // Ten numbers of a point are kept in single precision.
+            // The tangent data are single precision.
             assert!(
                 (a - b).abs() < 1e-6 * scale,
                 "{degree} {elements:?} {rings}: {a} {b}"
@@ -57,9 +57,9 @@ fn the_product_is_that_of_the_assembled_tangent() {
 }
 
 #[test]
-fn the_product_is_symmetric() {
+fn product_is_symmetric() {
     let TubeAndLoad { tube, load } = tube_and_load(3, [9, 2, 12], 12);
-    let at = tube.matrix_free_tangent(&load, &wavy(&tube));
+    let at = linearised(&tube, &load, &wavy(&tube));
     let (v, w) = (direction(&tube), wavy(&tube));
     let product = |v: &[f64]| {
         let mut y = vec![0.0; v.len()];
@@ -71,13 +71,11 @@ fn the_product_is_symmetric() {
 }
 
 #[test]
-fn averaged_blocks_are_the_harmonics_of_an_axisymmetric_tube() {
+fn averaged_blocks_equal_harmonic_tangents_at_an_axisymmetric_state() {
     for (degree, elements, rings) in SECTORS {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, rings);
         let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
-        let average = tube
-            .matrix_free_tangent(&load, &axisymmetric(&tube))
-            .average;
+        let average = linearised(&tube, &load, &axisymmetric(&tube)).average;
         let u = axisymmetric(&one);
         for n in [1, 2, 3] {
             let exact = one.tangent_in_harmonic(&load, &u, n);
@@ -96,12 +94,12 @@ fn averaged_blocks_are_the_harmonics_of_an_axisymmetric_tube() {
 }
 
 #[test]
-fn the_harmonic_solver_inverts_the_tangent_of_an_axisymmetric_tube() {
+fn harmonic_solver_inverts_the_tangent_at_an_axisymmetric_state() {
     for (degree, elements, rings) in SECTORS {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, rings);
         let u = axisymmetric(&tube);
         let repeats = elements[2] / rings;
-        let average = tube.matrix_free_tangent(&load, &u).average;
+        let average = linearised(&tube, &load, &u).average;
         let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
         let block = |n: usize| {
             let mut block = average.harmonic(n * repeats);
@@ -138,8 +136,8 @@ fn a_symmetric_state_stays_symmetric_to_the_last_bit() {
 }
 
 #[test]
-fn low_harmonics_have_the_tangent_of_the_tube() {
-    // Eᵀ K E by products, against its own, coarser quadrature.
+fn low_harmonic_tangent_is_the_projected_tangent() {
+    // Eᵀ K E from products, against the assembled matrix with its coarser quadrature.
     for (elements, rings) in [([4, 2, 16], 16), ([9, 1, 24], 12)] {
         let TubeAndLoad { tube, load } = tube_and_load(3, elements, rings);
         let u = unknowns(&tube, |z, r, s| {
@@ -153,10 +151,10 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
         let low = LowHarmonics::new(&tube, 2);
         let mut coupled = BlockBanded::zeros(tube.axial.functions(), low.row_size(), tube.degree());
         tube.low_harmonic_tangent(&low, &load, &u, &mut coupled);
-        let at = tube.matrix_free_tangent(&load, &u);
+        let at = linearised(&tube, &load, &u);
         let points = low.through.len();
         let waves = Transform::new(rings);
-        // As smooth along the tube as two points of an element can tell.
+        // As smooth along the tube as two points per element resolve.
         let of = |i: usize| {
             (0.37 * (i % low.row_size()) as f64 + 0.3 * (i / low.row_size()) as f64).sin()
         };
@@ -183,7 +181,7 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
                 }
             }
         }
-        // back() divides by the sums of squares of the waves.
+        // The inverse transform divides by the sums of squares of the waves.
         for (column, values) in coefficients.chunks_exact_mut(lines).enumerate() {
             let squares = if column == 0 { 1.0 } else { 0.5 } * rings as f64;
             values.iter_mut().for_each(|x| *x *= squares);
@@ -197,10 +195,10 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
             "{rings}: {found} {exact}"
         );
 
-        // What pressures add.
+        // Contribution of pressure.
         let mut pressed = load.clone();
         (pressed.pressures[0].follower, pressed.pressures[1].follower) = (-0.3, 0.7);
-        let at = tube.matrix_free_tangent(&pressed, &u);
+        let at = linearised(&tube, &pressed, &u);
         tube.add_tangent_product(&at, -1.0, &v, &mut product);
         let mut of_pressed = coupled.clone();
         tube.low_harmonic_tangent(&low, &pressed, &u, &mut of_pressed);
@@ -225,7 +223,7 @@ fn low_harmonics_have_the_tangent_of_the_tube() {
 }
 
 #[test]
-fn the_drag_of_rings_is_the_drag_matrix() {
+fn ring_damping_equals_the_assembled_damping_matrix() {
     for (degree, elements, rings) in SECTORS {
         let TubeAndLoad { tube, .. } = tube_and_load(degree, elements, rings);
         let (damping, v) = (tube.ring_damping(), direction(&tube));
@@ -239,7 +237,7 @@ fn the_drag_of_rings_is_the_drag_matrix() {
                 "{degree} {elements:?} {rings}: {a} {b}"
             );
         }
-        // Harmonic by harmonic it is the same matrix.
+        // The same matrix, by harmonic.
         let TubeAndLoad { tube: one, .. } = tube_and_load(degree, elements, 1);
         let block = |n: usize| {
             let mut block = BlockBanded::zeros(one.axial.functions(), one.row_size(), degree);

@@ -1,6 +1,8 @@
-//! The potential of pressures against a volume by triangles, its slopes, and theirs.
+//! Potential of pressure against a volume from triangles, and its first and second derivatives.
 
-use super::super::tests::{TubeAndLoad, direction, dot, largest, moved, tube_and_load, wavy};
+use super::super::tests::{
+    TubeAndLoad, direction, dot, largest, linearised, moved, tube_and_load, wavy,
+};
 use super::super::{Forces, Point, SplineTube};
 use crate::tube::{Load, Pressure, Tube};
 use std::f64::consts::{PI, TAU};
@@ -19,21 +21,17 @@ fn follower(follower: f64) -> Pressure {
     }
 }
 
-/// Potential and residual of the pressures alone.
+/// Returns potential and residual of the pressures alone.
 fn alone(tube: &SplineTube, load: &Load, u: &[f64]) -> Forces {
     let mut forces = Forces {
-        energy: 0.0,
-        energy_ungrown: 0.0,
-        potential: 0.0,
         residual: vec![0.0; u.len()],
-        residual_scale: 0.0,
-        smallest_jacobian: 1.0,
+        ..Forces::default()
     };
     tube.add_pressure(load, u, &mut forces);
     forces
 }
 
-/// Any displacement whose ends stay in their planes.
+/// Changes a displacement so that its ends stay in planes z = const.
 fn between_plates(tube: &SplineTube, mut u: Vec<f64>) -> Vec<f64> {
     let (m, k) = (tube.row_size(), tube.sector.rings);
     let last = u.len() - m;
@@ -45,7 +43,7 @@ fn between_plates(tube: &SplineTube, mut u: Vec<f64>) -> Vec<f64> {
     u
 }
 
-/// What a wall encloses between its ends, by triangles from a grid of points.
+/// Returns the volume that a wall encloses between its ends, from triangles on a grid of points.
 fn volume_by_triangles(tube: &SplineTube, u: &[f64], radius: f64, n: usize) -> f64 {
     let rest = tube.tube.rest();
     let point = |i: usize, j: usize| {
@@ -53,7 +51,7 @@ fn volume_by_triangles(tube: &SplineTube, u: &[f64], radius: f64, n: usize) -> f
         let angle = TAU * (j % (2 * n)) as f64 / (2 * n) as f64;
         tube.sample(&rest, u, Point { z, radius, angle }).position
     };
-    // With the middle of each end, so that the surface is closed.
+    // The middle of each end closes the surface.
     let ends = [[0.0; 3], [point(n, 0)[0], 0.0, 0.0]];
     let six = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
         a[0] * (b[1] * c[2] - b[2] * c[1])
@@ -78,7 +76,7 @@ fn volume_by_triangles(tube: &SplineTube, u: &[f64], radius: f64, n: usize) -> f
 }
 
 #[test]
-fn the_potential_of_a_follower_pressure_is_the_volume_that_it_sweeps() {
+fn follower_pressure_potential_equals_enclosed_volume() {
     let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 6], 6);
     let u = between_plates(&tube, wavy(&tube));
     let zero = vec![0.0; u.len()];
@@ -90,7 +88,7 @@ fn the_potential_of_a_follower_pressure_is_the_volume_that_it_sweeps() {
         let of = |n| {
             volume_by_triangles(&tube, &u, radius, n) - volume_by_triangles(&tube, &zero, radius, n)
         };
-        // The error of the triangles falls with the square of their size.
+        // The error of the triangles is quadratic in their size.
         let expected = (4.0 * of(48) - of(24)) / 3.0;
         assert!(
             (change - expected).abs() < 1e-4 * expected.abs(),
@@ -100,8 +98,8 @@ fn the_potential_of_a_follower_pressure_is_the_volume_that_it_sweeps() {
 }
 
 #[test]
-fn a_tube_that_swells_evenly_sweeps_a_shell() {
-    // 60 uniform cubics draw a circle of the right area to 1e-12.
+fn uniform_expansion_has_the_exact_pressure_potential() {
+    // 60 uniform cubic splines represent a circle of the exact area to 1e-12.
     let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 60], 1);
     let greville = tube.wall.greville();
     let mut u = vec![];
@@ -121,7 +119,7 @@ fn a_tube_that_swells_evenly_sweeps_a_shell() {
     );
 }
 
-/// Degrees, elements and rings: whole tubes, folds, and one ring.
+/// Degrees, elements and rings: whole tubes, sectors of several rings, and one ring.
 const TUBES: [(usize, [usize; 3], usize); 5] = [
     (3, [9, 2, 6], 6),
     (3, [9, 2, 6], 3),
@@ -130,21 +128,21 @@ const TUBES: [(usize, [usize; 3], usize); 5] = [
     (1, [3, 2, 8], 4),
 ];
 
-/// Both kinds on both walls.
+/// Returns a load with follower pressure and dead load on both walls.
 fn all(tube: &SplineTube) -> Load {
     let pressure = |follower, dead| Pressure { follower, dead };
     pressed(tube, [pressure(0.3, -0.2), pressure(0.7, 0.4)])
 }
 
 #[test]
-fn the_forces_of_pressures_are_the_slopes_of_their_potential() {
+fn pressure_forces_are_the_derivative_of_the_potential() {
     for (degree, elements, rings) in TUBES {
         let TubeAndLoad { tube, .. } = tube_and_load(degree, elements, rings);
         let (load, u, v) = (all(&tube), wavy(&tube), direction(&tube));
         let exact = dot(&alone(&tube, &load, &u).residual, &v) * tube.sector.repeats();
         let potential = |h: f64| alone(&tube, &load, &moved(&u, &v, h)).potential;
         let slope = |h: f64| (potential(h) - potential(-h)) / (2.0 * h);
-        // The potential is cubic: two differences have its slope exactly.
+        // The potential is cubic: two central differences give the exact derivative.
         let found = (4.0 * slope(0.1) - slope(0.2)) / 3.0;
         assert!(
             (found - exact).abs() < 1e-12 * exact.abs().max(1.0),
@@ -154,7 +152,7 @@ fn the_forces_of_pressures_are_the_slopes_of_their_potential() {
 }
 
 #[test]
-fn the_tangent_of_pressures_is_the_slope_of_their_forces() {
+fn pressure_tangent_is_the_derivative_of_the_forces() {
     for (degree, elements, rings) in TUBES {
         let TubeAndLoad { tube, .. } = tube_and_load(degree, elements, rings);
         let (load, u, v) = (all(&tube), wavy(&tube), direction(&tube));
@@ -190,7 +188,7 @@ fn the_tangent_of_pressures_is_the_slope_of_their_forces() {
 }
 
 #[test]
-fn on_a_harmonic_the_average_and_the_block_are_the_product() {
+fn pressure_average_and_harmonic_block_agree_with_the_product() {
     let (degree, elements) = (3, [5, 2, 10]);
     let TubeAndLoad { tube, .. } = tube_and_load(degree, elements, 10);
     let one = tube.axisymmetric();
@@ -198,7 +196,7 @@ fn on_a_harmonic_the_average_and_the_block_are_the_product() {
     let u: Vec<f64> = ring.iter().flat_map(|x| [*x; 10]).collect();
     let load = all(&tube);
     let at = tube.pressure_tangent(&load, &u).unwrap();
-    let mut average = tube.matrix_free_tangent(&tube.tube.rest(), &u).average;
+    let mut average = linearised(&tube, &tube.tube.rest(), &u).average;
     let free = average.clone();
     tube.add_average_pressure(&at, &mut average);
     let x = direction(&one);
@@ -228,7 +226,7 @@ fn on_a_harmonic_the_average_and_the_block_are_the_product() {
             n => form(&one.tangent_in_harmonic(load, &ring, n)),
         };
         let block = block(&load) - block(&one.tube.rest());
-        // Differences from the tangent of the wall, 1e3 times as large.
+        // Differences of tangents of the wall, which are 1e3 times as large.
         assert!(
             (averaged - whole).abs() < 1e-9 * whole.abs(),
             "{n}: {averaged}, {whole}"
@@ -247,8 +245,8 @@ fn unknowns_without_twist(tube: &SplineTube) -> Vec<f64> {
 }
 
 #[test]
-fn pressure_between_plates_leaves_rigid_motions_alone() {
-    // Shifted sideways or rotated about the axis, no volume is swept, and no force arises.
+fn pressure_between_plates_does_no_work_on_rigid_motions() {
+    // A sideways shift and a rotation about the axis sweep no volume, so the forces do no work.
     let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 12], 12);
     let u = between_plates(&tube, wavy(&tube));
     let load = pressed(&tube, [follower(0.3), follower(0.7)]);
@@ -273,7 +271,7 @@ fn pressure_between_plates_leaves_rigid_motions_alone() {
             dot(&forces, motion)
         );
     }
-    // Shifting changes no force.
+    // A shift changes no force.
     let mut product = vec![0.0; u.len()];
     tube.add_pressure_product(&at, 1.0, &shift, &mut product);
     let m = tube.row_size();
@@ -284,7 +282,7 @@ fn pressure_between_plates_leaves_rigid_motions_alone() {
 }
 
 #[test]
-fn forces_of_pressures_do_not_depend_on_the_number_of_threads() {
+fn pressure_forces_do_not_depend_on_the_number_of_threads() {
     let TubeAndLoad { tube, .. } = tube_and_load(3, [29, 2, 6], 6);
     let (load, u) = (all(&tube), wavy(&tube));
     let with = |threads: usize| {

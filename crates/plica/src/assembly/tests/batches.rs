@@ -1,11 +1,11 @@
-//! That neither threads nor parts show in what batches leave, and that what cannot be is an error.
+//! Sums over batches and threads, and errors at invalid states.
 
 use super::{TubeAndLoad, direction, largest, moved, replicated, tube_and_load, unknowns, wavy};
 use crate::assembly::{Inverted, SplineTube};
 
 #[test]
-fn a_tangent_too_large_to_be_held_at_once_is_summed_in_parts() {
-    // Slabs of 90 MB, so that the third is not worked on together with the first two.
+fn large_tangent_is_summed_in_parts() {
+    // Batch tangents of 90 MB, so that the third is not computed together with the first two.
     let one = tube_and_load(1, [17, 1, 132], 1);
     let whole = tube_and_load(1, [17, 1, 132], 132).tube;
     let (u, d) = (wavy(&one.tube), direction(&one.tube));
@@ -47,8 +47,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn an_element_turned_inside_out_is_an_error_that_says_where() {
-    // One row of control points is pushed past its neighbours: every element there inverts.
+fn inverted_element_is_an_error_with_its_place() {
+    // One row of control points passes the next: every element between them inverts.
     let TubeAndLoad { tube, .. } = tube_and_load(1, [20, 2, 6], 6);
     let rest = tube.tube.rest();
     let middle = tube.axial.greville()[13];
@@ -70,7 +70,7 @@ fn an_element_turned_inside_out_is_an_error_that_says_where() {
 }
 
 #[test]
-fn a_displacement_that_is_not_a_number_is_an_error() {
+fn nan_displacement_is_an_error_with_its_element() {
     for rings in [1, 6] {
         let TubeAndLoad { tube, load } = tube_and_load(3, [11, 2, 6], rings);
         for unknown in [0, tube.unknowns() / 2, tube.unknowns() - 1] {
@@ -88,7 +88,7 @@ fn a_displacement_that_is_not_a_number_is_an_error() {
     }
 }
 
-/// The rows of control points that an element along the tube reads.
+/// Returns the rows of control points of an element along the tube.
 fn element_rows(tube: &SplineTube, element: usize) -> std::ops::RangeInclusive<usize> {
     element..=element + tube.degree()
 }

@@ -1,11 +1,11 @@
-//! How a tube is held.
+//! Boundary conditions and rigid-body constraints.
 
-use super::{TubeAndLoad, tube_and_load};
+use super::{TubeAndLoad, mesh, tube_and_load};
 use crate::assembly::{Point, SplineTube};
-use crate::tube::{EndMotion, Mesh, Support, Tube};
+use crate::tube::{EndMotion, Support, Tube};
 
 #[test]
-fn anchors_are_as_many_as_rigid_motions_are_left() {
+fn as_many_rigid_body_constraints_as_permitted_rigid_motions() {
     use Support::{Fixed, Free, Sliding};
     // Along z and about z; for the whole circumference also two shifts and two tilts.
     for (ends, one_ring, whole) in [
@@ -22,22 +22,14 @@ fn anchors_are_as_many_as_rigid_motions_are_left() {
         for (rings, rigid_body_constraints) in [(1, one_ring), (3, one_ring), (6, whole)] {
             let TubeAndLoad { tube, .. } = tube_and_load(2, [4, 1, 6], rings);
             let tube = Tube { ends, ..tube.tube };
-            let mesh = Mesh {
-                axial: 6,
-                around: 6,
-                thickness: 3,
-                degree: 2,
-                refinements: vec![],
-                volumetric: Default::default(),
-            };
-            let spline = SplineTube::new(&tube, &mesh, rings);
+            let spline = SplineTube::new(&tube, &mesh(2, [4, 1, 6]), rings);
             assert_eq!(
                 spline.boundary_conditions.rigid_body_constraints(),
                 rigid_body_constraints,
                 "{ends:?}, {rings} rings"
             );
 
-            // With them the tube at rest is held: its stiffness has no eigenvalue near zero.
+            // The constrained stiffness at rest has no eigenvalue near zero.
             let zero = vec![0.0; spline.unknowns()];
             let mut K = spline.tangent(&tube.rest(), &zero);
             K.constrain(spline.prescribed());
@@ -62,7 +54,7 @@ fn anchors_are_as_many_as_rigid_motions_are_left() {
 }
 
 #[test]
-fn ends_move_and_twist_as_the_load_says() {
+fn ends_follow_displacement_and_twist_of_the_load() {
     for rings in [1, 6] {
         let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 6], rings);
         let mut load = tube.tube.rest();

@@ -1,23 +1,13 @@
-//! What imperfections displace.
+//! Displacements of imperfections.
 
-use super::{TubeAndLoad, tube_and_load};
+use super::{TubeAndLoad, mesh, tube_and_load};
 use crate::assembly::{Point, SplineTube};
 use crate::spline::{Basis, gauss_legendre};
-use crate::tube::{
-    Axial, End, EndMotion, Imperfection, Mesh, Part, Push, Shape, Support, Tube, Wave,
-};
+use crate::tube::{Axial, End, EndMotion, Imperfection, Part, Push, Shape, Support, Tube, Wave};
 
-/// The tube of the other tests, imperfect, with twelve rings around.
+/// Returns the tube of the other tests with twelve rings and an imperfection.
 fn imperfect(ends: [Support; 2], of: Part, amplitude: f64, wave: Wave) -> SplineTube {
     let TubeAndLoad { tube, .. } = tube_and_load(3, [9, 2, 12], 1);
-    let mesh = Mesh {
-        axial: 12,
-        around: 12,
-        thickness: 5,
-        degree: 3,
-        refinements: vec![],
-        volumetric: Default::default(),
-    };
     let imperfection = Imperfection {
         of,
         amplitude,
@@ -28,12 +18,12 @@ fn imperfect(ends: [Support; 2], of: Part, amplitude: f64, wave: Wave) -> Spline
         imperfections: vec![imperfection],
         ..tube.tube
     };
-    SplineTube::new(&tube, &mesh, 12)
+    SplineTube::new(&tube, &mesh(3, [9, 2, 12]), 12)
 }
 
 const COLON: Part = Part::End(End::Colon, Push::Across);
 
-/// Displacement (z, x, y) of a point of a tube at rest whose unknowns are `u`.
+/// Returns the displacement (z, x, y) of a point of a tube at rest with unknowns `u`.
 pub(super) fn displacement(
     tube: &SplineTube,
     u: &[f64],
@@ -46,7 +36,7 @@ pub(super) fn displacement(
 }
 
 #[test]
-fn harmonic_1_of_an_end_shifts_the_drawn_face_sideways() {
+fn end_imperfection_of_harmonic_1_shifts_the_face_sideways() {
     let phase = 0.4;
     let wave = Wave::new(1, phase, Axial::Uniform);
     let tube = imperfect([Support::Fixed; 2], COLON, 0.03, wave);
@@ -64,7 +54,7 @@ fn harmonic_1_of_an_end_shifts_the_drawn_face_sideways() {
 }
 
 #[test]
-fn harmonic_1_of_an_end_along_the_axis_tilts_the_drawn_face() {
+fn axial_end_imperfection_of_harmonic_1_tilts_the_face() {
     let wave = Wave::new(1, 0.0, Axial::Uniform);
     let of = Part::End(End::Ileum, Push::Axial);
     let tube = imperfect([Support::Fixed, Support::Sliding], of, 0.03, wave);
@@ -82,7 +72,7 @@ fn harmonic_1_of_an_end_along_the_axis_tilts_the_drawn_face() {
             },
         );
         let [z, x, y] = [0, 1, 2].map(|i| at.position[i] - at.reference[i]);
-        // A plane: proportional to x, and the amplitude at x = D/2.
+        // A plane: proportional to x, and equal to the amplitude at x = D/2.
         let expected = 0.03 * at.reference[1] / 0.5;
         assert!((z - expected).abs() < 1e-15, "{z} is not {expected}");
         assert!(x.abs().max(y.abs()) < 1e-16);
@@ -90,7 +80,7 @@ fn harmonic_1_of_an_end_along_the_axis_tilts_the_drawn_face() {
 }
 
 #[test]
-fn harmonic_2_of_an_end_is_oval_as_high_as_asked_and_keeps_lengths() {
+fn end_imperfection_of_harmonic_2_is_an_inextensible_oval() {
     let wave = Wave::new(2, 0.0, Axial::Uniform);
     let tube = imperfect([Support::Fixed; 2], COLON, 0.01, wave);
     let mut u = vec![0.0; tube.unknowns()];
@@ -103,7 +93,7 @@ fn harmonic_2_of_an_end_is_oval_as_high_as_asked_and_keeps_lengths() {
     for i in 0..50 {
         let angle = 0.13 * f64::from(i);
         let [radial, around] = rotated(angle);
-        // Twelve splines draw three rotations to 2 %.
+        // Twelve splines represent three periods to 2 %.
         assert!(
             (radial - 0.01 * (2.0 * angle).cos()).abs() < 1e-4,
             "{radial}"
@@ -116,7 +106,7 @@ fn harmonic_2_of_an_end_is_oval_as_high_as_asked_and_keeps_lengths() {
 }
 
 #[test]
-fn an_imperfect_end_is_turned_with_its_shift() {
+fn end_imperfection_rotates_with_the_end() {
     let wave = Wave::new(1, 0.0, Axial::Uniform);
     let tube = imperfect([Support::Fixed; 2], COLON, 0.03, wave);
     let mut load = tube.tube.rest();
@@ -144,7 +134,7 @@ fn an_imperfect_end_is_turned_with_its_shift() {
 }
 
 #[test]
-fn a_geometric_imperfection_is_zero_at_fixed_ends_and_as_high_as_asked_between() {
+fn geometric_imperfection_vanishes_at_fixed_ends_and_has_its_amplitude_between() {
     for (axial, middle) in [
         (Axial::HalfWaves(1), 1.0),
         (Axial::Uniform, 1.0),
@@ -159,7 +149,7 @@ fn a_geometric_imperfection_is_zero_at_fixed_ends_and_as_high_as_asked_between()
                     assert!(x.abs() < 1e-17, "{wave:?} at {z}: {x}");
                 }
             }
-            // Control values flatten a crest, that over three elements by a quarter.
+            // Control values flatten a crest; one over three elements by a quarter.
             let x = displacement(&tube, u, 0.75, 0.45, 0.0)[1];
             assert!(x > 0.95 * middle * 0.01 && x < 0.0103, "{wave:?}: {x}");
         }
@@ -167,7 +157,7 @@ fn a_geometric_imperfection_is_zero_at_fixed_ends_and_as_high_as_asked_between()
 }
 
 #[test]
-fn a_perfect_tube_has_no_imperfect_geometry_and_starts_at_rest() {
+fn perfect_tube_has_a_zero_initial_guess() {
     let TubeAndLoad { tube, load } = tube_and_load(3, [9, 2, 6], 6);
     assert_eq!(tube.geometric_imperfection(), None);
     assert!(tube.initial_guess().iter().all(|x| x.to_bits() == 0));
@@ -180,7 +170,7 @@ fn a_perfect_tube_has_no_imperfect_geometry_and_starts_at_rest() {
 }
 
 #[test]
-fn a_start_is_smooth_and_holds_the_ends() {
+fn initial_guess_satisfies_the_boundary_conditions() {
     let wave = Wave::new(2, 0.3, Axial::Uniform);
     let tube = imperfect([Support::Fixed; 2], COLON, 0.01, wave);
     let u = tube.initial_guess();
@@ -191,7 +181,7 @@ fn a_start_is_smooth_and_holds_the_ends() {
 }
 
 #[test]
-fn fields_at_points_add_up_to_the_energy_of_an_imperfect_muscle() {
+fn sampled_fields_integrate_to_the_energy_of_an_imperfect_tube() {
     let wave = Wave::new(2, 0.4, Axial::Uniform);
     for (of, amplitude) in [
         (Part::Muscle(0), 0.4),
@@ -224,7 +214,7 @@ fn fields_at_points_add_up_to_the_energy_of_an_imperfect_muscle() {
             for &(angle, wa) in &angles {
                 for &(radius, wr) in &spans(&tube.wall) {
                     let at = tube.sample(&load, &u, Point { z, radius, angle });
-                    // The circle that splines draw is drawn nearly at the pace of the angle.
+                    // The parameter of the spline circle is nearly proportional to the angle.
                     let volume = wz * wa * wr * radius;
                     energy += at.energy_density * at.grown[0] * at.grown[1] * volume;
                 }

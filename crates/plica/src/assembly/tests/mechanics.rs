@@ -1,14 +1,14 @@
-//! What must hold of any tube: rest, rigid motions, forces as slopes of the energy.
+//! Basic mechanics of a tube: state of rest, rigid motions, forces as derivatives of the energy.
 
-use super::{TubeAndLoad, direction, dot, largest, moved, tube_and_load, unknowns, wavy};
+use super::{TubeAndLoad, direction, dot, largest, mesh, moved, tube_and_load, unknowns, wavy};
 use crate::assembly::reference::ReferenceTube;
 use crate::assembly::{Point, SplineTube};
 use crate::material::{Material, NeoHookean};
-use crate::tube::{Load, Mesh, Support, Tube};
+use crate::tube::{Load, Support, Tube};
 use std::f64::consts::{PI, TAU};
 
 #[test]
-fn a_tube_at_rest_has_its_radii_its_volume_and_no_residual() {
+fn tube_at_rest_has_exact_radii_and_volume_and_no_residual() {
     let tube = Tube {
         length: 3.0,
         thickness: 0.06,
@@ -17,15 +17,8 @@ fn a_tube_at_rest_has_its_radii_its_volume_and_no_residual() {
         ends: [Support::Fixed; 2],
         imperfections: vec![],
     };
-    let mesh = Mesh {
-        axial: 13,
-        around: 60,
-        thickness: 5,
-        degree: 3,
-        refinements: vec![],
-        volumetric: Default::default(),
-    };
-    let (rest, spline) = (tube.rest(), SplineTube::new(&tube, &mesh, 1));
+    let spline = SplineTube::new(&tube, &mesh(3, [10, 2, 60]), 1);
+    let rest = tube.rest();
     let u = vec![0.0; spline.unknowns()];
     for radius in [0.44, 0.47, 0.5] {
         for step in 0..500 {
@@ -36,7 +29,7 @@ fn a_tube_at_rest_has_its_radii_its_volume_and_no_residual() {
                 // The spline circle is round to 3.1e-7.
                 assert!((along - z).abs() < 1e-14);
                 assert!((x.hypot(y) / radius - 1.0).abs() < 3.2e-7);
-                // Its points lie at their angles as nearly as that.
+                // The angles of its points are as accurate.
                 let off = (y.atan2(x) - angle).rem_euclid(TAU);
                 assert!(off.min(TAU - off) < 1e-6);
                 assert!(sample.energy_density.abs() < 1e-15);
@@ -50,7 +43,8 @@ fn a_tube_at_rest_has_its_radii_its_volume_and_no_residual() {
     spline.damping().multiply_add(1.0, &shift, &mut weighed);
     let volume = dot(&shift, &weighed) * spline.sector.repeats();
     let exact = PI * (0.25 - 0.44 * 0.44) * 3.0;
-    // The projected circle is right on average: its area is off by the square of its error.
+    // The mean radius of the projected circle is exact, so the area error is quadratic in the
+    // radius error.
     assert!((volume / exact - 1.0).abs() < 1e-12, "{volume}");
 
     let forces = spline.forces(&rest, &u).unwrap();
@@ -59,7 +53,7 @@ fn a_tube_at_rest_has_its_radii_its_volume_and_no_residual() {
     assert!((forces.smallest_jacobian - 1.0).abs() < 1e-14);
 }
 
-/// The unknowns of `x → Q x + t` after a displacement u, for a whole tube.
+/// Returns the unknowns of a whole tube after a displacement u and then `x → Q x + t`.
 pub(super) fn carried(
     tube: &SplineTube,
     load: &Load,
@@ -67,24 +61,24 @@ pub(super) fn carried(
     Q: [[f64; 3]; 3],
     t: [f64; 3],
 ) -> Vec<f64> {
-    let plain = ReferenceTube::new(tube, load);
-    let mut vectors = plain.cartesian(u);
+    let reference = ReferenceTube::new(tube, load);
+    let mut vectors = reference.cartesian(u);
     for (node, u) in vectors.iter_mut().enumerate() {
-        let X = plain.control_point(node);
+        let X = reference.control_point(node);
         let x = [0, 1, 2].map(|i| X[i] + u[i]);
         *u = [0, 1, 2].map(|i| (0..3).map(|j| Q[i][j] * x[j]).sum::<f64>() + t[i] - X[i]);
     }
-    plain.cylindrical(&vectors)
+    reference.cylindrical(&vectors)
 }
 
-/// A finite turn about an axis in the cross-section, then one about z.
+/// Returns a finite rotation about an axis in the cross-section, then one about z.
 pub(super) fn tilted() -> [[f64; 3]; 3] {
     let ((s, c), (v, w)) = (0.8_f64.sin_cos(), 0.6_f64.sin_cos());
     [[c, -s, 0.0], [w * s, w * c, -v], [v * s, v * c, w]]
 }
 
 #[test]
-fn rigid_motions_of_a_sector_of_one_ring_store_no_energy() {
+fn axisymmetric_rigid_motions_store_no_energy() {
     for degree in 1..=5 {
         let TubeAndLoad { tube, .. } = tube_and_load(degree, [5, 2, 12], 1);
         let rest = tube.tube.rest();
@@ -114,7 +108,7 @@ fn rigid_motions_of_a_whole_tube_store_no_energy() {
 }
 
 #[test]
-fn rigid_motions_leave_the_energy_of_an_active_tube_as_it_is() {
+fn rigid_motions_preserve_the_energy_of_an_active_tube() {
     for degree in 1..=5 {
         let TubeAndLoad { tube, load } = tube_and_load(degree, [5, 2, 7], 7);
         let u = wavy(&tube);
@@ -125,18 +119,18 @@ fn rigid_motions_leave_the_energy_of_an_active_tube_as_it_is() {
             (after.energy / before.energy - 1.0).abs() < 1e-12,
             "degree {degree}"
         );
-        // The residual rotations with the tube: its size is unchanged.
+        // The residual rotates with the tube: its norm is unchanged.
         let size = |r: &[f64]| dot(r, r).sqrt();
         let ratio = size(&after.residual) / size(&before.residual);
         assert!((ratio - 1.0).abs() < 1e-11, "degree {degree}: {ratio}");
     }
 }
 
-/// Sectors of one ring, of fewer rings than an element has functions, and the whole.
+/// Sectors of one ring, of fewer rings than an element has functions, and the whole tube.
 const SECTORS: [usize; 4] = [1, 2, 3, 6];
 
 #[test]
-fn the_residual_is_the_slope_of_the_energy() {
+fn residual_is_the_derivative_of_the_energy() {
     for rings in SECTORS {
         let TubeAndLoad { tube, load } = tube_and_load(3, [9, 2, 6], rings);
         let (u, d) = (wavy(&tube), direction(&tube));
@@ -151,7 +145,7 @@ fn the_residual_is_the_slope_of_the_energy() {
 }
 
 #[test]
-fn the_tangent_is_the_slope_of_the_residual() {
+fn tangent_is_the_derivative_of_the_residual() {
     for rings in SECTORS {
         let TubeAndLoad { tube, load } = tube_and_load(3, [9, 2, 6], rings);
         let (u, d) = (wavy(&tube), direction(&tube));

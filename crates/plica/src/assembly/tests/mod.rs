@@ -1,4 +1,4 @@
-//! What must hold of a discretised tube, and the tubes and displacements that show it.
+//! Tests of assembly, and the tubes and displacements that they share.
 
 mod batches;
 mod boundary_conditions;
@@ -9,7 +9,7 @@ mod reference;
 mod stress_free;
 mod symmetry;
 
-use super::SplineTube;
+use super::{MatrixFreeTangent, SplineTube};
 use crate::activation::{Direction, Muscle, Profile};
 use crate::material::{Material, NeoHookean};
 use crate::tube::{Load, Mesh, Support, Tube};
@@ -21,7 +21,7 @@ pub(in crate::assembly) struct TubeAndLoad {
     pub(in crate::assembly) load: Load,
 }
 
-/// A tube of so many elements, `rings` of which are solved for.
+/// Returns a tube of `elements` along, through and around, with a sector of `rings` rings.
 pub(in crate::assembly) fn tube_and_load(
     degree: usize,
     elements: [usize; 3],
@@ -48,22 +48,37 @@ pub(in crate::assembly) fn tube_and_load(
         muscles: vec![0.7, 1.15],
         ..tube.rest()
     };
-    let mesh = Mesh {
-        axial: elements[0] + degree,
-        around: elements[2],
-        thickness: elements[1] + degree,
-        degree,
-        refinements: vec![],
-        volumetric: Default::default(),
-    };
     TubeAndLoad {
-        tube: SplineTube::new(&tube, &mesh, rings),
+        tube: SplineTube::new(&tube, &mesh(degree, elements), rings),
         load,
     }
 }
 
-/// Unknowns from a function of z, reference radius and ring (0 to 1 over the sector) that gives
-/// the axial, radial and circumferential component.
+/// Returns a mesh of `elements` along, through and around.
+fn mesh(degree: usize, [along, through, around]: [usize; 3]) -> Mesh {
+    Mesh {
+        axial: along + degree,
+        around,
+        thickness: through + degree,
+        degree,
+        refinements: vec![],
+        volumetric: Default::default(),
+    }
+}
+
+/// Returns the matrix-free tangent at a state.
+pub(in crate::assembly) fn linearised(
+    tube: &SplineTube,
+    load: &Load,
+    u: &[f64],
+) -> MatrixFreeTangent {
+    let mut tangent = MatrixFreeTangent::default();
+    tube.linearise(load, u, &mut tangent);
+    tangent
+}
+
+/// Returns unknowns from a function of z, reference radius and ring (0 to 1 over the sector) that
+/// returns the axial, radial and circumferential component.
 pub(in crate::assembly) fn unknowns(
     tube: &SplineTube,
     field: impl Fn(f64, f64, f64) -> [f64; 3],
@@ -72,8 +87,8 @@ pub(in crate::assembly) fn unknowns(
     tube.control_values_from(|z, r, ring| field(z, r, ring as f64 / rings))
 }
 
-/// A displacement without any symmetry but the sector's: waves as large as the wall is thick,
-/// and a small noise from a fixed recurrence.
+/// Returns a displacement without symmetry other than the sector's: waves as large as the wall
+/// thickness, and small deterministic noise.
 pub(in crate::assembly) fn wavy(tube: &SplineTube) -> Vec<f64> {
     let mut u = unknowns(tube, |z, r, s| {
         let turn = TAU * s;
@@ -93,7 +108,7 @@ pub(in crate::assembly) fn wavy(tube: &SplineTube) -> Vec<f64> {
     u
 }
 
-/// Another, to differentiate along.
+/// Returns another displacement, a direction for derivatives.
 pub(in crate::assembly) fn direction(tube: &SplineTube) -> Vec<f64> {
     unknowns(tube, |z, r, s| {
         let turn = TAU * s;
@@ -117,12 +132,12 @@ pub(in crate::assembly) fn largest(a: &[f64]) -> f64 {
     a.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
-/// The unknowns of a sector of one ring, on every ring of a larger one.
+/// Returns the unknowns of a sector of one ring, repeated on `rings` rings.
 fn replicated(u: &[f64], rings: usize) -> Vec<f64> {
     repeated(u, 1, rings)
 }
 
-/// The unknowns of a sector of `few` rings, again and again on `many`.
+/// Returns the unknowns of a sector of `few` rings, repeated on `many` rings.
 pub(in crate::assembly) fn repeated(u: &[f64], few: usize, many: usize) -> Vec<f64> {
     let sectors = u.chunks(few);
     sectors
@@ -130,8 +145,8 @@ pub(in crate::assembly) fn repeated(u: &[f64], few: usize, many: usize) -> Vec<f
         .collect()
 }
 
-/// Entry by entry, within some roundings of the largest entry: both sides are sums of up to a
-/// few thousand products, in different orders.
+/// Asserts equality within a few roundings of the largest entry: both sides are sums of up to a few
+/// thousand products, in different orders.
 fn assert_close(what: &str, a: impl IntoIterator<Item = f64>, b: &[f64]) {
     let largest = b.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let mut count = 0;

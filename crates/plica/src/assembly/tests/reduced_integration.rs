@@ -1,26 +1,25 @@
-//! The resistance to a change of volume, integrated at about one point to an element through the wall.
+//! Reduced integration of the volumetric part of the law.
 
 use super::symmetry::harmonic;
-use super::{direction, largest, moved, repeated, replicated, tube_and_load, unknowns, wavy};
+use super::{
+    direction, largest, linearised, mesh, moved, repeated, replicated, tube_and_load, unknowns,
+    wavy,
+};
 use crate::assembly::{Point, SplineTube};
 use crate::tube::{Integration, Mesh};
 
-/// The tube of the other tests, integrated so, and one that is not.
+/// Returns the tube of the other tests with reduced and with full integration.
 fn reduced(degree: usize, elements: [usize; 3], rings: usize) -> [SplineTube; 2] {
     let full = tube_and_load(degree, elements, rings).tube;
     let mesh = Mesh {
-        axial: elements[0] + degree,
-        around: elements[2],
-        thickness: elements[1] + degree,
-        degree,
-        refinements: vec![],
         volumetric: Integration::Reduced,
+        ..mesh(degree, elements)
     };
     [SplineTube::new(&full.tube, &mesh, rings), full]
 }
 
 #[test]
-fn residual_and_tangent_are_slopes() {
+fn reduced_residual_and_tangent_are_derivatives() {
     let load = tube_and_load(3, [9, 2, 6], 1).load;
     for (degree, rings) in [(3, 1), (3, 6), (5, 6)] {
         let [tube, _] = reduced(degree, [9, 2, 6], rings);
@@ -28,7 +27,7 @@ fn residual_and_tangent_are_slopes() {
         let at = |h: f64| tube.forces(&load, &moved(&u, &d, h)).unwrap();
         let h = 1e-5;
         let (after, before) = (at(h), at(-h));
-        // Of the whole tube, the residual of the sector.
+        // The energy is that of the whole tube, the residual that of the sector.
         let slope = (after.energy - before.energy) / (2.0 * h) / tube.sector.repeats();
         let forces = at(0.0);
         let exact: f64 = forces.residual.iter().zip(&d).map(|(r, d)| r * d).sum();
@@ -46,9 +45,9 @@ fn residual_and_tangent_are_slopes() {
             .collect();
         assert!(largest(&off) < 1e-6 * largest(&K), "{degree}, {rings}");
         if rings > 1 {
-            // The product single-precision numbers make.
+            // The product uses single-precision tangent data.
             let mut y = vec![0.0; u.len()];
-            tube.add_tangent_product(&tube.matrix_free_tangent(&load, &u), 1.0, &d, &mut y);
+            tube.add_tangent_product(&linearised(&tube, &load, &u), 1.0, &d, &mut y);
             assert!(
                 largest(&moved(&y, &K, -1.0)) < 1e-5 * largest(&K),
                 "{degree}, {rings}"
@@ -58,7 +57,7 @@ fn residual_and_tangent_are_slopes() {
 }
 
 #[test]
-fn every_sector_and_every_harmonic_is_part_of_the_whole() {
+fn reduced_sectors_and_harmonics_agree_with_the_whole_tube() {
     let load = tube_and_load(3, [9, 2, 12], 1).load;
     let [one, _] = reduced(3, [9, 2, 12], 1);
     let u = unknowns(&one, |z, r, _| {
@@ -71,7 +70,7 @@ fn every_sector_and_every_harmonic_is_part_of_the_whole() {
         whole.forces(&load, &many).unwrap(),
     );
     assert!((all.energy / few.energy - 1.0).abs() < 1e-13);
-    let average = whole.matrix_free_tangent(&load, &many).average;
+    let average = linearised(&whole, &load, &many).average;
     let tangent = whole.tangent(&load, &many);
     for n in [2, 3] {
         let block = one.tangent_in_harmonic(&load, &u, n);
@@ -86,7 +85,7 @@ fn every_sector_and_every_harmonic_is_part_of_the_whole() {
         let off = moved(&y, &harmonic(&whole, &exact, n), -1.0);
         assert!(largest(&off) < 1e-12 * largest(&exact), "{n}");
     }
-    // A sector of a pair of rings.
+    // A sector of two rings.
     let [pair, _] = reduced(3, [9, 2, 12], 2);
     let few = pair.forces(&load, &replicated(&u, 2)).unwrap();
     let off = moved(&all.residual, &repeated(&few.residual, 2, 12), -1.0);
@@ -94,9 +93,9 @@ fn every_sector_and_every_harmonic_is_part_of_the_whole() {
 }
 
 #[test]
-fn an_even_stress_meets_the_forces_that_full_integration_meets() {
-    // The patch test. A flat wall would pass it to rounding; in a round one the volume grows with R,
-    // and what is integrated is a degree higher than the rule is made for at the faces of the wall.
+fn reduced_and_full_integration_agree_for_uniform_stress() {
+    // Patch test. A flat wall would pass it to rounding; in a round wall the volume grows with R,
+    // so the integrand exceeds the degree of the rule by one at the faces of the wall.
     for (degree, tolerance) in [(3, 3e-4), (5, 5e-5)] {
         let [tube, full] = reduced(degree, [7, 3, 24], 1);
         let load = tube.tube.rest();
@@ -110,7 +109,7 @@ fn an_even_stress_meets_the_forces_that_full_integration_meets() {
         let off = largest(&moved(&apart.residual, &whole.residual, -1.0));
         let all = largest(&whole.residual);
         assert!(off < tolerance * all, "{degree}");
-        // Though another state tells them apart.
+        // In another state the two integrations differ.
         let u = wavy(&tube);
         let (apart, whole) = (
             tube.forces(&load, &u).unwrap(),
@@ -122,10 +121,10 @@ fn an_even_stress_meets_the_forces_that_full_integration_meets() {
 }
 
 #[test]
-fn the_energy_that_is_sampled_is_the_energy_that_is_integrated() {
+fn sampled_energy_equals_integrated_energy() {
     let load = tube_and_load(3, [9, 1, 24], 1).load;
     for tube in reduced(3, [9, 1, 24], 1) {
-        // Nearly stress-free in volume only where it is integrated.
+        // The volumetric stress is small only at the quadrature points.
         let u = unknowns(&tube, |z, r, _| {
             [0.05 * (2.0 * z).sin(), 0.05 * r * (3.0 * z).cos(), 0.0]
         });

@@ -1,4 +1,4 @@
-//! That the kernel is its plain twin.
+//! The kernels against the reference implementation.
 
 use super::{TubeAndLoad, assert_close, tube_and_load, wavy};
 use crate::assembly::Point;
@@ -7,8 +7,8 @@ use crate::material::Law;
 use crate::tensor::Tensor2;
 use std::f64::consts::TAU;
 
-/// Degrees and elements along, through and around: counts along the tube below, at and above
-/// eight, so that batches are partly filled, full and summed.
+/// Degrees and elements along, through and around: below, at and above eight along the tube, for
+/// partly filled, full and several batches.
 const MESHES: [(usize, [usize; 3]); 7] = [
     (1, [10, 2, 8]),
     (2, [8, 2, 7]),
@@ -20,62 +20,74 @@ const MESHES: [(usize, [usize; 3]); 7] = [
 ];
 
 #[test]
-fn the_kernel_has_the_energy_and_the_residual_of_its_plain_twin() {
+fn energy_and_residual_equal_the_reference_implementation() {
     for (degree, elements) in MESHES {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, elements[2]);
         let u = wavy(&tube);
-        let (fast, plain) = (
+        let (assembled, reference) = (
             tube.forces(&load, &u).unwrap(),
             ReferenceTube::new(&tube, &load).forces(&u),
         );
         let name = format!("degree {degree}, {elements:?}");
-        let numbers = [fast.energy, fast.energy_ungrown, fast.residual_scale];
-        for (a, b) in
-            numbers
-                .into_iter()
-                .zip([plain.energy, plain.energy_ungrown, plain.residual_scale])
-        {
+        let numbers = [
+            assembled.energy,
+            assembled.energy_ungrown,
+            assembled.residual_scale,
+        ];
+        for (a, b) in numbers.into_iter().zip([
+            reference.energy,
+            reference.energy_ungrown,
+            reference.residual_scale,
+        ]) {
             assert!((a / b - 1.0).abs() < 1e-12, "{name}: {a} is not {b}");
         }
-        assert_close(&name, fast.residual, &plain.residual);
+        assert_close(&name, assembled.residual, &reference.residual);
     }
 }
 
 #[test]
-fn the_kernel_has_the_tangent_of_its_plain_twin() {
+fn tangent_equals_the_reference_implementation() {
     for (degree, elements) in MESHES {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, elements[2]);
         let u = wavy(&tube);
-        let (fast, plain) = (
+        let (assembled, reference) = (
             tube.tangent(&load, &u),
             ReferenceTube::new(&tube, &load).tangent(&u),
         );
         let n = tube.unknowns();
-        let entries = (0..n * n).map(|e| fast.entry(e / n, e % n));
-        assert_close(&format!("degree {degree}, {elements:?}"), entries, &plain);
+        let entries = (0..n * n).map(|e| assembled.entry(e / n, e % n));
+        assert_close(
+            &format!("degree {degree}, {elements:?}"),
+            entries,
+            &reference,
+        );
     }
 }
 
 #[test]
-fn the_kernel_has_the_drag_of_its_plain_twin() {
+fn damping_matrix_equals_the_reference_implementation() {
     for (degree, elements) in MESHES {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, elements[2]);
-        let (fast, plain) = (tube.damping(), ReferenceTube::new(&tube, &load).damping());
+        let (assembled, reference) = (tube.damping(), ReferenceTube::new(&tube, &load).damping());
         let n = tube.unknowns();
-        let entries = (0..n * n).map(|e| fast.entry(e / n, e % n));
-        assert_close(&format!("degree {degree}, {elements:?}"), entries, &plain);
+        let entries = (0..n * n).map(|e| assembled.entry(e / n, e % n));
+        assert_close(
+            &format!("degree {degree}, {elements:?}"),
+            entries,
+            &reference,
+        );
     }
 }
 
 #[test]
-fn samples_are_those_of_the_plain_twin() {
+fn samples_equal_the_reference_implementation() {
     for (degree, elements) in MESHES {
         let TubeAndLoad { tube, load } = tube_and_load(degree, elements, elements[2]);
-        let plain = ReferenceTube::new(&tube, &load);
+        let reference = ReferenceTube::new(&tube, &load);
         let u = wavy(&tube);
-        let moved = plain.cartesian(&u);
+        let moved = reference.cartesian(&u);
         let alpha = TAU / elements[2] as f64;
-        // Points inside, on an edge and on both ends; angles below zero and beyond a turn too.
+        // Points inside, on an edge and on both ends; angles below zero and above 2π too.
         for (z, radius, around) in [
             (0.0, 0.35, 0.0),
             (0.4, 0.41, 1.3),
@@ -91,8 +103,8 @@ fn samples_are_those_of_the_plain_twin() {
                 tube.wall.find(radius),
                 middle.rem_euclid(elements[2] as f64) as usize,
             ];
-            let at = plain.at(element, z, radius, around + 0.5 - middle);
-            let nodes = plain.element_nodes(element);
+            let at = reference.at(element, z, radius, around + 0.5 - middle);
+            let nodes = reference.element_nodes(element);
             let position = [0, 1, 2].map(|i| {
                 at.reference[i]
                     + nodes
@@ -101,7 +113,7 @@ fn samples_are_those_of_the_plain_twin() {
                         .map(|(&node, n)| n * moved[node][i])
                         .sum::<f64>()
             });
-            let Fe = plain.elastic(&nodes, &at, &moved);
+            let Fe = reference.elastic(&nodes, &at, &moved);
             // Rows in the frame at the element's middle, columns along the polar directions.
             let (sin, cos) = (middle * alpha).sin_cos();
             let turn = Tensor2([[1.0, 0.0, 0.0], [0.0, cos, sin], [0.0, -sin, cos]]);
@@ -116,7 +128,11 @@ fn samples_are_those_of_the_plain_twin() {
                 elastic.0.as_flattened(),
             );
             assert_close(&name, [sample.jacobian], &[Fe.determinant()]);
-            assert_close(&name, [sample.energy_density], &[plain.law().energy(&Fe)]);
+            assert_close(
+                &name,
+                [sample.energy_density],
+                &[reference.law().energy(&Fe)],
+            );
         }
     }
 }

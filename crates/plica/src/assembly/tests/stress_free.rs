@@ -1,11 +1,11 @@
-//! What must hold of a tube whose stress-free shape is not the perfect one.
+//! Tubes with an imperfect stress-free shape.
 
 use super::imperfection::displacement;
 use super::mechanics::{carried, tilted};
 use super::symmetry::harmonic;
 use super::{
-    TubeAndLoad, assert_close, direction, dot, largest, moved, replicated, tube_and_load, unknowns,
-    wavy,
+    TubeAndLoad, assert_close, direction, dot, largest, linearised, mesh, moved, replicated,
+    tube_and_load, unknowns, wavy,
 };
 use crate::assembly::reference::ReferenceTube;
 use crate::assembly::{Point, SplineTube};
@@ -13,18 +13,7 @@ use crate::tensor::Tensor2;
 use crate::tube::{Axial, Imperfection, Mesh, Mode, Part, Shape, Tube, Wave};
 use std::f64::consts::TAU;
 
-fn mesh(degree: usize, [along, through, around]: [usize; 3]) -> Mesh {
-    Mesh {
-        axial: along + degree,
-        around,
-        thickness: through + degree,
-        degree,
-        refinements: vec![],
-        volumetric: Default::default(),
-    }
-}
-
-/// A mode that displaces in all directions and through the wall, also at the ends.
+/// Returns a mode with displacements in all directions, through the wall and at the ends.
 fn mode(harmonic: usize, mesh: Mesh) -> Mode {
     let value = |row: usize, point: usize| {
         let z = row as f64 / (mesh.axial - 1) as f64;
@@ -52,8 +41,8 @@ fn geometry(amplitude: f64, shape: Shape) -> Imperfection {
     }
 }
 
-/// The tube of the other tests with an imperfect geometry of harmonics that the sector has; the
-/// wall is 0.15 thick.
+/// Returns the tube of the other tests (wall thickness 0.15) with an imperfect geometry whose
+/// harmonics fit the sector.
 fn imperfect(degree: usize, elements: [usize; 3], rings: usize) -> TubeAndLoad {
     let TubeAndLoad { tube, load } = tube_and_load(degree, elements, rings);
     let mesh = mesh(degree, elements);
@@ -80,42 +69,52 @@ const MESHES: [(usize, [usize; 3]); 4] = [
 ];
 
 #[test]
-fn an_imperfect_tube_is_its_plain_twin() {
+fn imperfect_tube_equals_the_reference_implementation() {
     for (degree, elements) in MESHES {
         let TubeAndLoad { tube, load } = imperfect(degree, elements, elements[2]);
         let u = wavy(&tube);
-        let plain = ReferenceTube::new(&tube, &load);
-        let (fast, twin) = (tube.forces(&load, &u).unwrap(), plain.forces(&u));
+        let reference = ReferenceTube::new(&tube, &load);
+        let (forces, expected) = (tube.forces(&load, &u).unwrap(), reference.forces(&u));
         let name = format!("degree {degree}, {elements:?}");
-        assert!((fast.energy / twin.energy - 1.0).abs() < 1e-12, "{name}");
-        let ungrown = fast.energy_ungrown / twin.energy_ungrown;
+        assert!(
+            (forces.energy / expected.energy - 1.0).abs() < 1e-12,
+            "{name}"
+        );
+        let ungrown = forces.energy_ungrown / expected.energy_ungrown;
         assert!((ungrown - 1.0).abs() < 1e-12, "{name}");
-        assert_close(&name, fast.residual, &twin.residual);
-        // The imperfection matters.
+        assert_close(&name, forces.residual, &expected.residual);
+        // The imperfection changes the energy.
         let perfect = tube_and_load(degree, elements, elements[2]).tube;
         let perfect = perfect.forces(&load, &u).unwrap();
-        assert!((perfect.energy / twin.energy - 1.0).abs() > 1e-3, "{name}");
+        assert!(
+            (perfect.energy / expected.energy - 1.0).abs() > 1e-3,
+            "{name}"
+        );
         if degree < 3 {
             let n = tube.unknowns();
             let tangent = tube.tangent(&load, &u);
             let entries = (0..n * n).map(|e| tangent.entry(e / n, e % n));
-            assert_close(&name, entries, &plain.tangent(&u));
+            assert_close(&name, entries, &reference.tangent(&u));
         }
     }
 }
 
 #[test]
-fn a_sample_of_an_imperfect_tube_is_that_of_its_plain_twin() {
+fn imperfect_tube_sample_equals_the_reference_implementation() {
     let elements = [9, 2, 6];
     let TubeAndLoad { tube, load } = imperfect(3, elements, 6);
-    let plain = ReferenceTube::new(&tube, &load);
+    let reference = ReferenceTube::new(&tube, &load);
     let u = wavy(&tube);
     let (z, radius, around) = (0.9, 0.44, 1.3_f64);
     let angle = around * TAU / 6.0;
     let sample = tube.sample(&load, &u, Point { z, radius, angle });
     let element = [tube.axial.find(z), tube.wall.find(radius), 1];
-    let at = plain.at(element, z, radius, around - 0.5);
-    let Fe = plain.elastic(&plain.element_nodes(element), &at, &plain.cartesian(&u));
+    let at = reference.at(element, z, radius, around - 0.5);
+    let Fe = reference.elastic(
+        &reference.element_nodes(element),
+        &at,
+        &reference.cartesian(&u),
+    );
     let (sin, cos) = (TAU / 6.0).sin_cos();
     let turn = Tensor2([[1.0, 0.0, 0.0], [0.0, cos, sin], [0.0, -sin, cos]]);
     let elastic = turn.times(Fe).times(at.polar);
@@ -124,7 +123,7 @@ fn a_sample_of_an_imperfect_tube_is_that_of_its_plain_twin() {
 }
 
 #[test]
-fn the_residual_and_the_tangent_of_an_imperfect_tube_are_slopes() {
+fn imperfect_residual_and_tangent_are_derivatives() {
     for rings in [1, 2, 6] {
         let TubeAndLoad { tube, load } = imperfect(3, [9, 2, 6], rings);
         let (u, d) = (wavy(&tube), direction(&tube));
@@ -148,9 +147,9 @@ fn the_residual_and_the_tangent_of_an_imperfect_tube_are_slopes() {
             );
         }
         if rings > 1 {
-            // Ten numbers of a point are kept in single precision.
+            // The tangent data are single precision.
             let mut product = vec![0.0; u.len()];
-            tube.add_tangent_product(&tube.matrix_free_tangent(&load, &u), 1.0, &d, &mut product);
+            tube.add_tangent_product(&linearised(&tube, &load, &u), 1.0, &d, &mut product);
             let off = largest(&moved(&product, &exact, -1.0));
             assert!(off < 1e-6 * largest(&exact), "{rings} rings: {off:e}");
         }
@@ -158,7 +157,7 @@ fn the_residual_and_the_tangent_of_an_imperfect_tube_are_slopes() {
 }
 
 #[test]
-fn an_imperfect_tube_at_rest_is_free_of_stress() {
+fn imperfect_tube_at_rest_is_free_of_stress() {
     for rings in [1, 2, 6] {
         let TubeAndLoad { tube, .. } = imperfect(3, [9, 2, 6], rings);
         let rest = tube.tube.rest();
@@ -168,7 +167,7 @@ fn an_imperfect_tube_at_rest_is_free_of_stress() {
         assert!(forces.energy.abs() < 1e-15, "{rings}: {}", forces.energy);
         assert!(largest(&forces.residual) < 1e-14, "{rings} rings");
         assert!((forces.smallest_jacobian - 1.0).abs() < 1e-13);
-        // Its ends are held as they are, and there the search for it begins.
+        // Its ends are prescribed there, and it is the initial guess.
         assert!(largest(&moved(&tube.initial_guess(), u, -1.0)) < 1e-16);
         let mut held = u.to_vec();
         tube.apply_prescribed(&rest, &mut held);
@@ -177,7 +176,7 @@ fn an_imperfect_tube_at_rest_is_free_of_stress() {
 }
 
 #[test]
-fn a_tube_that_is_only_turned_is_perfect() {
+fn rigidly_rotated_stress_free_shape_is_no_imperfection() {
     for degree in [1, 3] {
         let TubeAndLoad { tube, load } = tube_and_load(degree, [5, 2, 7], 7);
         let zero = vec![0.0; tube.unknowns()];
@@ -198,7 +197,7 @@ fn a_tube_that_is_only_turned_is_perfect() {
 }
 
 #[test]
-fn a_round_imperfection_is_the_same_for_every_sector() {
+fn axisymmetric_imperfection_is_the_same_for_every_sector() {
     let elements = [9, 2, 12];
     let TubeAndLoad { tube: one, load } = imperfect(3, elements, 1);
     let u = unknowns(&one, |z, r, _| {
@@ -217,15 +216,15 @@ fn a_round_imperfection_is_the_same_for_every_sector() {
         assert!(largest(&off) < 1e-13 * forces.residual_scale);
         let again = many.axisymmetric().forces(&load, &u).unwrap();
         assert!((again.energy / forces.energy - 1.0).abs() < 1e-15);
-        // Harmonic by harmonic: by batches, by the average of circumferential batches, and of the whole tube. Without
-        // twist in the shape, so that the mode's part around is left out.
+        // The same in every harmonic: assembled, averaged, and as a product. The mode is left out,
+        // since its circumferential part is a twist.
         let plain = Tube {
             imperfections: vec![one.tube.imperfections[1].clone()],
             ..one.tube.clone()
         };
         let [one, many] =
             [1, rings].map(|rings| SplineTube::new(&plain, &mesh(3, elements), rings));
-        let at = many.matrix_free_tangent(&load, &replicated(&u, rings));
+        let at = linearised(&many, &load, &replicated(&u, rings));
         let v = direction(&one);
         for n in [4, 8] {
             let mut block = vec![0.0; v.len()];
@@ -244,8 +243,8 @@ fn a_round_imperfection_is_the_same_for_every_sector() {
     }
 }
 
-/// The largest displacement of the wall of a tube that has these control values, and the largest
-/// normal to the perfect wall.
+/// Returns the largest displacement of the wall for given control values, and the largest normal to
+/// the perfect wall.
 fn largest_displacement(tube: &SplineTube, u: &[f64]) -> [f64; 2] {
     let mut most = [0.0_f64; 2];
     for i in 0..=60 {
@@ -263,7 +262,7 @@ fn largest_displacement(tube: &SplineTube, u: &[f64]) -> [f64; 2] {
 }
 
 #[test]
-fn an_amplitude_is_the_largest_displacement() {
+fn amplitude_is_the_largest_displacement() {
     let TubeAndLoad { tube, .. } = tube_and_load(3, [9, 2, 12], 1);
     let with = |shape: Shape, mesh: &Mesh, rings| {
         let tube = Tube {
@@ -284,7 +283,7 @@ fn an_amplitude_is_the_largest_displacement() {
                 "{harmonic}, {axial:?}: {normal}"
             );
         }
-        // A mode of a coarse mesh, on a fine one, and on a mesh of another degree.
+        // A mode of a coarse mesh, on that mesh, on a fine one, and on one of another degree.
         let of = mode(harmonic, mesh(3, [12, 2, 24]));
         for (to, close) in [
             (mesh(3, [12, 2, 24]), 5e-3),
@@ -303,7 +302,7 @@ fn an_amplitude_is_the_largest_displacement() {
 }
 
 #[test]
-fn a_mode_displaces_another_mesh_as_its_own() {
+fn mode_shape_is_the_same_on_every_mesh() {
     let TubeAndLoad { tube, .. } = tube_and_load(3, [9, 2, 12], 1);
     for harmonic in 0..=3 {
         let own = mesh(3, [12, 2, 24]);
@@ -321,7 +320,7 @@ fn a_mode_displaces_another_mesh_as_its_own() {
         };
         for i in 0..50 {
             let (a, b) = (at(&a, i), at(&b, i));
-            // 24 functions draw four rotations to 2e-3.
+            // 24 functions represent four periods to 2e-3.
             let off = (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
             assert!(off < 3e-3 * 0.01, "{harmonic}: {a:?}, {b:?}");
         }
@@ -329,7 +328,7 @@ fn a_mode_displaces_another_mesh_as_its_own() {
 }
 
 #[test]
-fn a_shape_that_is_folded_is_refused_with_its_place() {
+fn folded_stress_free_shape_is_an_error_with_its_place() {
     let TubeAndLoad { tube, .. } = tube_and_load(3, [9, 2, 12], 12);
     let mode = mode(2, mesh(3, [9, 2, 12]));
     let shape = |amplitude| [geometry(amplitude, Shape::Mode(mode.clone()))];
@@ -340,7 +339,7 @@ fn a_shape_that_is_folded_is_refused_with_its_place() {
         "{folded:?}"
     );
     assert!((0.0..=1.0).contains(&folded.place.depth));
-    // A tube that has it all the same is inverted.
+    // A tube with this shape is inverted.
     let tube = Tube {
         imperfections: shape(3.0).to_vec(),
         ..tube.tube

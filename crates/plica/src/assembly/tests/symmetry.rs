@@ -1,4 +1,4 @@
-//! That sectors of any number of rings, and harmonic blocks, are parts of the whole tube.
+//! Sectors of any number of rings, and harmonic tangents, against the whole tube.
 
 use super::{
     TubeAndLoad, assert_close, direction, largest, moved, repeated, replicated, tube_and_load,
@@ -46,7 +46,7 @@ fn larger_sectors_agree_with_a_sector_of_one_ring() {
 }
 
 #[test]
-fn the_whole_tube_agrees_with_a_sector_that_is_not_axisymmetric() {
+fn whole_tube_agrees_with_a_sector_of_few_rings() {
     for degree in 1..=5 {
         for rings in [2, 3] {
             let TubeAndLoad { tube, load } = tube_and_load(degree, [9, 2, 6], rings);
@@ -61,7 +61,8 @@ fn the_whole_tube_agrees_with_a_sector_that_is_not_axisymmetric() {
     }
 }
 
-/// The displacement (z cos nφ, r cos nφ, −θ sin nφ) of a whole tube, from (z, r, θ) of one ring.
+/// Returns the displacement (z cos nφ, r cos nφ, −θ sin nφ) of a whole tube, from (z, r, θ) of one
+/// ring.
 pub(super) fn harmonic(whole: &SplineTube, u: &[f64], n: usize) -> Vec<f64> {
     let rings = whole.sector.rings;
     let waves: Vec<(f64, f64)> = (0..rings)
@@ -77,11 +78,11 @@ pub(super) fn harmonic(whole: &SplineTube, u: &[f64], n: usize) -> Vec<f64> {
 }
 
 #[test]
-fn harmonic_blocks_are_those_of_the_whole_tube() {
+fn harmonic_tangents_are_blocks_of_the_whole_tangent() {
     let around = 12;
     let one = tube_and_load(3, [5, 2, around], 1).tube;
     let whole = tube_and_load(3, [5, 2, around], around).tube;
-    // Strong enough that the wall buckles.
+    // Strong enough to buckle the wall.
     let load = Load {
         muscles: vec![0.5, 1.5],
         ..one.tube.rest()
@@ -93,7 +94,7 @@ fn harmonic_blocks_are_those_of_the_whole_tube() {
     let mut K = whole.tangent(&load, &replicated(&u, around));
     let v = direction(&one);
     for n in 1..around / 2 {
-        // Quadratic forms are 2/N_C of the whole tube's and so is |cos nφ|²: the blocks are equal.
+        // Both the quadratic form and |cos nφ|² carry the factor 2/N_C, so the blocks are equal.
         let mut block = vec![0.0; v.len()];
         one.tangent_in_harmonic(&load, &u, n)
             .multiply_add(1.0, &v, &mut block);
@@ -113,7 +114,7 @@ fn harmonic_blocks_are_those_of_the_whole_tube() {
     };
     let counts: Vec<usize> = (0..=around / 2).map(negative).collect();
     assert!(counts[1..around / 2].iter().any(|&n| n > 0), "{counts:?}");
-    // Every harmonic but the first and the last comes as a cosine and as a sine.
+    // Every harmonic but the first and the last has a cosine and a sine.
     let expected = 2 * counts.iter().sum::<usize>() - counts[0] - counts[around / 2];
     K.constrain(whole.prescribed());
     let found = K.factor().unwrap().negative_pivots();
