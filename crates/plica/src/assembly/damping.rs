@@ -69,7 +69,7 @@ impl SplineTube {
                 }
             }
         }
-        let places: Vec<Vec<usize>> = (0..functions)
+        let indices: Vec<Vec<usize>> = (0..functions)
             .map(|d| {
                 (0..size * size)
                     .map(|e| matrix.place(d, e % size, e / size))
@@ -77,9 +77,9 @@ impl SplineTube {
             })
             .collect();
         for (panel, axial) in matrix.panels_mut().zip(&axial) {
-            for (places, &n) in places.iter().zip(axial) {
-                for (&place, s) in places.iter().zip(&section) {
-                    panel[place] = n * s;
+            for (indices, &n) in indices.iter().zip(axial) {
+                for (&index, s) in indices.iter().zip(&section) {
+                    panel[index] = n * s;
                 }
             }
         }

@@ -53,7 +53,7 @@ impl SplineTube {
             forces.energy += volumetric.energy;
             forces.energy_ungrown += volumetric.energy_ungrown;
             forces.residual_scale = forces.residual_scale.hypot(volumetric.residual_scale);
-            // At the points of the deviatoric part det Fe only has to be positive.
+            // At the points of the shear part det Fe only has to be positive.
             forces.smallest_jacobian = volumetric.smallest_jacobian;
             for (sum, part) in forces.residual.iter_mut().zip(&volumetric.residual) {
                 *sum += part;

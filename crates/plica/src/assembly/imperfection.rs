@@ -145,7 +145,7 @@ impl<'a> ModeShape<'a> {
     fn largest_displacement(&self) -> f64 {
         let [axial, wall] = &self.bases;
         let points = wall.functions();
-        let places = |basis: &Basis, count: usize| -> Vec<Values> {
+        let sampled = |basis: &Basis, count: usize| -> Vec<Values> {
             let last = basis.elements() * count;
             (0..=last)
                 .map(|i| {
@@ -156,9 +156,9 @@ impl<'a> ModeShape<'a> {
                 })
                 .collect()
         };
-        let through = places(wall, SAMPLES[1]);
+        let through = sampled(wall, SAMPLES[1]);
         let mut largest = 0.0_f64;
-        for along in places(axial, SAMPLES[0]) {
+        for along in sampled(axial, SAMPLES[0]) {
             for through in &through {
                 let mut u = [0.0; 3];
                 for (a, n) in along.value.iter().enumerate() {

@@ -146,8 +146,8 @@ impl LowHarmonics {
             self.project(
                 &block,
                 |row, column| {
-                    let place = |(c, i): (usize, usize)| (c * self.modes() + mode) * 3 + i;
-                    (place(row), place(column))
+                    let index = |(c, i): (usize, usize)| (c * self.modes() + mode) * 3 + i;
+                    (index(row), index(column))
                 },
                 matrix,
             );
@@ -159,7 +159,7 @@ impl LowHarmonics {
     pub fn project(
         &self,
         block: &BlockBanded,
-        place: impl Fn((usize, usize), (usize, usize)) -> (usize, usize),
+        index: impl Fn((usize, usize), (usize, usize)) -> (usize, usize),
         into: &mut BlockBanded,
     ) {
         let m = block.size();
@@ -180,7 +180,7 @@ impl LowHarmonics {
                         for at in 0..THROUGH * 3 {
                             let rows = right.iter().enumerate().skip(i).step_by(3);
                             let sum = rows.map(|(row, right)| self.through[row / 3][c] * right[at]);
-                            let (row, column) = place((c, i), (at / 3, at % 3));
+                            let (row, column) = index((c, i), (at / 3, at % 3));
                             into.add_at(j, d, row, column, sum.sum());
                         }
                     }

@@ -171,12 +171,12 @@ impl SplineTube {
             for (c, (m, dm)) in wall.value.iter().zip(&wall.slope).enumerate() {
                 for (r, ring) in near.point.ring_values.iter().enumerate() {
                     let row = axial.element + a;
-                    let place = |i: usize| {
+                    let index = |i: usize| {
                         row * self.row_size()
                             + ((wall.element + c) * 3 + i) * rings
                             + (near.first_ring + r) % rings
                     };
-                    let u = [0, 1, 2].map(|i| u[place(i)]);
+                    let u = [0, 1, 2].map(|i| u[index(i)]);
                     value = to_element_frame(ring, 0, u.map(|x| n * m * x), value);
                     g[0] = to_element_frame(ring, 0, u.map(|x| dn * m * x), g[0]);
                     g[1] = to_element_frame(ring, 1, u.map(|x| n * m * x), g[1]);

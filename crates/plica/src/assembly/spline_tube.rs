@@ -35,7 +35,7 @@ pub struct SplineTube {
     pub(super) around: Vec<CircumferentialPoint>,
     pub(super) padded_rings: PaddedRings,
     pub(super) stress_free_shape: Option<Arc<StressFreeShape>>,
-    /// Law integrated at the points of `layers`: the law of the wall, or its deviatoric part.
+    /// Law integrated at the points of `layers`: the law of the wall, or its shear part.
     pub(super) law: Material,
     /// The volumetric part of the law, if it is integrated at fewer points.
     pub(super) volumetric: Option<Box<SplineTube>>,
@@ -69,13 +69,13 @@ impl SplineTube {
             .iter()
             .map(|r| r * circle.control_radius)
             .collect();
-        let places = [axial.greville(), control_radii];
+        let control_points = [axial.greville(), control_radii];
         let boundary_conditions =
-            BoundaryConditions::new(tube, &sector, &places, displacement.as_deref());
+            BoundaryConditions::new(tube, &sector, &control_points, displacement.as_deref());
         let ring = Sector::new(p, around, 1);
         let of_ring = displacement.as_deref().map(|u| first_ring(u, rings));
         let ring_boundary_conditions =
-            BoundaryConditions::new(tube, &ring, &places, of_ring.as_deref());
+            BoundaryConditions::new(tube, &ring, &control_points, of_ring.as_deref());
         let rule = gauss_legendre(p + 1);
         let spline = Self {
             batches: AxialBatch::all(&axial, &full_rules(&axial)),
@@ -110,19 +110,19 @@ impl SplineTube {
             .law
             .parts()
             .expect("reduced integration needs a law with volumetric part");
-        let apart = Self {
+        let volumetric = Self {
             layers: Layer::all(&self.wall, &reduced_rules(&self.wall)),
             law: volume,
             stress_free_shape: None,
             ..self.clone()
         };
-        let apart = match &self.stress_free_shape {
-            Some(own) => apart.with_stress_free_shape(own.displacement.clone()),
-            None => apart,
+        let volumetric = match &self.stress_free_shape {
+            Some(shape) => volumetric.with_stress_free_shape(shape.displacement.clone()),
+            None => volumetric,
         };
         Self {
             law: shape,
-            volumetric: Some(Box::new(apart)),
+            volumetric: Some(Box::new(volumetric)),
             ..self
         }
     }
@@ -145,8 +145,8 @@ impl SplineTube {
             ..self.clone()
         };
         match &self.stress_free_shape {
-            Some(own) => {
-                ring.with_stress_free_shape(first_ring(&own.displacement, self.sector.rings))
+            Some(shape) => {
+                ring.with_stress_free_shape(first_ring(&shape.displacement, self.sector.rings))
             }
             None => ring,
         }

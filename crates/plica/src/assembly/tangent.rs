@@ -90,15 +90,15 @@ impl SplineTube {
             } else {
                 last
             };
-            let places = self.places(matrix);
+            let indices = self.panel_indices(matrix);
             let parts_before = before.as_slice();
             matrix.panels_mut().enumerate().collect::<Vec<_>>()[first..end]
                 .par_iter_mut()
                 .for_each(|(row, panel)| {
                     for (from, part) in parts.iter().chain(parts_before) {
                         if (*from..from + part.rows).contains(row) {
-                            for (i, &place) in places.iter().enumerate() {
-                                panel[place] += part.entries[i * part.rows + *row - from];
+                            for (i, &index) in indices.iter().enumerate() {
+                                panel[index] += part.entries[i * part.rows + *row - from];
                             }
                         }
                     }
@@ -108,14 +108,14 @@ impl SplineTube {
     }
 
     /// Returns the indices in a panel of the entries of a batch tangent, in their order.
-    fn places(&self, matrix: &BlockBanded) -> Vec<usize> {
+    fn panel_indices(&self, matrix: &BlockBanded) -> Vec<usize> {
         let m = self.row_size();
-        let mut places = Vec::with_capacity((self.degree() + 1) * m * m);
+        let mut indices = Vec::with_capacity((self.degree() + 1) * m * m);
         for d in 0..=self.degree() {
             for column in 0..m {
-                places.extend((0..m).map(|row| matrix.place(d, row, column)));
+                indices.extend((0..m).map(|row| matrix.place(d, row, column)));
             }
         }
-        places
+        indices
     }
 }

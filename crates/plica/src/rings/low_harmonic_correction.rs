@@ -61,7 +61,7 @@ impl LowHarmonicCorrection {
         let modes = self.modes();
         let mode_len = low.len() / modes;
         let rows = mode_len / PART;
-        let place = |mode: usize, row: usize, c: usize, i: usize| {
+        let index = |mode: usize, row: usize, c: usize, i: usize| {
             (
                 mode * mode_len + row * PART + 3 * c + i,
                 ((row * 3 + c) * modes + mode) * 3 + i,
@@ -72,7 +72,7 @@ impl LowHarmonicCorrection {
                 for row in 0..rows {
                     for c in 0..3 {
                         for i in 0..3 {
-                            let (from, to) = place(mode, row, c, i);
+                            let (from, to) = index(mode, row, c, i);
                             f(mode, from, to);
                         }
                     }

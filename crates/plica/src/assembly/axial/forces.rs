@@ -198,10 +198,10 @@ fn scatter<S: Simd, const N: usize>(
             for r in 0..local_rings {
                 let ring = (element + r) % input.rings;
                 for i in 0..3 {
-                    let place = input.place(layer.first + c, i, ring);
+                    let index = input.index(layer.first + c, i, ring);
                     let lanes = Lanes::store(force[(a * N + c) * local_rings + r][i]);
                     for l in 0..input.batch.elements {
-                        residual[(l + a) * size + place] += lanes.0[l];
+                        residual[(l + a) * size + index] += lanes.0[l];
                     }
                 }
             }

@@ -70,7 +70,7 @@ impl AxialBatchInput<'_> {
 
     /// Returns the index of a component of a control point in its row.
     #[inline(always)]
-    pub fn place(&self, point: usize, component: usize, ring: usize) -> usize {
+    pub fn index(&self, point: usize, component: usize, ring: usize) -> usize {
         (point * 3 + component) * self.rings + ring
     }
 
@@ -89,10 +89,10 @@ impl AxialBatchInput<'_> {
                 for r in 0..local_rings {
                     let ring = (element + r) % self.rings;
                     for i in 0..3 {
-                        let place = self.place(layer.first + c, i, ring);
+                        let index = self.index(layer.first + c, i, ring);
                         let mut lanes = [0.0; LANES];
                         for (l, x) in lanes.iter_mut().enumerate() {
-                            *x = self.u[(self.batch.row(l) + a) * size + place];
+                            *x = self.u[(self.batch.row(l) + a) * size + index];
                         }
                         out[(a * N + c) * local_rings + r][i] = f64x8::simd_from(simd, lanes);
                     }

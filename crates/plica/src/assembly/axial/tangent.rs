@@ -31,12 +31,12 @@ impl BatchTangent {
     /// Adds the batch to the rows of a matrix from `first` on; rows hold `m` unknowns, and degree p
     /// couples p + 1 of them.
     pub fn add_to(&self, matrix: &mut BlockBanded, first: usize, m: usize, p: usize) {
-        let places: Vec<usize> = (0..(p + 1) * m * m)
+        let indices: Vec<usize> = (0..(p + 1) * m * m)
             .map(|i| matrix.place(i / (m * m), i % m, i / m % m))
             .collect();
         let panels = matrix.panels_mut().skip(first).take(self.rows);
         for (row, panel) in panels.enumerate() {
-            for (&place, entry) in places.iter().zip(self.entries.chunks_exact(self.rows)) {
+            for (&place, entry) in indices.iter().zip(self.entries.chunks_exact(self.rows)) {
                 panel[place] += entry[row];
             }
         }
@@ -149,11 +149,11 @@ fn kernel<S: Simd, L: Law, const N: usize>(
                         for i in 0..3 {
                             for j in 0..3 {
                                 let wall = &wall[((k * N + c) * N + d) * 9 + 3 * i + j];
-                                let places = (
-                                    input.place(layer.first + c, i, ring_r),
-                                    input.place(layer.first + d, j, ring_s),
+                                let indices = (
+                                    input.index(layer.first + c, i, ring_r),
+                                    input.index(layer.first + d, j, ring_s),
                                 );
-                                add_along::<S, N>(simd, &mut out, batch, m, wall, places, r == s);
+                                add_along::<S, N>(simd, &mut out, batch, m, wall, indices, r == s);
                             }
                         }
                     }

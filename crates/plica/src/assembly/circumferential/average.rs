@@ -106,8 +106,8 @@ fn kernel<S: Simd, const N: usize>(
                     for i in 0..3 {
                         for j in 0..3 {
                             let wall = &wall[((d * N + c) * N + e) * 9 + 3 * i + j];
-                            let places = ((layer.first + c) * 3 + i, (layer.first + e) * 3 + j);
-                            add_along::<S, N>(simd, out, batch, m, wall, places, true);
+                            let indices = ((layer.first + c) * 3 + i, (layer.first + e) * 3 + j);
+                            add_along::<S, N>(simd, out, batch, m, wall, indices, true);
                         }
                     }
                 }

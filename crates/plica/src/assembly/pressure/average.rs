@@ -37,8 +37,8 @@ impl SplineTube {
                         let mut blocks = [[[0.0; 3]; 3]; 6];
                         for element in 0..k {
                             let moved = self.surface_displacement(&rings, element, point);
-                            let place = sum(&wall.at_rest(point), &moved);
-                            let own = volume_blocks(&place, -wall.follower * weight);
+                            let position = sum(&wall.at_rest(point), &moved);
+                            let own = volume_blocks(&position, -wall.follower * weight);
                             for (sum, own) in
                                 blocks.as_flattened_mut().iter_mut().zip(own.as_flattened())
                             {
@@ -72,12 +72,12 @@ impl SplineTube {
                                         (_, false) => own[i][j] + mirrored[j][i],
                                         (_, true) => own[i][j] - mirrored[j][i],
                                     };
-                                    let place = (wall.point * 3 + i, wall.point * 3 + j);
+                                    let index = (wall.point * 3 + i, wall.point * 3 + j);
                                     average.offsets[d].add_at(
                                         batch.first + lane + b,
                                         a - b,
-                                        place.0,
-                                        place.1,
+                                        index.0,
+                                        index.1,
                                         value,
                                     );
                                 }

@@ -32,11 +32,11 @@ impl SplineTube {
                     let mut mixed = vec![0.0; columns * columns];
                     let mut own = vec![0.0; columns * columns];
                     for element in 0..self.sector.rings {
-                        let place = sum(
+                        let position = sum(
                             &wall.at_rest(point),
                             &self.surface_displacement(&rings, element, point),
                         );
-                        let [_, zs, zv, _, sv, _] = volume_blocks(&place, weight);
+                        let [_, zs, zv, _, sv, _] = volume_blocks(&position, weight);
                         let rows = 3 * element * columns..3 * (element + 1) * columns;
                         let (value, slope) = (&values[rows.clone()], &slopes[rows]);
                         add_form(value, &zs, slope, &mut mixed);

@@ -74,8 +74,8 @@ impl SplineTube {
         for wall in self.loaded_walls(load) {
             let parts = self.integrate_over_wall(&wall, [u], |[moved], point| {
                 let rest = wall.at_rest(point);
-                let place = sum(&rest, &moved);
-                let volume = volume_slopes(&place);
+                let position = sum(&rest, &moved);
+                let volume = volume_slopes(&position);
                 let area = [
                     0.0,
                     wall.radius * point.circle_slope.1,
@@ -137,7 +137,7 @@ impl SplineTube {
         matrix: &mut BlockBanded,
     ) {
         for wall in self.follower_walls(load) {
-            let place = |i: usize, ring: usize| (wall.point * 3 + i) * self.sector.rings + ring;
+            let index = |i: usize, ring: usize| (wall.point * 3 + i) * self.sector.rings + ring;
             for along @ (batch, lane) in self.elements_along() {
                 for qz in 0..=self.degree() {
                     let rings = self.rings_along(&wall, u, along, qz);
@@ -145,8 +145,8 @@ impl SplineTube {
                         for (point, rotations) in self.around.iter().zip(rotations) {
                             let moved = self.surface_displacement(&rings, element, point);
                             let weight = batch.weight[qz].0[lane] * point.weight;
-                            let place_now = sum(&wall.at_rest(point), &moved);
-                            let blocks = volume_blocks(&place_now, -wall.follower * weight);
+                            let position = sum(&wall.at_rest(point), &moved);
+                            let blocks = volume_blocks(&position, -wall.follower * weight);
                             for set in rotations {
                                 for (r, row) in set.iter().enumerate() {
                                     for (s, column) in set.iter().enumerate() {
@@ -159,7 +159,7 @@ impl SplineTube {
                                             |a, b, i, j, x| {
                                                 if a >= b {
                                                     let first = batch.first + lane;
-                                                    let (row, column) = (place(i, r), place(j, s));
+                                                    let (row, column) = (index(i, r), index(j, s));
                                                     matrix.add_at(first + b, a - b, row, column, x);
                                                 }
                                             },

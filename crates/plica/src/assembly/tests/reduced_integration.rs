@@ -101,21 +101,24 @@ fn reduced_and_full_integration_agree_for_uniform_stress() {
         let load = tube.tube.rest();
         let radius = tube.circle.control_radius;
         let u = tube.control_values_from(|z, r, _| [0.2 * z, 0.03 * r * radius, 0.0]);
-        let (apart, whole) = (
+        let (reduced, whole) = (
             tube.forces(&load, &u).unwrap(),
             full.forces(&load, &u).unwrap(),
         );
-        assert!((apart.energy / whole.energy - 1.0).abs() < 1e-4, "{degree}");
-        let off = largest(&moved(&apart.residual, &whole.residual, -1.0));
+        assert!(
+            (reduced.energy / whole.energy - 1.0).abs() < 1e-4,
+            "{degree}"
+        );
+        let off = largest(&moved(&reduced.residual, &whole.residual, -1.0));
         let all = largest(&whole.residual);
         assert!(off < tolerance * all, "{degree}");
         // In another state the two integrations differ.
         let u = wavy(&tube);
-        let (apart, whole) = (
+        let (reduced, whole) = (
             tube.forces(&load, &u).unwrap(),
             full.forces(&load, &u).unwrap(),
         );
-        let off = largest(&moved(&apart.residual, &whole.residual, -1.0));
+        let off = largest(&moved(&reduced.residual, &whole.residual, -1.0));
         assert!(off > 1e-4 * largest(&whole.residual), "{degree}");
     }
 }
