@@ -1,10 +1,10 @@
 //! Legend, vertical lines and labelled markers of a chart.
 
-use super::canvas::{Anchor, Canvas, INK, Pen, Position};
+use super::canvas::{Anchor, Canvas, Pen, Position};
 use super::colour::line_colour;
 use super::frame::{Frame, Interval};
 use super::label::parse;
-use super::text::{CAP_HEIGHT, ROW_HEIGHT, TEXT_SIZE, text_width};
+use super::text::{CAP_HEIGHT, HALF_CAP, ROW_HEIGHT, TEXT_SIZE, text_width};
 use super::{Curve, Marker, VerticalLine};
 
 /// Arranges the labelled curves in rows that fit the page, each with its offset from the start of the row.
@@ -44,14 +44,8 @@ pub(super) fn draw_legend(
             if curve.dots {
                 canvas.disc((left + 8.5, middle), 1.7, line_colour(curve.colour), 0.0);
             }
-            let baseline = middle + TEXT_SIZE * CAP_HEIGHT / 2.0;
-            canvas.text(
-                (left + 22.0, baseline),
-                &curve.label,
-                TEXT_SIZE,
-                Anchor::Start,
-                INK,
-            );
+            let baseline = middle + HALF_CAP;
+            canvas.text((left + 22.0, baseline), &curve.label, Anchor::Start);
         }
     }
 }
@@ -106,7 +100,7 @@ pub(super) fn draw_vertical_lines(
             }
         }
         let (middle, _) = label_span(canvas, &line.label, across);
-        canvas.text(
+        canvas.text_with(
             (middle, baseline - 3.0),
             &line.label,
             TEXT_SIZE,
@@ -158,7 +152,7 @@ pub(super) fn draw_markers(
         };
         let best = candidates.into_iter().min_by_key(cost);
         let (left, base) = best.unwrap_or(candidates[0]);
-        canvas.text((left, base), &marker.label, TEXT_SIZE, Anchor::Start, INK);
+        canvas.text((left, base), &marker.label, Anchor::Start);
         for i in 0..=(width as usize) {
             obstacles.push((left + i as f64, base - height / 2.0));
         }

@@ -2,7 +2,7 @@
 //!
 //! `rasterise` turns a page into pixels and `svg` into an SVG file; both draw the same primitives in the same order.
 
-use super::text::{Run, layout};
+use super::text::{Run, TEXT_SIZE, TITLE_SIZE, layout};
 use super::{DrawError, Image};
 
 /// Largest coordinate of a line, in points; lines are interrupted beyond it.
@@ -167,8 +167,18 @@ impl Canvas {
         self.primitives.push(Primitive::Clip(None));
     }
 
-    /// Draws a label with its baseline at a position; `size` is the font size in points.
-    pub fn text(
+    /// Draws a label in ordinary text, with its baseline at a position.
+    pub fn text(&mut self, position: Position, label: &str, anchor: Anchor) {
+        self.text_with(position, label, TEXT_SIZE, anchor, INK);
+    }
+
+    /// Draws a title, with its baseline at a position.
+    pub fn title(&mut self, position: Position, label: &str, anchor: Anchor) {
+        self.text_with(position, label, TITLE_SIZE, anchor, INK);
+    }
+
+    /// Draws a label in a font size in points and a colour.
+    pub fn text_with(
         &mut self,
         (x, y): Position,
         label: &str,
@@ -191,9 +201,9 @@ impl Canvas {
         });
     }
 
-    /// Draws a label that reads upwards, with the middle of its baseline at a position.
-    pub fn text_upward(&mut self, (x, y): Position, label: &str, size: f64) {
-        let (runs, width) = layout(label, size);
+    /// Draws a title that reads upwards, with the middle of its baseline at a position.
+    pub fn title_upward(&mut self, (x, y): Position, label: &str) {
+        let (runs, width) = layout(label, TITLE_SIZE);
         self.primitives.push(Primitive::Text {
             runs,
             start: (x, y + width / 2.0),

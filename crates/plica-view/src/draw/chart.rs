@@ -7,7 +7,7 @@ use super::canvas::{Anchor, Canvas, INK, Pen, Position};
 use super::colour::line_colour;
 use super::frame::{Frame, Shape, axis_range};
 use super::inset::draw_insets;
-use super::text::{CAP_HEIGHT, TEXT_SIZE, TITLE_SIZE, truncated};
+use super::text::{CAP_HEIGHT, HALF_CAP, TITLE_SIZE, truncated};
 use super::ticks::{Ticks, power_of_ten};
 use super::{Compression, Curve, DrawError, Image, Inset, Marker, VerticalLine};
 
@@ -114,7 +114,7 @@ impl Chart {
         let mut canvas = Canvas::new(self.width_pt, frame.bottom() + tail, width_px)?;
         if !self.title.is_empty() {
             let title = truncated(&self.title, TITLE_SIZE, self.width_pt - frame.left - 4.0);
-            canvas.text((frame.left, 13.0), &title, TITLE_SIZE, Anchor::Start, INK);
+            canvas.title((frame.left, 13.0), &title, Anchor::Start);
         }
         draw_legend(&mut canvas, &frame, &legend, shape.has_title);
         self.draw_axes(&mut canvas, &frame, &x, &y)?;
@@ -166,32 +166,18 @@ impl Chart {
         for (at, text) in x.at.iter().zip(&x.labels) {
             let (across, _) = frame.position((*at, frame.y.0));
             canvas.line((across, bottom), (across, bottom + 3.0), axis);
-            canvas.text(
-                (across, bottom + 12.5),
-                text,
-                TEXT_SIZE,
-                Anchor::Middle,
-                INK,
-            );
+            canvas.text((across, bottom + 12.5), text, Anchor::Middle);
         }
         for (at, text) in y.at.iter().zip(&y.labels) {
             let (_, down) = frame.position((frame.x.0, *at));
             canvas.line((left - 3.0, down), (left, down), axis);
-            canvas.text(
-                (left - 5.5, down + TEXT_SIZE * CAP_HEIGHT / 2.0),
-                text,
-                TEXT_SIZE,
-                Anchor::End,
-                INK,
-            );
+            canvas.text((left - 5.5, down + HALF_CAP), text, Anchor::End);
         }
         let x_title = with_exponent(&self.x_label, x.exponent);
-        canvas.text(
+        canvas.title(
             (left + frame.width / 2.0, bottom + 26.0),
             &x_title,
-            TITLE_SIZE,
             Anchor::Middle,
-            INK,
         );
         let y_title = with_exponent(&self.y_label, y.exponent);
         if !y_title.is_empty() {
@@ -199,7 +185,7 @@ impl Chart {
                 9.0 + TITLE_SIZE * CAP_HEIGHT / 2.0,
                 frame.top + frame.height / 2.0,
             );
-            canvas.text_upward(position, &y_title, TITLE_SIZE);
+            canvas.title_upward(position, &y_title);
         }
         Ok(())
     }
@@ -284,34 +270,17 @@ mod tests {
 
     #[test]
     fn invalid_data_is_an_error() {
-        let nan = Curve {
-            points: vec![(f64::NAN, 1.0)],
-            ..Curve::default()
+        let error = |change: fn(&mut Chart)| {
+            let mut chart = folded();
+            change(&mut chart);
+            chart.png(600).unwrap_err()
         };
-        assert!(matches!(
-            Chart {
-                curves: vec![nan],
-                ..folded()
-            }
-            .png(600),
-            Err(DrawError::Empty { .. })
-        ));
-        assert!(matches!(
-            Chart {
-                x_range: Some((2.0, 1.0)),
-                ..folded()
-            }
-            .png(600),
-            Err(DrawError::Range { .. })
-        ));
+        let nan = error(|chart| chart.curves[0].points = vec![(f64::NAN, 1.0)]);
+        assert!(matches!(nan, DrawError::Empty { .. }));
+        let reversed = error(|chart| chart.x_range = Some((2.0, 1.0)));
+        assert!(matches!(reversed, DrawError::Range { .. }));
+        let width = error(|chart| chart.width_pt = f64::NAN);
+        assert!(matches!(width, DrawError::Size { .. }));
         assert!(matches!(folded().png(0), Err(DrawError::Size { .. })));
-        assert!(matches!(
-            Chart {
-                width_pt: f64::NAN,
-                ..folded()
-            }
-            .png(600),
-            Err(DrawError::Size { .. })
-        ));
     }
 }

@@ -3,7 +3,7 @@
 use super::canvas::{Anchor, Canvas, INK, Pen, Position};
 use super::colour::ColourMap;
 use super::range::{MAX_INTERVALS, ResolvedRange};
-use super::text::{CAP_HEIGHT, TEXT_SIZE, TITLE_SIZE, text_width};
+use super::text::{HALF_CAP, TEXT_SIZE, text_width};
 use super::ticks::{format_number, power_of_ten, ticks};
 
 /// Draws a bar that ends before `right_limit`, with ticks and title. An arrow and a note show values beyond its ends.
@@ -87,32 +87,18 @@ pub(super) fn draw_colour_bar(
     for (at, text) in marks.at.iter().zip(&marks.labels) {
         let x = left + width * (at - range.low) / (range.high - range.low);
         canvas.line((x, top + height), (x, top + height + 2.5), pen);
-        canvas.text(
-            (x, top + height + 11.0),
-            text,
-            TEXT_SIZE,
-            Anchor::Middle,
-            INK,
-        );
+        canvas.text((x, top + height + 11.0), text, Anchor::Middle);
     }
     let mut title = label.to_owned();
     if exponent != 0 {
         title += &format!(" ({})", power_of_ten(exponent));
     }
-    canvas.text(
+    canvas.title(
         (left + width / 2.0, top + height + 23.5),
         &title,
-        TITLE_SIZE,
         Anchor::Middle,
-        INK,
     );
     if !note.is_empty() {
-        canvas.text(
-            (right + tip + 4.0, middle + TEXT_SIZE * CAP_HEIGHT / 2.0),
-            &note,
-            TEXT_SIZE,
-            Anchor::Start,
-            INK,
-        );
+        canvas.text((right + tip + 4.0, middle + HALF_CAP), &note, Anchor::Start);
     }
 }

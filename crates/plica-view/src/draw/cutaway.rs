@@ -9,7 +9,7 @@ use super::colour_bar::draw_colour_bar;
 use super::image::MIN_SIDE;
 use super::range::{Range, ResolvedRange};
 use super::render::render;
-use super::text::{CAP_HEIGHT, TEXT_SIZE, TITLE_SIZE, truncated};
+use super::text::{HALF_CAP, TITLE_SIZE, truncated};
 use super::vec3::dot;
 use super::view::View;
 use super::{Compression, DrawError, Image, Surface};
@@ -190,7 +190,7 @@ impl Cutaway {
         let mut canvas = Canvas::new(self.width_pt, bottom + 44.0, width_px)?;
         if !self.title.is_empty() {
             let title = truncated(&self.title, TITLE_SIZE, self.width_pt - 2.0 * SIDE);
-            canvas.text((SIDE, 13.0), &title, TITLE_SIZE, Anchor::Start, INK);
+            canvas.title((SIDE, 13.0), &title, Anchor::Start);
         }
         let margin = 2.0; // points around a tube, for the line along its edge
         let pixels = canvas.pixels_per_point();
@@ -215,24 +215,16 @@ impl Cutaway {
         for ((panel, (top, _, height)), tube) in self.panels.iter().zip(tops).zip(tubes?) {
             let mut top = top;
             if !panel.label.is_empty() {
-                canvas.text(
-                    (SIDE, top + 8.0),
-                    &panel.label,
-                    TEXT_SIZE,
-                    Anchor::Start,
-                    INK,
-                );
+                canvas.text((SIDE, top + 8.0), &panel.label, Anchor::Start);
                 top += 13.0;
             }
             canvas.overlay(tube, (inset - margin, top - margin));
-            let middle = top + height / 2.0 + TEXT_SIZE * CAP_HEIGHT / 2.0;
-            canvas.text((inset - 7.0, middle), "colon", TEXT_SIZE, Anchor::End, INK);
+            let middle = top + height / 2.0 + HALF_CAP;
+            canvas.text((inset - 7.0, middle), "colon", Anchor::End);
             canvas.text(
                 (self.width_pt - inset + 7.0, middle),
                 "ileum",
-                TEXT_SIZE,
                 Anchor::Start,
-                INK,
             );
         }
         let (length, name) = &self.scale_bar;
@@ -240,16 +232,13 @@ impl Cutaway {
         let (end, base) = (self.width_pt - SIDE, bottom + 13.0);
         canvas.line((end - length, base), (end, base), Pen::new(INK, 1.2));
         canvas.text(
-            (end - length / 2.0, base + 10.5),
-            // In an oblique view the bar applies only to lengths along the tube.
+            (end - length / 2.0, base + 10.5), // In an oblique view the bar applies only to lengths along the tube.
             &if right[2] > MIN_PROJECTION {
                 name.clone()
             } else {
                 format!("{name}, along")
             },
-            TEXT_SIZE,
             Anchor::Middle,
-            INK,
         );
         let (corner, limit) = ((SIDE + 8.0, bottom + 6.0), end - length - 12.0);
         draw_colour_bar(

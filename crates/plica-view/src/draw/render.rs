@@ -104,6 +104,11 @@ mod tests {
         }
     }
 
+    /// Renders surfaces in the default view with values from 0 to 1.
+    fn image(surfaces: &[Surface], samples: usize) -> Image {
+        render(surfaces, &view(), (0.0, 1.0), ColourMap::Viridis, samples).unwrap()
+    }
+
     /// A square in x and y from `low` to `high` at height z, with one value.
     fn square(low: f64, high: f64, z: f64, value: f64) -> Surface {
         let points = vec![
@@ -123,14 +128,7 @@ mod tests {
 
     #[test]
     fn a_square_covers_its_pixels() {
-        let image = render(
-            &[square(4.0, 10.0, 0.0, 0.5)],
-            &view(),
-            (0.0, 1.0),
-            ColourMap::Viridis,
-            1,
-        )
-        .unwrap();
+        let image = image(&[square(4.0, 10.0, 0.0, 0.5)], 1);
         let inked: Vec<usize> = (0..400).filter(|&i| image.pixels[i] != WHITE).collect();
         // y from 4 to 10 points up: rows 10 to 15, plus the line along the left and upper edge.
         for row in 10..16 {
@@ -151,15 +149,8 @@ mod tests {
     #[test]
     fn the_nearer_surface_hides_the_other_in_any_order() {
         let (near, far) = (square(2.0, 18.0, 1.0, 1.0), square(2.0, 18.0, -1.0, 0.0));
-        let one = render(
-            &[near.clone(), far.clone()],
-            &view(),
-            (0.0, 1.0),
-            ColourMap::Viridis,
-            2,
-        )
-        .unwrap();
-        let other = render(&[far, near], &view(), (0.0, 1.0), ColourMap::Viridis, 2).unwrap();
+        let one = image(&[near.clone(), far.clone()], 2);
+        let other = image(&[far, near], 2);
         assert_eq!(one, other);
         let [r, _, b] = one.pixels[10 * 20 + 10];
         assert!(r > 2 * b, "the yellow end of the map is in front: {r}, {b}");
@@ -220,8 +211,7 @@ mod tests {
             surface.points.swap(2, 3);
             surface
         };
-        let drawn =
-            |surface| render(&[surface], &view(), (0.0, 1.0), ColourMap::Viridis, 2).unwrap();
+        let drawn = |surface| image(&[surface], 2);
         let bright = |image: Image| image.pixels[10 * 20 + 10][1];
         let [lit, same] = [tilted(0.8), reversed(tilted(0.8))].map(|s| bright(drawn(s)));
         assert!(lit.abs_diff(same) < 2, "{lit} {same}");
@@ -239,13 +229,7 @@ mod tests {
         ));
         let mut hole = square(2.0, 18.0, 0.0, f64::NAN);
         hole.points[0][0] = f64::NAN;
-        assert!(
-            render(&[hole], &view(), (0.0, 1.0), ColourMap::Viridis, 1)
-                .unwrap()
-                .pixels
-                .iter()
-                .all(|&p| p == WHITE)
-        );
+        assert!(image(&[hole], 1).pixels.iter().all(|&p| p == WHITE));
     }
 
     #[test]

@@ -7,6 +7,8 @@ use super::label::{Fragment, parse};
 pub(super) const TITLE_SIZE: f64 = 9.0;
 /// Font size of all other text, in points.
 pub(super) const TEXT_SIZE: f64 = 8.0;
+/// Half the height of a capital letter of ordinary text, in points.
+pub(super) const HALF_CAP: f64 = TEXT_SIZE * CAP_HEIGHT / 2.0;
 /// Height of a row of text, in points.
 pub(super) const ROW_HEIGHT: f64 = 12.0;
 /// Height of a capital letter divided by the font size.

@@ -16,94 +16,74 @@ pub(super) struct Field {
 
 const XYZ: &[&str] = &["x", "y", "z"];
 
+const fn field(
+    name: &'static str,
+    components: &'static [&'static str],
+    values: fn(&Points, &Scale) -> Vec<f32>,
+) -> Field {
+    Field {
+        name,
+        components,
+        values,
+    }
+}
+
 /// All fields.
 pub(super) const FIELDS: &[Field] = &[
-    Field {
-        name: "displacement",
-        components: XYZ,
-        values: |points, scale| {
-            let length = scale.length as f32;
-            components(points, |point, rotation| {
-                rotation.vector_f32(point.displacement).map(|x| length * x)
-            })
-        },
-    },
-    Field {
-        name: "det_Fe",
-        components: &[],
-        values: |points, _| scalar(points, |point| point.jacobian),
-    },
-    Field {
-        name: "theta_zeta",
-        components: &[],
-        values: |points, _| scalar(points, |point| point.grown[0]),
-    },
-    Field {
-        name: "theta_eta",
-        components: &[],
-        values: |points, _| scalar(points, |point| point.grown[1]),
-    },
-    Field {
-        name: "strain_energy_density",
-        components: &[],
-        values: |points, scale| {
-            let stress = scale.stress as f32;
-            scalar(points, |point| stress * point.energy_density)
-        },
-    },
-    Field {
-        name: "cauchy_stress",
-        components: &["xx", "yy", "zz", "xy", "yz", "xz"],
-        values: |points, scale| {
+    field("displacement", XYZ, |points, scale| {
+        let length = scale.length as f32;
+        components(points, |point, rotation| {
+            rotation.vector_f32(point.displacement).map(|x| length * x)
+        })
+    }),
+    field("det_Fe", &[], |points, _| {
+        scalar(points, |point| point.jacobian)
+    }),
+    field("theta_zeta", &[], |points, _| {
+        scalar(points, |point| point.grown[0])
+    }),
+    field("theta_eta", &[], |points, _| {
+        scalar(points, |point| point.grown[1])
+    }),
+    field("strain_energy_density", &[], |points, scale| {
+        let stress = scale.stress as f32;
+        scalar(points, |point| stress * point.energy_density)
+    }),
+    field(
+        "cauchy_stress",
+        &["xx", "yy", "zz", "xy", "yz", "xz"],
+        |points, scale| {
             let stress = scale.stress as f32;
             components(points, |point, rotation| {
                 rotation.tensor(point.stress).map(|x| stress * x)
             })
         },
-    },
-    Field {
-        name: "von_mises_stress",
-        components: &[],
-        values: |points, scale| {
-            let stress = scale.stress as f32;
-            scalar(points, |point| stress * point.von_mises)
-        },
-    },
-    Field {
-        name: "elastic_stretch",
-        components: &["1", "2", "3"],
-        values: |points, _| components(points, |point, _| point.stretches),
-    },
-    Field {
-        name: "elastic_direction_1",
-        components: XYZ,
-        values: |points, _| {
-            components(points, |point, rotation| {
-                rotation.vector_f32(point.directions[0])
-            })
-        },
-    },
-    Field {
-        name: "elastic_direction_2",
-        components: XYZ,
-        values: |points, _| {
-            components(points, |point, rotation| {
-                rotation.vector_f32(point.directions[1])
-            })
-        },
-    },
-    Field {
-        name: "elastic_direction_3",
-        components: XYZ,
-        values: |points, _| {
-            components(points, |point, rotation| {
-                rotation.vector_f32(point.directions[2])
-            })
-        },
-    },
-    Field {
-        name: "green_lagrange_strain",
-        components: &[
+    ),
+    field("von_mises_stress", &[], |points, scale| {
+        let stress = scale.stress as f32;
+        scalar(points, |point| stress * point.von_mises)
+    }),
+    field("elastic_stretch", &["1", "2", "3"], |points, _| {
+        components(points, |point, _| point.stretches)
+    }),
+    field("elastic_direction_1", XYZ, |points, _| {
+        components(points, |point, rotation| {
+            rotation.vector_f32(point.directions[0])
+        })
+    }),
+    field("elastic_direction_2", XYZ, |points, _| {
+        components(points, |point, rotation| {
+            rotation.vector_f32(point.directions[1])
+        })
+    }),
+    field("elastic_direction_3", XYZ, |points, _| {
+        components(points, |point, rotation| {
+            rotation.vector_f32(point.directions[2])
+        })
+    }),
+    field(
+        "green_lagrange_strain",
+        &[
             "zeta-zeta",
             "eta-eta",
             "xi-xi",
@@ -111,8 +91,8 @@ pub(super) const FIELDS: &[Field] = &[
             "eta-xi",
             "zeta-xi",
         ],
-        values: |points, _| components(points, |point, _| point.strain),
-    },
+        |points, _| components(points, |point, _| point.strain),
+    ),
 ];
 
 fn scalar(points: &Points, of: impl Fn(&PointData) -> f32) -> Vec<f32> {

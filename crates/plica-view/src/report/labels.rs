@@ -1,6 +1,14 @@
-//! Labels of units and of the scale bar.
+//! Labels of states, units and the scale bar.
 
-use plica::study::Scale;
+use plica::study::{Row, Scale};
+
+/// Returns the label of a state.
+pub(super) fn state_label(row: &Row) -> String {
+    format!(
+        "state {}: *L*_{{max}}/*L* = {:.2}, *D*_{{min}}/*D* = {:.2} ({})",
+        row.step, row.length_ratio, row.diameter_ratio, row.shape
+    )
+}
 
 /// Returns the length of the scale bar of a picture in units of D, and its label.
 pub(super) fn scale_bar(scale: &Scale) -> (f64, String) {

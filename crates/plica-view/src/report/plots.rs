@@ -1,5 +1,6 @@
 //! Plots of columns and of wall profiles.
 
+use super::labels::state_label;
 use super::walls::{Wall, walls};
 use super::{Column, Shown};
 use crate::draw::{Chart, Curve, VerticalLine};
@@ -56,10 +57,7 @@ pub fn plot_walls(plan: &Plan, states: &[Shown]) -> Chart {
 
 fn wall((state, row): &Shown) -> Wall<'_> {
     Wall {
-        label: format!(
-            "state {}: *L*_{{max}}/*L* = {:.2}, *D*_{{min}}/*D* = {:.2} ({})",
-            row.step, row.length_ratio, row.diameter_ratio, row.shape
-        ),
+        label: state_label(row),
         load: &state.load,
         u: &state.u,
     }

@@ -1,7 +1,7 @@
 //! Pictures of single states, and animations of a path.
 
 use super::Field;
-use super::labels::scale_bar;
+use super::labels::{scale_bar, state_label};
 use super::orientation::upward_angle;
 use super::pictures::energy_label;
 use super::surfaces::{MIN_ALONG, SurfaceOptions, tube_surfaces};
@@ -179,7 +179,7 @@ fn panel(
         |look: &SurfaceOptions| tube_surfaces(tube, &state.load, &state.u, upwards, look);
     let removed = look.removed().filter(|_| shown.see_through);
     Panel {
-        label: label(row),
+        label: state_label(row),
         surfaces: surfaces(look),
         translucent: removed.map(|look| surfaces(&look)).unwrap_or_default(),
     }
@@ -203,14 +203,6 @@ fn range(look: &Appearance) -> Range {
         Some([low, high]) => Range::Given(low, high),
         None => look.field.range(),
     }
-}
-
-/// Returns the label of a state.
-fn label(row: &Row) -> String {
-    format!(
-        "state {}: *L*_{{max}}/*L* = {:.2}, *D*_{{min}}/*D* = {:.2} ({})",
-        row.step, row.length_ratio, row.diameter_ratio, row.shape
-    )
 }
 
 /// Plots the energy of all states and marks one of them.
