@@ -14,7 +14,7 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use std::io::Write;
 
-/// Sampling through the wall: of an axisymmetric tube, and of any other.
+/// Points through the wall: of an axisymmetric tube, and of any other.
 const LEVELS: [usize; 2] = [9, 5];
 /// Number of meridians drawn of an axisymmetric tube.
 const MERIDIANS: usize = 96;
@@ -32,12 +32,12 @@ const NUMBERS: usize = 3 + Field::ALL.len();
 /// A state is a list of bytes. For each coordinate (along, up, towards the viewer) and then for each field it contains the low
 /// bytes of all points followed by the high bytes. They encode the difference to the previous point modulo 2¹⁶, of a coordinate
 /// in 65535 steps between `low` and `high`, and of a field in 4095 steps between its ends in that state; 65535 is a missing
-/// value. Sampling are ordered along the tube, then through the wall, then around.
+/// value. Points are ordered along the tube, then through the wall, then around.
 #[derive(Clone, Debug, Serialize)]
 pub struct Scene {
     /// True if there are states to draw.
     pub drawn: bool,
-    /// Sampling along the tube, through the wall and around one sector.
+    /// Points along the tube, through the wall and around one sector.
     pub points: [usize; 3],
     /// Number of sectors around the tube.
     pub sectors: usize,

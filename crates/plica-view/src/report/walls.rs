@@ -8,7 +8,7 @@ use plica::measure::{Asymmetry, Face, Meridians};
 use plica::study::{Plan, Scale};
 use plica::tube::Load;
 
-/// Sampling per element along a drawn wall.
+/// Points per element along a drawn wall.
 const POINTS_PER_ELEMENT: usize = 4;
 
 /// A state and its label.
