@@ -63,7 +63,7 @@ impl Stability {
         let words = summary(eigenvalues, changes.is_empty());
         Self {
             words,
-            caption: "Sampling where the path loses or regains stability, for each circumferential mode; lengths in D, pressures in E.",
+            caption: "Points where the path loses or regains stability, for each circumferential mode; lengths in D, pressures in E.",
             heads,
             lines: changes,
             pictures: Picture::read_all(
