@@ -1,4 +1,4 @@
-//! The lowest eigenpairs of tubes of many rings against those found otherwise.
+//! Lowest eigenpairs of three-dimensional states against the harmonic blocks and the assembled tangent.
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
@@ -10,7 +10,7 @@ use plica::stability::Harmonics;
 use plica::study::Plan;
 use plica::tube::{Load, Support};
 
-/// The main case on a coarse mesh.
+/// Returns the main case on a coarse mesh.
 fn coarse(mesh: [usize; 3]) -> Plan {
     let text = include_str!("../../../cases/invagination.toml");
     let mut plan = plica::case::read(text, "invagination").unwrap();
@@ -37,7 +37,7 @@ fn lowest(problem: &TubeProblem, load: &Load, u: &[f64], wanted: usize) -> Lowes
 }
 
 #[test]
-fn a_round_tube_has_the_eigenvalues_of_its_harmonics_each_twice() {
+fn an_axisymmetric_state_has_the_eigenvalues_of_its_modes_twice() {
     for ends in [[Support::Fixed; 2], [Support::Fixed, Support::Free]] {
         let mut plan = coarse([30, 12, 4]);
         plan.tube.ends = ends;
@@ -62,19 +62,22 @@ fn a_round_tube_has_the_eigenvalues_of_its_harmonics_each_twice() {
         expected.sort_by(f64::total_cmp);
         let found = lowest(&whole, &load, &all, 8);
         for (value, exact) in found.values.iter().zip(&expected[..8]) {
-            assert!((value / exact - 1.0).abs() < 1e-6, "{value}, not {exact}");
+            assert!(
+                (value / exact - 1.0).abs() < 1e-6,
+                "{value} instead of {exact}"
+            );
         }
     }
 }
 
 #[test]
-fn an_oval_tube_has_the_eigenvalues_of_its_assembled_tangent() {
+fn an_oval_state_has_the_eigenvalues_of_its_assembled_tangent() {
     let plan = coarse([10, 12, 4]);
     for rings in [12, 6] {
         let problem = problem(&plan, rings);
         let tube = &problem.tube;
         let load = plan.tube.rest();
-        // The colon end is held oval.
+        // The colon end is fixed in an oval shape.
         let row = tube.row_size();
         let oval = |i: usize| {
             let along = (i / row) as f64 / 9.0;
@@ -104,12 +107,15 @@ fn an_oval_tube_has_the_eigenvalues_of_its_assembled_tangent() {
         let (stiffness, mass) = (tube.tangent(&load, &u), tube.damping());
         let exact = lowest_eigenpairs(&stiffness, &mass, tube.prescribed(), 4).unwrap();
         let found = lowest(&problem, &load, &u, 4);
-        // With harmonics coupled that so few rings do not resolve it took 140.
+        // A preconditioner that couples modes which so few rings do not resolve takes 140 iterations.
         assert!(found.iterations < 60, "{}", found.iterations);
         for (value, exact) in found.values.iter().zip(exact.iter().map(|pair| pair.value)) {
-            assert!((value / exact - 1.0).abs() < 1e-6, "{value}, not {exact}");
+            assert!(
+                (value / exact - 1.0).abs() < 1e-6,
+                "{value} instead of {exact}"
+            );
         }
-        // The vectors are those of the matrix, too.
+        // The vectors are normalised eigenvectors of the assembled matrix.
         for (x, value) in found.vectors.iter().zip(&found.values).take(4) {
             let [mut Kx, mut Cx] = [vec![0.0; x.len()], vec![0.0; x.len()]];
             stiffness.multiply_add(1.0, x, &mut Kx);

@@ -1,4 +1,4 @@
-//! The stability of whole tubes against closed forms.
+//! Stability of tubes by circumferential mode against closed forms.
 
 use plica::assembly::SplineTube;
 use plica::equilibrium::TubeProblem;
@@ -8,7 +8,7 @@ use plica::stability::{Harmonics, Tested};
 use plica::tube::{Mesh, Support, Tube};
 use std::f64::consts::PI;
 
-/// A passive tube, axisymmetric, on a mesh of so many control points.
+/// Returns an axisymmetric tube without muscles.
 fn passive(
     [length, thickness, poisson_ratio]: [f64; 3],
     ends: Support,
@@ -33,11 +33,10 @@ fn passive(
     TubeProblem::new(SplineTube::new(&tube, &mesh, 1))
 }
 
-/// A long tube, pressed together between its fixed ends, bends at Euler's load: at the strain
-/// ε = 4π² I/(A L²), less what shear adds, ε/(1 + ε E/(κG)) with κ = ½ for a thin ring (Timoshenko and
-/// Gere 1961).
+/// Euler's strain between fixed ends is ε = 4π² I/(A L²); with shear it is ε/(1 + ε E/(κG)), κ = ½ for a thin ring
+/// (Timoshenko and Gere 1961).
 #[test]
-fn a_pressed_tube_bends_sideways_at_euler_s_load() {
+fn a_comloaded_tube_buckles_at_euler_s_load() {
     let (length, thickness, poisson_ratio) = (30.0, 0.06, 0.3);
     let inner = 0.5 - thickness;
     let gyration = (0.25 + inner * inner) / 4.0; // I/A
@@ -50,9 +49,9 @@ fn a_pressed_tube_bends_sideways_at_euler_s_load() {
     let harmonics = Harmonics::new(&problem.tube, 3);
     let (rest, u) = (problem.tube.tube.rest(), vec![0.0; problem.tube.unknowns()]);
     let mut path = Path::begin(&problem, rest.clone(), u, Settings::default()).unwrap();
-    let mut pressed = rest;
-    pressed.ends[1].displacement = -1.2 * expected * length;
-    path.begin_segment(pressed);
+    let mut loaded = rest;
+    loaded.ends[1].displacement = -1.2 * expected * length;
+    path.begin_segment(loaded);
     let mut tested = |factor: f64| -> Vec<Tested> {
         path.advance(factor / 1.2, &mut ()).unwrap();
         harmonics.test(&path.state().load, &path.state().u).unwrap()
@@ -63,23 +62,26 @@ fn a_pressed_tube_bends_sideways_at_euler_s_load() {
             .iter()
             .all(|tested| tested.negative == 0 && tested.lowest > 0.0)
     );
-    let lost: Vec<usize> = above.iter().map(|tested| tested.negative).collect();
-    assert_eq!(lost, [0, 1, 0, 0]);
-    // A straight line between the two.
+    let negative: Vec<usize> = above.iter().map(|tested| tested.negative).collect();
+    assert_eq!(negative, [0, 1, 0, 0]);
+    // Linear interpolation.
     let (a, b) = (below[1].lowest, above[1].lowest);
     let critical = 0.9 + 0.2 * a / (a - b);
     println!(
         "critical strain {:.6}, expected {expected:.6}",
         critical * expected
     );
-    assert!((critical - 1.0).abs() < 0.02, "off by {:e}", critical - 1.0);
+    assert!(
+        (critical - 1.0).abs() < 0.02,
+        "relative error {:e}",
+        critical - 1.0
+    );
 }
 
-/// A thin ring between plates, free to shift and to turn: beside these motions, which meet no force, its
-/// lowest modes are those in which the wall is stretched, at λ = (1 + n²) E/(1 − ν²)/r² for n = 0 and 1; and under
-/// pressure they still are.
+/// A thin ring between sliding plates is free to translate and to rotate. Its lowest other modes stretch the wall, with
+/// λ = (1 + n²) E/(1 − ν²)/r² for n = 0 and 1, also under pressure.
 #[test]
-fn rigid_motions_that_nothing_holds_are_no_modes() {
+fn neutral_rigid_motions_are_excluded() {
     let (length, thickness, poisson_ratio) = (0.1, 0.01, 0.3);
     let size = [length, thickness, poisson_ratio];
     let problem = passive(size, Support::Sliding, [4, 60, 5]);
@@ -87,9 +89,9 @@ fn rigid_motions_that_nothing_holds_are_no_modes() {
     let harmonics = Harmonics::new(&problem.tube, 1);
     let u = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(&problem, rest.clone(), u, Settings::default()).unwrap();
-    let mut pressed = rest;
-    pressed.pressures[1].follower = 1e-6;
-    path.begin_segment(pressed);
+    let mut loaded = rest;
+    loaded.pressures[1].follower = 1e-6;
+    path.begin_segment(loaded);
     for t in [0.0, 1.0] {
         path.advance(t, &mut ()).unwrap();
         let tested = harmonics.test(&path.state().load, &path.state().u).unwrap();
@@ -98,12 +100,8 @@ fn rigid_motions_that_nothing_holds_are_no_modes() {
             let stretched = (1 + n * n) as f64 / (1.0 - poisson_ratio * poisson_ratio);
             let expected = stretched / (middle * middle);
             assert_eq!(tested.negative, 0);
-            let off = tested.lowest / expected - 1.0;
-            assert!(
-                off.abs() < 1e-3,
-                "harmonic {n}: {}, {expected}",
-                tested.lowest
-            );
+            let error = tested.lowest / expected - 1.0;
+            assert!(error.abs() < 1e-3, "n = {n}: {}, {expected}", tested.lowest);
         }
     }
 }

@@ -134,7 +134,7 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
             .iter()
             .map(|change| VerticalLine {
                 at: change.critical,
-                label: change.quantity.written(change.critical, 4),
+                label: change.quantity.format(change.critical, 4),
             })
             .collect(),
         x_range: Some((ends[0], ends[1])),
@@ -167,7 +167,7 @@ fn label(quantity: Quantity, tube: &Tube) -> String {
         Quantity::ColonDisplacement => "displacement of the colon end/*D*".into(),
         Quantity::IleumDisplacement => "displacement of the ileum end/*D*".into(),
         Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
-        Quantity::DeadPressure(wall) => format!("dead load/*E* {}", ["inside", "outside"][wall]),
+        Quantity::DeadLoad(wall) => format!("dead load/*E* {}", ["inside", "outside"][wall]),
         Quantity::Muscle(_) => quantity.name(tube),
     }
 }
@@ -179,7 +179,7 @@ fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, Draw
     let at = format!(
         "{} = {}",
         label(change.quantity, &plan.tube),
-        change.quantity.written(change.critical, 4)
+        change.quantity.format(change.critical, 4)
     );
     let n = mode.harmonic;
     let panel = |label: String, opening: &Opening, amplitude: f64| Panel {

@@ -1,103 +1,101 @@
-//! Why the stability of a run cannot be told.
+//! Errors of the stability test.
 
 use crate::matrix::NoEigenpairs;
 use crate::run_directory::RunError;
 use crate::saved_state::SavedStateError;
 use std::path::PathBuf;
 
-/// What can go wrong.
+/// Errors of the stability test of a run.
 #[derive(Debug, thiserror::Error)]
 pub enum StabilityError {
     /// The run is not axisymmetric.
     #[error(
-        "the run is not axisymmetric: its states do not part into harmonics. Ask for the lowest modes \
-         of its own tangent; for harmonics, run the case with symmetry = \"axisymmetric\""
+        "the run is not axisymmetric, so its states do not decouple into circumferential modes: compute the \
+         lowest modes of its tangent, or run the case with symmetry = \"axisymmetric\""
     )]
     Symmetry,
     /// The run is axisymmetric.
     #[error(
-        "the run is axisymmetric: its states are tested harmonic by harmonic. For the lowest modes of \
-         single states, run the case with symmetry = \"none\""
+        "the run is axisymmetric, so its states are tested by circumferential mode; for the lowest modes of \
+         single states run the case with symmetry = \"none\""
     )]
     OneRing,
-    /// A state that is asked for was not saved.
+    /// A selected state was not saved.
     #[error(
-        "{} holds no state {row}; its folder states tells which there are, and \
-         output.states_every = 1 saves all",
+        "{} has no saved state {row}: see its folder states; output.states_every = 1 saves all",
         directory.display()
     )]
     NoSuchState {
-        /// Its number.
+        /// Number of the state.
         row: usize,
-        /// Of the run.
+        /// Run directory.
         directory: PathBuf,
     },
-    /// The tangent of a state cannot be worked with.
-    #[error("{}: its tangent cannot be solved with around the tube; save the state again", path.display())]
+    /// The preconditioner of a tangent cannot be factorised.
+    #[error("{}: its tangent cannot be preconditioned; run the case again", path.display())]
     NoTangent {
-        /// The file of the state.
+        /// File of the state.
         path: PathBuf,
     },
-    /// The run twists.
+    /// A state is twisted.
     #[error(
-        "the tube is twisted in state {row}: its waves turn around it, and are no harmonics of one \
-         meridian. Run the case without twist_degrees, or with symmetry = \"none\", where \
-         history.csv says whether its own tangent is stable"
+        "state {row} is twisted, so its tangent does not decouple into circumferential modes: run the case \
+         without twist_degrees, or with symmetry = \"none\" and see the column stable of history.csv"
     )]
     Twisted {
         /// Number of the state.
         row: usize,
     },
-    /// There are not two states to go between.
+    /// There are fewer than two saved states.
     #[error(
-        "{} holds {found} saved state(s), and two at least are needed; run the case again with \
+        "{} has {found} saved state(s) and at least two are needed: run the case again with \
          output.states_every = 1",
         directory.display()
     )]
     NoStates {
-        /// Of the run.
+        /// Run directory.
         directory: PathBuf,
-        /// How many there are.
+        /// Number of saved states.
         found: usize,
     },
     /// A saved state cannot be used.
     #[error("{}: {source}", path.display())]
     State {
-        /// Its file.
+        /// File of the state.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Cause.
         source: SavedStateError,
     },
-    /// A saved state is no equilibrium of the case.
+    /// A saved state is not in equilibrium.
     #[error(
-        "{} is not in equilibrium in this case (residual {relative_residual:.1e} of the forces in play). \
-         If the run was made with solver.pseudo_time.equilibrate = false, run it again without",
+        "{} is not in equilibrium (relative residual {relative_residual:.1e}): if the case has \
+         solver.pseudo_time.equilibrate = false, run it again with true",
         path.display()
     )]
     OutOfEquilibrium {
-        /// Its file.
+        /// File of the state.
         path: PathBuf,
-        /// Its residual over the forces in play; infinite if an element is inverted.
+        /// Relative residual; infinite if an element is inverted.
         relative_residual: f64,
     },
     /// A lowest eigenvalue was not found.
     #[error("{}: {source}", path.display())]
     Eigenvalues {
-        /// The file of the state.
+        /// File of the state.
         path: PathBuf,
-        /// What was looked for.
+        /// Cause.
         source: NoEigenpairs,
     },
-    /// Something about the run directory.
+    /// The run directory cannot be read or written.
     #[error(transparent)]
     Study(#[from] RunError),
-    /// Someone asked to stop.
-    #[error("stopped on request; nothing was written")]
+    /// The monitor cancelled the computation.
+    #[error("cancelled; nothing was written")]
     Stopped,
 }
 
 impl StabilityError {
-    /// Whether something was asked for that is not offered, rather than files being broken.
+    /// Returns whether the request does not fit the run, rather than a file being unusable.
     pub fn is_misuse(&self) -> bool {
         matches!(
             self,

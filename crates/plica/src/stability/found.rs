@@ -1,98 +1,98 @@
-//! What a test of stability finds.
+//! Results of the stability test of an axisymmetric path.
 
 use super::{Quantity, Tested};
 use crate::saved_state::SavedState;
 use crate::tube::Load;
 
-/// A place along the path that was tested: a saved state, or one end of a bracket.
+/// A tested state of the path: a saved one, or one end of a bracket.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Station {
     /// Name of its stage.
     pub stage: String,
-    /// Number of the saved state; none between two.
+    /// Number of the saved state; none for a state between two.
     pub row: Option<usize>,
-    /// How far along its stage it is, 0 to 1.
+    /// Completed fraction of the stage, 0 to 1.
     pub along: f64,
-    /// The load it is under.
+    /// Load of the state.
     pub load: Load,
-    /// Harmonics 0, 1, 2, ….
+    /// Circumferential modes 0, 1, 2, ….
     pub tested: Vec<Tested>,
 }
 
-/// How a change came about.
+/// Character of the path where stability changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
-    /// An eigenvalue passes through zero on a path that goes on.
+    /// An eigenvalue passes through zero on a continuous path.
     Smooth,
-    /// The tube snaps to another branch there.
+    /// The path snaps to another branch.
     Snap,
-    /// The path could not be followed any closer.
+    /// The path between the ends could not be computed.
     Unfollowed,
 }
 
-/// A harmonic that gains or loses negative eigenvalues between two places along the path.
+/// A change in the number of negative eigenvalues of one circumferential mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     /// Name of the stage.
     pub stage: String,
     /// n.
     pub harmonic: usize,
-    /// What is driven there.
+    /// Driven quantity.
     pub quantity: Quantity,
-    /// The bracket: its value at the last place before and the first after.
+    /// Bracket: values of the quantity at the last state before the change and the first after it.
     pub between: [f64; 2],
-    /// Where the eigenvalue is zero on the straight line through its values at both; in the middle,
-    /// if the tube snaps.
+    /// Value of the quantity at which the linearly interpolated eigenvalue is zero; the midpoint of the bracket unless
+    /// the path is smooth.
     pub critical: f64,
-    /// Negative eigenvalues before and after.
+    /// Numbers of negative eigenvalues before and after.
     pub negative: [usize; 2],
-    /// How it came about.
+    /// Character of the path there.
     pub how: How,
-    /// The mode that was lost; none where a harmonic is regained or the tube snaps.
+    /// Buckling mode; none where stability is regained or the path snaps.
     pub mode: Option<Mode>,
 }
 
 impl Change {
-    /// Whether stability was lost, not regained.
+    /// Returns whether stability is lost rather than regained.
     pub fn is_loss(&self) -> bool {
         self.negative[1] > self.negative[0]
     }
 }
 
-/// The shape in which a tube leaves its path, just after it can.
+/// Buckling mode just after the loss of stability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// n.
     pub harmonic: usize,
-    /// λ in E/D²: negative, and near zero.
+    /// Eigenvalue λ in E/D²: negative and near zero.
     pub eigenvalue: f64,
-    /// The state it belongs to; its row is that of the saved state before.
+    /// State of the mode; its number is that of the previous saved state.
     pub state: SavedState,
-    /// Amplitudes (z, r, θ) of every control point, numbered as the state's unknowns, of the
-    /// displacement (z cos nφ, r cos nφ, −θ sin nφ); for n = 0 (z, r, θ). The largest is one.
+    /// Amplitudes (z, r, θ) per control point of the displacement (z cos nφ, r cos nφ, −θ sin nφ), or (z, r, θ) for
+    /// n = 0, numbered as the unknowns of the state. The largest is one.
     pub shape: Vec<f64>,
 }
 
-/// Everything that was found.
+/// Stability along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stability {
-    /// Harmonics that were looked at: 0 to this.
+    /// Highest circumferential mode tested.
     pub highest: usize,
-    /// Width of a bracket at most.
+    /// Largest accepted width of a bracket.
     pub tolerance: f64,
-    /// Places in the order of the path.
+    /// Tested states in the order of the path.
     pub stations: Vec<Station>,
     /// Changes in the order of the path.
     pub changes: Vec<Change>,
 }
 
 impl Stability {
-    /// The first harmonic that is lost.
+    /// Returns the first loss of stability.
     pub fn first_loss(&self) -> Option<&Change> {
         self.changes.iter().find(|change| change.is_loss())
     }
 
-    /// The modes that were lost, with the number of their change, from 1.
+    /// Returns the buckling modes with the numbers of their changes, from 1.
     pub fn modes(&self) -> impl Iterator<Item = (usize, &Mode)> {
         let numbered = (1..).zip(&self.changes);
         numbered.filter_map(|(number, change)| Some((number, change.mode.as_ref()?)))

@@ -1,4 +1,4 @@
-//! The tangent of an axisymmetric state, harmonic by harmonic.
+//! Stability test of an axisymmetric state by circumferential mode.
 
 use super::mass::harmonic_mass;
 use crate::assembly::SplineTube;
@@ -8,7 +8,7 @@ use crate::matrix::{
 use crate::tube::Load;
 use rayon::prelude::*;
 
-/// An axisymmetric tube and what its harmonics 0 to N weigh and where they are held.
+/// An axisymmetric tube with the mass matrices and constraints of its circumferential modes.
 #[derive(Clone, Debug)]
 pub struct Harmonics<'a> {
     tube: &'a SplineTube,
@@ -18,26 +18,24 @@ pub struct Harmonics<'a> {
 #[derive(Clone, Debug)]
 struct Harmonic {
     mass: BlockBanded,
-    /// Held by the ends, or pinned against a rigid motion.
+    /// Degrees of freedom prescribed by the ends or by rigid-body constraints.
     prescribed: Vec<bool>,
 }
 
-/// Residual, over the mean size of the tangent, up to which a rigid motion meets no force.
+/// Relative force up to which a rigid motion is neutral.
 const NEUTRAL: f64 = 1e-7;
 
-/// What is known of one harmonic at a state.
+/// Stability of a state to one circumferential mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tested {
-    /// Negative eigenvalues: 0 where the state is stable to it. A singular block counts as one.
+    /// Number of negative eigenvalues: 0 if the state is stable. A singular block counts as one.
     pub negative: usize,
-    /// The lowest eigenvalue of the tangent over the mass of unit density, in E/D². Rigid motions
-    /// that the ends leave, and that meet no force, are not counted.
+    /// Lowest eigenvalue with the mass of unit density, in E/D², without neutral rigid motions.
     pub lowest: f64,
 }
 
 impl<'a> Harmonics<'a> {
-    /// Of a tube that is solved for as one ring; harmonics beyond those that its rings can tell
-    /// apart are left out.
+    /// Prepares modes 0 to `highest` of a tube of one ring, or as many as its control points around resolve.
     pub fn new(tube: &'a SplineTube, highest: usize) -> Self {
         let highest = highest.min((tube.sector.around - 1) / 2);
         let harmonic = |n| Harmonic {
@@ -50,12 +48,12 @@ impl<'a> Harmonics<'a> {
         }
     }
 
-    /// How many there are, 0 included.
+    /// Returns the number of modes, including mode 0.
     pub fn count(&self) -> usize {
         self.harmonics.len()
     }
 
-    /// Negative eigenvalues of every harmonic at a state without twist.
+    /// Returns the number of negative eigenvalues of every mode at a state without twist.
     pub fn negative(&self, load: &Load, u: &[f64]) -> Vec<usize> {
         let harmonics = self.harmonics.par_iter().enumerate();
         harmonics
@@ -63,10 +61,10 @@ impl<'a> Harmonics<'a> {
             .collect()
     }
 
-    /// Every harmonic at a state without twist.
+    /// Tests a state without twist for every mode.
     ///
     /// # Errors
-    /// [`NoEigenpairs`] where a lowest eigenvalue cannot be found.
+    /// [`NoEigenpairs`] if a lowest eigenvalue is not found.
     pub fn test(&self, load: &Load, u: &[f64]) -> Result<Vec<Tested>, NoEigenpairs> {
         let test = |(n, harmonic): (usize, &Harmonic)| {
             let pairs = self.lowest(n, load, u, 1)?;
@@ -78,13 +76,12 @@ impl<'a> Harmonics<'a> {
         self.harmonics.par_iter().enumerate().map(test).collect()
     }
 
-    /// The lowest eigenpairs of harmonic n at a state without twist, beside rigid motions that the
-    /// ends leave. A vector holds, for every
-    /// control point, the amplitudes (z, r, θ) of a displacement (z cos nφ, r cos nφ, −θ sin nφ);
-    /// for n = 0 the displacement (z, r, θ) itself.
+    /// Returns the lowest eigenpairs of mode n at a state without twist, orthogonal to neutral rigid motions. A vector
+    /// holds per control point the amplitudes (z, r, θ) of the displacement (z cos nφ, r cos nφ, −θ sin nφ); for
+    /// n = 0 the displacement (z, r, θ) itself.
     ///
     /// # Errors
-    /// [`NoEigenpairs`] if they cannot be found.
+    /// [`NoEigenpairs`] if they are not found.
     pub fn lowest(
         &self,
         n: usize,
@@ -114,7 +111,7 @@ impl<'a> Harmonics<'a> {
     }
 }
 
-/// Whether a motion meets no force.
+/// Returns whether a rigid motion meets no force.
 fn is_neutral(block: &BlockBanded, held: &[bool], motion: &[f64]) -> bool {
     let mut force = vec![0.0; motion.len()];
     block.multiply_add(1.0, motion, &mut force);
@@ -127,7 +124,7 @@ fn is_neutral(block: &BlockBanded, held: &[bool], motion: &[f64]) -> bool {
 }
 
 impl Harmonic {
-    /// Negative eigenvalues of its block of the tangent.
+    /// Returns the number of negative eigenvalues of a block of the tangent.
     fn negative(&self, mut block: BlockBanded) -> usize {
         block.constrain(&self.prescribed);
         block.factor().map_or(1, |factor| factor.negative_pivots())

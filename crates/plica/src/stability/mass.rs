@@ -1,19 +1,17 @@
-//! The mass matrix of a circumferential harmonic.
+//! Mass matrix of a circumferential mode.
 
 use crate::assembly::SplineTube;
 use crate::matrix::BlockBanded;
 use crate::rings::{Rotation, Sector};
 use crate::spline::{Basis, gauss_legendre};
 
-/// The mass matrix ∫ N N dV₀ (unit density, reference volume) of harmonic n of an axisymmetric
-/// tube: of the displacements (z cos nφ, r cos nφ, −θ sin nφ), scaled as
-/// [`SplineTube::tangent_in_harmonic`] is for n ≥ 1 and [`SplineTube::tangent`] for n = 0.
+/// Assembles the mass matrix ∫ N N dV₀ (unit density, reference volume) of mode n of an axisymmetric tube, for
+/// displacements (z cos nφ, r cos nφ, −θ sin nφ).
 ///
-/// A form of harmonic n is N_C/2 times that of the two halves of [`Sector::harmonic_at`] on one
-/// element, added up, and the tangent's block is given without the N_C/2; so is this. Harmonic 0
-/// is N_C times one element, and its tangent is given without the N_C. Eigenvalues of the pair are
-/// therefore those of the whole tube's tangent and mass. In the integral, dV₀ = (C × C′) dζ R dR ds
-/// parts into a factor along the tube, one through the wall and one around it.
+/// Bilinear forms of mode n are N_C/2 times the sum over the two halves of [`Sector::harmonic_at`] on one element;
+/// those of mode 0 are N_C times one element. Like [`SplineTube::tangent_in_harmonic`] and [`SplineTube::tangent`] the
+/// matrix omits these factors, so the eigenvalues of the pair are those of the whole tube. The volume element
+/// dV₀ = (C × C′) dζ R dR ds factorises into the axial, the radial and the circumferential direction.
 pub fn harmonic_mass(tube: &SplineTube, n: usize) -> BlockBanded {
     let along = overlaps(&tube.axial, |_| 1.0);
     let through = overlaps(&tube.wall, |radius| radius);
@@ -43,7 +41,7 @@ pub fn harmonic_mass(tube: &SplineTube, n: usize) -> BlockBanded {
     matrix
 }
 
-/// ∫ N_a N_b weight(x) dx of the functions of a basis, for every b those with a = b, b + 1, …, b + p.
+/// Returns ∫ N_a N_b weight(x) dx for every function b of a basis and a = b, …, b + p.
 fn overlaps(basis: &Basis, weight: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
     let mut overlaps = vec![vec![0.0; basis.degree() + 1]; basis.functions()];
     for element in 0..basis.elements() {
@@ -62,8 +60,8 @@ fn overlaps(basis: &Basis, weight: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
     overlaps
 }
 
-/// ∫ Tᵀ T (C × C′) ds over one element, T what turns (axial, radial, circumferential) into the
-/// displacement; halves added up.
+/// Returns ∫ Tᵀ T (C × C′) ds over one element, summed over the halves; T maps the amplitudes (axial, radial,
+/// circumferential) to the displacement.
 fn around(tube: &SplineTube, n: usize) -> [[f64; 3]; 3] {
     let one = Sector::new(tube.degree(), tube.sector.around, 1);
     let mut sum = [[0.0; 3]; 3];
@@ -116,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn harmonic_zero_is_the_drag_matrix() {
+    fn the_mass_of_mode_zero_is_the_damping_matrix() {
         let tube = tube(1);
         let (mass, damping) = (harmonic_mass(&tube, 0), tube.damping());
         for i in 0..mass.unknowns() {
@@ -130,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_harmonic_weighs_what_the_whole_tube_does() {
+    fn the_mass_of_a_mode_is_that_of_the_whole_tube() {
         let (one, whole) = (tube(1), tube(10));
         let x: Vec<f64> = (0..one.unknowns())
             .map(|i| (i as f64 * 0.7).sin())
@@ -150,10 +148,10 @@ mod tests {
                 m.multiply_add(1.0, x, &mut product);
                 product.iter().zip(x).map(|(a, b)| a * b).sum::<f64>()
             };
-            let (weight, expected) = (form(&harmonic_mass(&one, n), &x), form(&damping, &y));
+            let (mass, expected) = (form(&harmonic_mass(&one, n), &x), form(&damping, &y));
             assert!(
-                (5.0 * weight / expected - 1.0).abs() < 1e-13,
-                "{n}: {weight}, {expected}"
+                (5.0 * mass / expected - 1.0).abs() < 1e-13,
+                "{n}: {mass}, {expected}"
             );
         }
     }

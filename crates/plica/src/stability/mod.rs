@@ -1,23 +1,22 @@
-//! Which circumferential harmonics the path of an axisymmetric run loses, where, and in what shape;
-//! and the lowest eigenpairs of states that are not axisymmetric.
+//! Stability of the states of a run: critical loads of axisymmetric paths by circumferential mode, and the
+//! lowest eigenpairs of three-dimensional states.
 //!
-//! The tangent K of an axisymmetric state without twist is block-circulant around the tube: it parts
-//! into one block K_n for every harmonic n of displacements (z cos nφ, r cos nφ, −θ sin nφ). The
-//! state is stable if all are positive definite. Where a run's path passes from a state with as
-//! many negative eigenvalues to one with more, a harmonic is lost, and the path is followed again
-//! between the two, halving the interval, until the critical load is known.
+//! The tangent K of an axisymmetric state without twist is block-circulant around the tube. It decouples
+//! into one block K_n per circumferential mode n, for displacements (z cos nφ, r cos nφ, −θ sin nφ). The
+//! state is stable if all blocks are positive definite. Where the number of negative eigenvalues of a block
+//! differs between two saved states, the path between them is computed again, and the interval is bisected
+//! until the critical load is known.
 //!
-//! The eigenvalues told are those of K_n x = λ M_n x, with the mass M of unit density. Their signs
-//! are those of K_n (Sylvester); a sign changes where an eigenvalue passes through zero. Changes
-//! that undo each other between two saved states are not seen.
+//! The reported eigenvalues are those of K_n x = λ M_n x, with the mass M of unit density. By Sylvester's law of
+//! inertia their signs are those of K_n. Two changes between saved states that cancel are not detected.
 //!
-//! The tangent of a three-dimensional run does not part into harmonics, and is never assembled. Its
-//! lowest eigenpairs K x = ν C x, with the mass C of the whole sector, come from a preconditioned
-//! iteration ([`crate::solve::lowest`]); what share each harmonic has in a mode is told afterwards.
+//! The tangent of a three-dimensional state does not decouple and is not assembled. Its lowest eigenpairs
+//! K x = ν C x, with the mass C of the whole sector, are computed by a preconditioned iteration
+//! ([`crate::solve::lowest`]).
 //!
 //! | letter | meaning | unit | Rust |
 //! |---|---|---|---|
-//! | n | circumferential harmonic | – | [`Change::harmonic`] |
+//! | n | circumferential mode | – | [`Change::harmonic`] |
 //! | K_n | block of the tangent | E D | [`crate::assembly::SplineTube::tangent_in_harmonic`] |
 //! | M_n | mass of unit density | D³ | [`harmonic_mass`] |
 //! | λ | eigenvalue | E/D² | [`Tested::lowest`] |

@@ -1,14 +1,14 @@
-//! What is driven along a stage: against what critical values are told.
+//! The driven quantity of a stage, in which critical values are expressed.
 
 use crate::tube::{Load, Tube};
 
-/// What adding up the targets of several muscles may leave of nothing.
+/// Rounding error of a sum of muscle targets.
 const ROUNDING: f64 = 1e-12;
 
-/// Where a pressure is, by its wall.
-const SIDES: [&str; 2] = ["inside", "outside"];
+/// Names of the walls under pressure.
+const WALLS: [&str; 2] = ["inside", "outside"];
 
-/// A number that tells where along a path a load lies.
+/// A quantity that measures the load along a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Lmax/L.
@@ -19,16 +19,16 @@ pub enum Quantity {
     ColonDisplacement,
     /// Displacement of the ileum end, in D.
     IleumDisplacement,
-    /// The target of one muscle, where several change and their sum does not.
+    /// Target of one muscle, if several change and their combination does not.
     Muscle(usize),
-    /// True pressure on the inner or the outer wall, in E.
+    /// Follower pressure on the inner (0) or the outer (1) wall, in E.
     Pressure(usize),
-    /// Dead pressure on the inner or the outer wall, in E.
-    DeadPressure(usize),
+    /// Dead load on the inner (0) or the outer (1) wall, in E.
+    DeadLoad(usize),
 }
 
 impl Quantity {
-    /// The quantity that changes most between two loads.
+    /// Returns the quantity that changes most between two loads.
     pub fn between(tube: &Tube, from: &Load, to: &Load) -> Self {
         let most = |quantities: &mut dyn Iterator<Item = Self>| {
             let change = |q: Self| (q.of(tube, to) - q.of(tube, from)).abs();
@@ -43,8 +43,8 @@ impl Quantity {
             Self::ColonDisplacement,
             Self::Pressure(0),
             Self::Pressure(1),
-            Self::DeadPressure(0),
-            Self::DeadPressure(1),
+            Self::DeadLoad(0),
+            Self::DeadLoad(1),
         ];
         match most(&mut named.into_iter()) {
             Some((quantity, change)) if change > ROUNDING => quantity,
@@ -53,7 +53,7 @@ impl Quantity {
         }
     }
 
-    /// Its value under a load.
+    /// Returns its value under a load.
     pub fn of(self, tube: &Tube, load: &Load) -> f64 {
         match self {
             Self::LengthRatio => tube.length_ratio(load),
@@ -62,11 +62,11 @@ impl Quantity {
             Self::IleumDisplacement => load.ends[1].displacement,
             Self::Muscle(m) => load.muscles[m],
             Self::Pressure(wall) => load.pressures[wall].follower,
-            Self::DeadPressure(wall) => load.pressures[wall].dead,
+            Self::DeadLoad(wall) => load.pressures[wall].dead,
         }
     }
 
-    /// Its name in tables.
+    /// Returns its name in tables.
     pub fn name(self, tube: &Tube) -> String {
         match self {
             Self::LengthRatio => "Lmax/L".into(),
@@ -74,18 +74,18 @@ impl Quantity {
             Self::ColonDisplacement => "colon displacement/D".into(),
             Self::IleumDisplacement => "ileum displacement/D".into(),
             Self::Muscle(m) => format!("ratio of {}", tube.muscles[m].name),
-            Self::Pressure(wall) => format!("pressure {}/E", SIDES[wall]),
-            Self::DeadPressure(wall) => format!("dead pressure {}/E", SIDES[wall]),
+            Self::Pressure(wall) => format!("pressure {}/E", WALLS[wall]),
+            Self::DeadLoad(wall) => format!("dead load {}/E", WALLS[wall]),
         }
     }
 
-    /// Whether it is a pressure, which has no size of its own as ratios have.
+    /// Returns whether it is a pressure, whose tolerance is relative.
     pub fn is_pressure(self) -> bool {
-        matches!(self, Self::Pressure(_) | Self::DeadPressure(_))
+        matches!(self, Self::Pressure(_) | Self::DeadLoad(_))
     }
 
-    /// Its value in tables, with so many digits.
-    pub fn written(self, value: f64, digits: usize) -> String {
+    /// Formats a value for tables.
+    pub fn format(self, value: f64, digits: usize) -> String {
         if self.is_pressure() {
             format!("{value:.digits$e}")
         } else {
@@ -102,7 +102,7 @@ mod tests {
     use crate::tube::Support;
 
     #[test]
-    fn the_quantity_of_a_stage_is_the_one_that_changes() {
+    fn the_driven_quantity_is_the_one_that_changes_most() {
         let muscle = |name: &str, direction| Muscle {
             name: name.into(),
             direction,
@@ -134,8 +134,8 @@ mod tests {
         let pressure = Quantity::between(&tube, &tube.rest(), &load);
         assert_eq!(pressure, Quantity::Pressure(1));
         assert_eq!(pressure.name(&tube), "pressure outside/E");
-        assert_eq!(pressure.written(1.234e-5, 2), "1.23e-5");
-        // What one muscle takes the other gives.
+        assert_eq!(pressure.format(1.234e-5, 2), "1.23e-5");
+        // The sum of both targets is constant.
         assert_eq!(to([1.0, 1.5, 0.5], 0.0), Quantity::Muscle(1));
         let load = Load {
             muscles: vec![1.0, 1.5, 0.5],

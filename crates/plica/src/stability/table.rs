@@ -16,7 +16,7 @@ impl Change {
     /// The critical value with so many digits; a word where there is none.
     fn critical(&self, digits: usize) -> String {
         match self.how {
-            How::Smooth => self.quantity.written(self.critical, digits),
+            How::Smooth => self.quantity.format(self.critical, digits),
             How::Snap => "a snap".into(),
             How::Unfollowed => "unknown".into(),
         }
@@ -67,7 +67,7 @@ impl Stability {
         );
         for change in &self.changes {
             let [before, after] = change.negative;
-            let [from, to] = change.between.map(|x| change.quantity.written(x, digits));
+            let [from, to] = change.between.map(|x| change.quantity.format(x, digits));
             let _ = writeln!(
                 page,
                 "  {:<width$}  {:>8}  {:<24}  {:<8}  {:>8}  {:<at$}  {:>wide$}  {from:>wide$}  {to:>wide$}",
@@ -82,7 +82,7 @@ impl Stability {
         }
         let first = self.first_loss().map_or("none".into(), |change| {
             let name = change.quantity.name(tube);
-            let written = |x| change.quantity.written(x, digits);
+            let written = |x| change.quantity.format(x, digits);
             let [from, to] = change.between.map(written);
             let place = match change.how {
                 How::Smooth => format!("{name} = {}", written(change.critical)),
@@ -154,7 +154,7 @@ impl Stability {
         let mut rows = vec![header.map(str::to_owned).to_vec()];
         for (number, change) in (1..).zip(&self.changes) {
             let [before, after] = change.negative;
-            let written = |x| change.quantity.written(x, 9);
+            let written = |x| change.quantity.format(x, 9);
             let [from, to] = change.between.map(written);
             rows.push(vec![
                 format!("{number}"),
