@@ -3,7 +3,9 @@
 use crate::console;
 use crate::interrupt::Interrupt;
 use indicatif::{ProgressBar, ProgressStyle};
+use plica::monitor::Monitor;
 use std::cell::Cell;
+use std::fmt::Display;
 use std::time::{Duration, Instant};
 
 /// Ticks of a full bar.
@@ -66,6 +68,20 @@ impl Ticker {
             self.line("stopping; press Ctrl-C again to stop at once");
         }
         self.stopping.get()
+    }
+}
+
+impl Monitor for Ticker {
+    fn working(&mut self, activity: &dyn Display, fraction: f64) {
+        Self::working(self, &activity.to_string(), fraction);
+    }
+
+    fn notice(&mut self, message: &str) {
+        self.line(message);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.stop()
     }
 }
 

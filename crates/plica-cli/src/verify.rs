@@ -6,9 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::page_directory::FirstPage;
 use crate::ticker::Ticker;
 use crate::{console, page_directory, threads};
-use plica_verify::verification::{
-    CHECKS, Check, Observer, Row, TITLE, Trouble, verify as run_checks,
-};
+use plica_verify::verification::{CHECKS, Check, TITLE, VerificationError, verify as run_checks};
 use std::fs;
 
 /// Page with the table.
@@ -50,16 +48,14 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
     let file_error = |error| Failure::Files(format!("{}: {error}", arguments.out.display()));
     let page = arguments.out.join(PAGE);
     let interrupt = Interrupt::listen()?;
-    let mut monitor = Monitor {
-        ticker: Ticker::new(interrupt),
-        done: 0,
-        of: 1,
-    };
-    let found = run_checks(full, &wanted, &mut monitor);
-    monitor.ticker.finish();
-    let found = found.map_err(|trouble| match trouble {
-        Trouble::Stopped => Failure::Interrupted("interrupted; nothing was written".into()),
-        trouble => Failure::Files(trouble.to_string()),
+    let mut ticker = Ticker::new(interrupt);
+    let found = run_checks(full, &wanted, &mut ticker);
+    ticker.finish();
+    let found = found.map_err(|error| match error {
+        VerificationError::Cancelled => {
+            Failure::Interrupted("interrupted; nothing was written".into())
+        }
+        error => Failure::Files(error.to_string()),
     })?;
     // Print first: writing the files may fail.
     console::print(&found.text())?;
@@ -87,43 +83,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
 fn list() -> String {
     let line = |check: &Check| {
         let slow = if check.slow { " (--full)" } else { "" };
-        format!("{:<22}{}{slow}\n", check.name, check.about)
+        format!("{:<22}{}{slow}\n", check.name, check.description)
     };
     CHECKS.iter().map(line).collect()
-}
-
-/// Prints a line per check and per failed row.
-struct Monitor {
-    ticker: Ticker,
-    done: usize,
-    of: usize,
-}
-
-impl Observer for Monitor {
-    fn begins(&mut self, about: &str, done: usize, of: usize) {
-        (self.done, self.of) = (done, of);
-        self.ticker
-            .line(&format!("{:>3} of {of}  {about}", done + 1));
-    }
-
-    fn found(&mut self, row: &Row) {
-        let fraction = self.done as f64 / self.of as f64;
-        self.ticker.working(&row.case, fraction);
-        if !row.passes() {
-            let Row {
-                case,
-                quantity,
-                computed,
-                reference,
-                ..
-            } = row;
-            self.ticker.line(&format!(
-                "            FAILED: {case}, {quantity}: {computed:.6e}, not {reference:.6e}"
-            ));
-        }
-    }
-
-    fn stop(&mut self) -> bool {
-        self.ticker.stop()
-    }
 }

@@ -14,7 +14,7 @@ fn a_single_check_prints_its_rows_and_writes_a_page() {
     assert!(table.contains("2.93836"), "{table}");
     let page = fs::read_to_string(directory.join("page/verification.md")).unwrap();
     assert!(
-        page.contains("| ring, small pressure inside | u(A)/p | 2.93836"),
+        page.contains("| ring, small internal pressure | u(A)/p | 2.93836"),
         "{page}"
     );
 }
@@ -22,12 +22,12 @@ fn a_single_check_prints_its_rows_and_writes_a_page() {
 #[test]
 fn pictures_are_written_beside_the_page() {
     let directory = scratch("verify-pictures");
-    succeed(&directory, &["verify", "--only", "orders"]);
+    succeed(&directory, &["verify", "--only", "convergence"]);
     let out = directory.join("runs/verification");
     let page = fs::read_to_string(out.join("verification.md")).unwrap();
-    assert!(page.contains("](orders.png)"), "{page}");
+    assert!(page.contains("](convergence.png)"), "{page}");
     assert!(
-        fs::read(out.join("orders.png"))
+        fs::read(out.join("convergence.png"))
             .unwrap()
             .starts_with(b"\x89PNG")
     );
@@ -39,7 +39,7 @@ fn checks_are_listed_and_unknown_ones_refused() {
     let listed = succeed(&directory, &["verify", "--list"]);
     for check in plica_verify::verification::CHECKS {
         let slow = if check.slow { " (--full)" } else { "" };
-        let line = format!("{}{slow}", check.about);
+        let line = format!("{}{slow}", check.description);
         let named = |l: &str| l.starts_with(check.name) && l.ends_with(&line);
         assert!(listed.lines().any(named), "{}: {listed}", check.name);
     }

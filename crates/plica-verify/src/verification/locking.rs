@@ -1,39 +1,45 @@
-//! A thick cylinder that is nearly incompressible: how much too stiff it is, and what cures it.
+//! Volumetric locking of a thick, nearly incompressible wall, and reduced integration against it.
 
-use super::found::{Findings, Trouble};
-use super::specimen::{Specimen, energy, swelling, under};
+use super::VerificationError;
+use super::report::Recorder;
+use super::tube_model::{TubeModel, energy, radial_displacement, solve_from_rest};
 use plica::activation::{Direction, Muscle, Profile};
 use plica::tube::{Integration, Load, Support};
 use plica_view::draw::{Chart, Curve, Stroke};
 
-/// A = 3, B = 9: the wall is a third of the diameter.
+/// Radii 3 and 9 of the usual benchmark, scaled to D = 1.
 const A: f64 = 0.5 / 3.0;
 const B: f64 = 0.5;
 
-/// u(A)/(p D) of Plica over Lamé's, less one.
-fn off(nu: f64, degree: usize, through: usize, volumetric: Integration) -> Result<f64, Trouble> {
-    // A line through the corners of 4000 chords is a circle to 3e-7.
+/// Returns the relative error of u(A) against Lamé's solution.
+fn error(
+    nu: f64,
+    degree: usize,
+    through: usize,
+    volumetric: Integration,
+) -> Result<f64, VerificationError> {
+    // A polygon of 4000 chords approximates a circle to 3e-7.
     let around = if degree == 1 { 4000 } else { 240 };
-    let specimen = Specimen {
+    let model = TubeModel {
         degree,
         volumetric,
-        ..Specimen::new(0.1, B - A, nu, [1, around, through])
+        ..TubeModel::new(0.1, B - A, nu, [1, around, through])
     };
-    let problem = specimen.problem(1);
+    let problem = model.problem(1);
     let p = 1e-8;
-    let state = under(&problem, &specimen.pressed([p, 0.0]), 1)?;
-    Ok(swelling(&problem, &state, A) / (p * lame(nu)) - 1.0)
+    let state = solve_from_rest(&problem, &model.under_pressure([p, 0.0]), 1)?;
+    Ok(radial_displacement(&problem, &state, A) / (p * lame(nu)) - 1.0)
 }
 
+/// Returns u(A)/(p D) of Lamé's solution.
 fn lame(nu: f64) -> f64 {
     let c = A * A / (B * B - A * A);
     (1.0 + nu) * c * ((1.0 - 2.0 * nu) * A + B * B / A)
 }
 
-/// The thick cylinder of the locking literature, with and without the cure.
-pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
+/// Records the radial displacement of the thick cylinder with full and with reduced integration.
+pub fn thick_cylinder(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     const THROUGH: [usize; 5] = [1, 2, 4, 8, 16];
-    let lame_says = "Lamé";
     let nu = 0.4999;
     let mut curves = vec![];
     for (volumetric, stroke, name) in [
@@ -41,17 +47,19 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
         (Integration::Reduced, Stroke::Solid, "reduced"),
     ] {
         for degree in [1, 2, 3] {
-            found.resume()?;
+            recorder.check_cancelled()?;
             if degree < 3 && volumetric == Integration::Reduced {
                 continue;
             }
             let points = THROUGH.map(|through| {
-                let off = off(nu, degree, through, volumetric)?;
-                Ok((f64::from(through as u32).log2(), off.abs().log10()))
+                let error = error(nu, degree, through, volumetric)?;
+                Ok((f64::from(through as u32).log2(), error.abs().log10()))
             });
             curves.push(Curve {
                 label: format!("*p* = {degree}, {name}"),
-                points: points.into_iter().collect::<Result<_, Trouble>>()?,
+                points: points
+                    .into_iter()
+                    .collect::<Result<_, VerificationError>>()?,
                 colour: degree,
                 stroke,
                 dots: true,
@@ -59,28 +67,28 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
         }
     }
     for nu in [0.49, 0.499, 0.4999] {
-        found.case(format!(
+        recorder.case(format!(
             "thick cylinder, A = 3, B = 9 (in these units), pressure E/1000, ν = {nu}"
         ))?;
-        // E = 1000, p = 1, lengths as they are: D = 18.
+        // In the units of the benchmark: E = 1000, p = 1, D = 18.
         let exact = 18.0 * lame(nu) * 1e-3;
         for (degree, volumetric, name, tolerance) in [
             (3, Integration::Full, "full", 1e-4),
             (3, Integration::Reduced, "reduced", 1e-5),
         ] {
-            let computed = exact * (1.0 + off(nu, degree, 16, volumetric)?);
+            let computed = exact * (1.0 + error(nu, degree, 16, volumetric)?);
             let quantity = format!("u(A), degree {degree}, 16 elements, {name} integration");
-            found.within(tolerance, quantity, computed, (exact, lame_says));
+            recorder.relative(tolerance, quantity, computed, (exact, "Lamé"));
         }
-        // What is asked of a coarse mesh is that it does not lock: the error is that of ν = 0.49.
-        let computed = exact * (1.0 + off(nu, 3, 4, Integration::Reduced)?);
+        // Without locking the error of a coarse mesh does not depend on ν.
+        let computed = exact * (1.0 + error(nu, 3, 4, Integration::Reduced)?);
         let quantity = "u(A), degree 3, 4 elements, reduced integration";
-        found.within(1e-4, quantity, computed, (exact, lame_says));
+        recorder.relative(1e-4, quantity, computed, (exact, "Lamé"));
     }
-    found.picture(
+    recorder.chart(
         "locking.png",
-        "Thick cylinder, ν = 0.4999: relative error of u(A) over elements through the wall, with the resistance to a change of \
-         volume integrated in full (dashed) and at about one point to an element through the wall (solid; degree 3).",
+        "Thick cylinder, ν = 0.4999: relative error of u(A) against elements through the wall, with full (dashed) and reduced \
+         (solid; degree 3) integration of the volumetric energy.",
         Chart {
             x_label: "log_{2} elements".into(),
             y_label: "log_{10} error of *u*(*A*)".into(),
@@ -92,15 +100,15 @@ pub fn thick_cylinder(found: &mut Findings<'_>) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// A thick, nearly incompressible tube whose middle contracts, with one element through its wall.
-pub fn contraction(found: &mut Findings<'_>) -> Result<(), Trouble> {
-    let W = |elements: [usize; 3], volumetric: Integration| -> Result<f64, Trouble> {
-        let mut specimen = Specimen {
+/// Records the energy of a contracted thick, nearly incompressible tube with one element through its wall.
+pub fn contraction(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
+    let W = |elements: [usize; 3], volumetric: Integration| -> Result<f64, VerificationError> {
+        let mut model = TubeModel {
             volumetric,
-            ..Specimen::new(3.0, 0.2, 0.4999, elements)
+            ..TubeModel::new(3.0, 0.2, 0.4999, elements)
         };
-        specimen.tube.ends = [Support::Fixed; 2];
-        specimen.tube.muscles.push(Muscle {
+        model.tube.ends = [Support::Fixed; 2];
+        model.tube.muscles.push(Muscle {
             name: String::new(),
             direction: Direction::Circular,
             zone: [0.5, 2.5],
@@ -108,17 +116,17 @@ pub fn contraction(found: &mut Findings<'_>) -> Result<(), Trouble> {
         });
         let load = Load {
             muscles: vec![0.6],
-            ..specimen.tube.rest()
+            ..model.tube.rest()
         };
-        let problem = specimen.problem(1);
-        Ok(energy(&problem, &under(&problem, &load, 4)?))
+        let problem = model.problem(1);
+        Ok(energy(&problem, &solve_from_rest(&problem, &load, 4)?))
     };
-    found.case("thick tube that contracts to 0.6, ν = 0.4999")?;
+    recorder.case("thick tube contracted to 0.6, ν = 0.4999")?;
     let fine = W([80, 60, 10], Integration::Full)?;
-    found.resume()?;
+    recorder.check_cancelled()?;
     let reduced = W([30, 60, 1], Integration::Reduced)?;
-    let source = "Plica itself, 80 × 10 elements, full";
-    found.within(
+    let source = "Plica, 80 × 10 elements, full integration";
+    recorder.relative(
         1e-2,
         "W, 30 × 1 elements, reduced integration",
         reduced,

@@ -1,13 +1,13 @@
-//! Manufactured solutions: a displacement is chosen, the forces that it needs are worked out, and the tube is
-//! asked for the displacement.
+//! Orders of convergence on manufactured solutions.
 //!
-//! The forces are f_i = ∫ P(Fe*) : ∂N_i/∂F dV₀ at the displacement u* that was chosen, in cylindrical components on
-//! the exact circle, with a stress that is written out here, under many more points than the kernel has. What the
-//! kernel, its spline circle and its splines make of the same forces is then off by O(h^{p+1}) in u.
+//! The forces f_i = ∫ P(Fe*) : ∂N_i/∂F dV₀ of a chosen displacement u* are integrated in cylindrical components on the
+//! exact circle, with a stress written out here and more quadrature points than the kernel has. The solution under
+//! these forces differs from u* by O(h^{p+1}).
 
-use super::found::{Findings, Trouble};
+use super::VerificationError;
+use super::report::Recorder;
 use super::row::Tolerance;
-use super::specimen::tight;
+use super::tube_model::tight_settings;
 use plica::activation::{Direction, Muscle, Profile};
 use plica::assembly::{Inverted, SplineTube};
 use plica::equilibrium::TubeProblem;
@@ -21,17 +21,17 @@ use std::f64::consts::{PI, TAU};
 const LENGTH: f64 = 1.0;
 const THICKNESS: f64 = 0.2;
 const NU: f64 = 0.3;
-/// Gauss points to an element and direction.
+/// Gauss points per element and direction.
 const POINTS: usize = 8;
 
-/// u* along and outwards at (z, R), and its gradients (∂z, ∂R) of each.
-fn chosen(z: f64, R: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+/// Returns u* along and outwards at (z, R), and the derivatives (∂z, ∂R) of each.
+fn exact_solution(z: f64, R: f64) -> ([f64; 2], [[f64; 2]; 2]) {
     let t = (R - 0.4) / THICKNESS;
     let (s, c) = (PI * z / LENGTH).sin_cos();
     let k = PI / LENGTH;
     let g = (1.5 * t).exp();
     let dg = 1.5 * g / THICKNESS;
-    // Zero at both ends, where the tube is fixed.
+    // Zero at both ends, which are fixed.
     let u = [0.01 * s * (t + 0.4).sin(), -0.01 * s * s * g];
     let gradients = [
         [
@@ -47,7 +47,7 @@ fn tube() -> Tube {
     let muscle = |direction| Muscle {
         name: "m".into(),
         direction,
-        // Smooth in all of the tube.
+        // Smooth along the whole tube.
         zone: [0.0, LENGTH],
         profile: Profile::RaisedCosine,
     };
@@ -61,11 +61,11 @@ fn tube() -> Tube {
     }
 }
 
-/// Targets of the two muscles.
+/// Targets of the circular and the longitudinal muscle.
 const TARGETS: [f64; 2] = [0.8, 1.1];
 
-/// θζ and θη.
-fn grown(z: f64) -> [f64; 2] {
+/// Returns the growth stretches θζ and θη.
+fn growth(z: f64) -> [f64; 2] {
     let s = 0.5 * (1.0 - (TAU * z / LENGTH).cos());
     [
         1.0 + (TARGETS[1] - 1.0) * 2.0 * s,
@@ -73,9 +73,9 @@ fn grown(z: f64) -> [f64; 2] {
     ]
 }
 
-/// w det Fp, and P Fp⁻ᵀ det Fp at (z, R), entries (zz, zr, rz, rr, θθ), from the formulas of docs/model.md.
+/// Returns w det Fp, and P Fp⁻ᵀ det Fp with the entries (zz, zr, rz, rr, θθ), at (z, R); formulas of docs/model.md.
 fn elastic(z: f64, R: f64, [uz, ur]: [[f64; 2]; 2], u_r: f64) -> (f64, [f64; 5]) {
-    let [gz, gt] = grown(z);
+    let [gz, gt] = growth(z);
     // Fe = F Fp⁻¹.
     let (zz, zr) = ((1.0 + uz[0]) / gz, uz[1]);
     let (rz, rr) = (ur[0] / gz, 1.0 + ur[1]);
@@ -99,19 +99,18 @@ fn elastic(z: f64, R: f64, [uz, ur]: [[f64; 2]; 2], u_r: f64) -> (f64, [f64; 5])
     (w * det, forces)
 }
 
-/// A quadrature point, and the splines there.
-struct Place {
+/// A quadrature point with the basis functions there.
+struct Point {
     z: f64,
     R: f64,
-    /// R times the weight: volume per radian.
+    /// Quadrature weight times R: volume per radian.
     volume: f64,
-    /// By function along and through: its unknown along the axis (the next is radial), value, slope over z and
-    /// slope over R.
+    /// Index of the axial unknown of each basis function (the radial one follows), with value, ∂z and ∂R.
     functions: Vec<(usize, [f64; 3])>,
 }
 
-/// Does something at every quadrature point of a tube of one ring.
-fn everywhere(spline: &SplineTube, mut each: impl FnMut(&Place)) {
+/// Calls `each` at every quadrature point of a tube of one ring.
+fn for_each_point(spline: &SplineTube, mut each: impl FnMut(&Point)) {
     let rule = gauss_legendre(POINTS);
     let mut functions = vec![];
     for e in 0..spline.axial.elements() {
@@ -129,24 +128,24 @@ fn everywhere(spline: &SplineTube, mut each: impl FnMut(&Place)) {
                         functions.push((at, [n * m, dn * m, n * dm]));
                     }
                 }
-                let place = Place {
+                let point = Point {
                     z,
                     R,
                     volume: R * x.1 * y.1 * (z1 - z0) * (r1 - r0),
                     functions: std::mem::take(&mut functions),
                 };
-                each(&place);
-                functions = place.functions;
+                each(&point);
+                functions = point.functions;
             }
         }
     }
 }
 
-/// The tube under the forces of a displacement that was chosen.
+/// The tube under the forces of the manufactured solution.
 struct Manufactured {
     problem: TubeProblem,
     forces: Vec<f64>,
-    /// Π at the displacement that was chosen, of a ring's share.
+    /// Potential energy of u* per ring.
     potential: f64,
 }
 
@@ -164,12 +163,11 @@ impl Manufactured {
         let spline = SplineTube::new(&tube(), &mesh, 1);
         let mut forces = vec![0.0; spline.unknowns()];
         let mut potential = 0.0;
-        // A ring's share of the circumference. A ring that moves outwards by its control value moves the wall by
-        // as much as the circle's radius is of its control points' radius.
+        // Angle per ring, and the radial displacement of the wall per unit of its control value.
         let share = TAU / around as f64;
         let circle = 1.0 / spline.circle.control_radius;
-        everywhere(&spline, |at| {
-            let (u, [uz, ur]) = chosen(at.z, at.R);
+        for_each_point(&spline, |at| {
+            let (u, [uz, ur]) = exact_solution(at.z, at.R);
             let (w, [zz, zr, rz, rr, tt]) = elastic(at.z, at.R, [uz, ur], u[1]);
             let volume = share * at.volume;
             let work = zz * uz[0] + zr * uz[1] + rz * ur[0] + rr * ur[1] + tt * u[1] / at.R;
@@ -194,13 +192,13 @@ impl Manufactured {
         }
     }
 
-    /// Errors of u in L2, of its gradient in L2, and of the potential, over those of u* itself.
-    fn errors(&self) -> Result<[f64; 3], Trouble> {
+    /// Returns the relative errors of u in L2, of its gradient in L2, and of the potential energy.
+    fn errors(&self) -> Result<[f64; 3], VerificationError> {
         let spline = &self.problem.tube;
         let circle = 1.0 / spline.circle.control_radius;
-        // From u* at Greville's abscissae, which is near.
+        // Starts from u* at the Greville abscissae.
         let mut start = spline.control_values_from(|z, r, _| {
-            let ([along, outwards], _) = chosen(z, r);
+            let ([along, outwards], _) = exact_solution(z, r);
             [along, outwards / circle, 0.0]
         });
         self.apply_prescribed(&self.load(), &mut start);
@@ -208,14 +206,14 @@ impl Manufactured {
             self,
             &self.load(),
             start,
-            &tight(),
+            &tight_settings(),
             &mut Effort::default(),
             &mut (),
         );
-        let found = found.map_err(|failed| Trouble::Solve(failed.to_string()))?;
-        let (mut off, mut all) = ([0.0; 2], [0.0; 2]);
-        everywhere(spline, |at| {
-            // Value and slopes over z and R, of each component.
+        let found = found.map_err(|failed| VerificationError::Solve(failed.to_string()))?;
+        let (mut errors, mut norms) = ([0.0; 2], [0.0; 2]);
+        for_each_point(spline, |at| {
+            // Value, ∂z and ∂R of each component.
             let mut u = [[0.0; 3]; 2];
             for (i, functions) in &at.functions {
                 let x = [found.u[*i], circle * found.u[i + 1]];
@@ -225,18 +223,18 @@ impl Manufactured {
                     }
                 }
             }
-            let (exact, slopes) = chosen(at.z, at.R);
+            let (exact, slopes) = exact_solution(at.z, at.R);
             for c in 0..2 {
-                off[0] += at.volume * (u[c][0] - exact[c]).powi(2);
-                all[0] += at.volume * exact[c].powi(2);
+                errors[0] += at.volume * (u[c][0] - exact[c]).powi(2);
+                norms[0] += at.volume * exact[c].powi(2);
                 for d in 0..2 {
-                    off[1] += at.volume * (u[c][1 + d] - slopes[c][d]).powi(2);
-                    all[1] += at.volume * slopes[c][d].powi(2);
+                    errors[1] += at.volume * (u[c][1 + d] - slopes[c][d]).powi(2);
+                    norms[1] += at.volume * slopes[c][d].powi(2);
                 }
             }
         });
         let potential = (found.forces.energy / self.potential - 1.0).abs();
-        let [value, slope] = [0, 1].map(|d| (off[d] / all[d]).sqrt());
+        let [value, slope] = [0, 1].map(|d| (errors[d] / norms[d]).sqrt());
         Ok([value, slope, potential])
     }
 }
@@ -256,12 +254,12 @@ impl Equilibrium for Manufactured {
         self.problem.between(from, to, t)
     }
     fn forces(&self, load: &Load, u: &[f64]) -> Result<ResidualEvaluation, Inverted> {
-        let mut balance = self.problem.forces(load, u)?;
-        for ((residual, force), u) in balance.residual.iter_mut().zip(&self.forces).zip(u) {
+        let mut evaluation = self.problem.forces(load, u)?;
+        for ((residual, force), u) in evaluation.residual.iter_mut().zip(&self.forces).zip(u) {
             *residual -= force;
-            balance.energy -= force * u;
+            evaluation.energy -= force * u;
         }
-        Ok(balance)
+        Ok(evaluation)
     }
     fn tangent(&self, load: &Load, u: &[f64]) -> Self::Tangent {
         self.problem.tangent(load, u)
@@ -271,21 +269,21 @@ impl Equilibrium for Manufactured {
     }
 }
 
-/// What errors are of, and their order in the degree p.
+/// Quantities whose errors are measured, and their orders for degree p.
 const ERRORS: [(&str, &str); 3] = [
     ("u in L2", "p + 1"),
     ("its gradient in L2 (the energy norm)", "p"),
-    ("the potential Π", "2p"),
+    ("the potential energy", "2p"),
 ];
 
-/// Error, over the solution, below which rounding shows.
+/// Relative error below which rounding affects the order.
 const ROUNDING: f64 = 1e-10;
 
-/// Orders of convergence for degrees 1 to 4.
-pub fn orders(found: &mut Findings<'_>) -> Result<(), Trouble> {
+/// Records the orders of convergence of degrees 1 to 4.
+pub fn orders(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     let mut curves = vec![];
     for degree in 1..=4 {
-        let finest = match (degree, found.full) {
+        let finest = match (degree, recorder.full) {
             (1, false) => 64,
             (1, true) => 128,
             (_, false) => 32,
@@ -293,20 +291,20 @@ pub fn orders(found: &mut Findings<'_>) -> Result<(), Trouble> {
         };
         let meshes: Vec<usize> = (0..4).rev().map(|halvings| finest >> halvings).collect();
         let mut errors = vec![];
-        found.case(format!("manufactured solution, p = {degree}"))?;
+        recorder.case(format!("manufactured solution, p = {degree}"))?;
         for &n in &meshes {
-            found.resume()?;
+            recorder.check_cancelled()?;
             errors.push(Manufactured::new(degree, [2 * n, n / 2]).errors()?);
         }
-        // Of quartics the potential is exact to rounding on all but the coarsest mesh.
-        let seen = if degree < 4 { 3 } else { 2 };
-        for (d, (name, source)) in ERRORS.into_iter().take(seen).enumerate() {
-            // Between the last two meshes that rounding does not blur.
-            let clear = errors
+        // The potential energy of quartics is exact to rounding on all but the coarsest mesh.
+        let quantities = if degree < 4 { 3 } else { 2 };
+        for (d, (name, source)) in ERRORS.into_iter().take(quantities).enumerate() {
+            // Between the two finest meshes with errors above rounding.
+            let usable = errors
                 .iter()
                 .take_while(|error| error[d] > ROUNDING)
                 .count();
-            let (at, slope) = match clear.checked_sub(1) {
+            let (at, slope) = match usable.checked_sub(1) {
                 Some(at) if at > 0 => (at, (errors[at - 1][d] / errors[at][d]).log2()),
                 _ => (1, f64::NAN),
             };
@@ -316,7 +314,7 @@ pub fn orders(found: &mut Findings<'_>) -> Result<(), Trouble> {
                 meshes[at]
             );
             let order = [degree + 1, degree, 2 * degree][d] as f64;
-            found.row(
+            recorder.row(
                 quantity,
                 slope,
                 (order, source),
@@ -344,14 +342,14 @@ pub fn orders(found: &mut Findings<'_>) -> Result<(), Trouble> {
             }
         }
     }
-    found.picture(
-        "orders.png",
-        "Manufactured solutions of degrees 1 to 4: error of the displacement in L2 (solid, order p + 1) and of its gradient \
-         (dashed, order p), over those of the solution, against elements to a diameter of length.",
+    recorder.chart(
+        "convergence.png",
+        "Manufactured solutions of degrees 1 to 4: relative error of the displacement in L2 (solid, order p + 1) and of its \
+         gradient (dashed, order p) against elements per diameter of length.",
         Chart {
             x_label: "log_{2} *n*".into(),
             y_label: "log_{10} error".into(),
-            x_range: Some((1.8, if found.full { 7.2 } else { 6.2 })),
+            x_range: Some((1.8, if recorder.full { 7.2 } else { 6.2 })),
             curves,
             width_pt: 360.0,
             ..Chart::default()

@@ -1,44 +1,48 @@
-//! Whether Plica is right: cases whose answer is known otherwise, each a few rows of one table.
+//! Verification: quantities computed by Plica against reference values, as rows of one table.
 //!
-//! | file | holds |
+//! | module | contents |
 //! |---|---|
-//! | [`one_dimension`] | the reference side: a tube of circles, and the waves that may grow on it; nothing else of the library is used there |
-//! | `specimen` | Plica's side: rings and tubes between sliding plates |
-//! | `exact` | what must be so to rounding |
-//! | `rings`, `columns` | pressure, growth, buckling, thin and long limits |
-//! | `locking` | a thick cylinder that is nearly incompressible |
-//! | `manufactured` | orders of convergence |
-//! | `routes` | the same answer by a second way through the code |
-//! | `paper` | the main case of Okino et al. (2025) |
-//! | [`row`], `found` | rows, the table, the page |
+//! | [`one_dimension`] | independent reference solution of axisymmetric tubes and their buckling |
+//! | `tube_model` | the tubes that Plica solves for the comparisons |
+//! | `exact` | identities that hold to rounding |
+//! | `rings`, `columns` | pressure, growth, buckling; limits of thin walls and long tubes |
+//! | `locking` | nearly incompressible thick walls |
+//! | `manufactured` | orders of convergence on manufactured solutions |
+//! | `cross_checks` | the same result computed in two ways |
+//! | `main_case` | the main case of Okino et al. (2025) |
+//! | [`row`], `report` | rows, table and page |
 //!
-//! A row that is too far off says FAILED; its tolerance is the one that the mesh at hand should keep.
-#![allow(non_snake_case)] // the formulas keep the letters of their sources
+//! A row outside its tolerance is marked FAILED. Tolerances are those that the meshes used should keep.
+#![allow(non_snake_case)] // formulas keep the letters of their sources
 
 mod columns;
+mod cross_checks;
+mod error;
 mod exact;
-mod found;
 mod locking;
+mod main_case;
 mod manufactured;
 pub mod one_dimension;
-mod paper;
+mod report;
 mod rings;
-mod routes;
 pub mod row;
-mod specimen;
+mod tube_model;
 
-pub use found::{Findings, Observer, TITLE, Trouble, Verification};
+pub use error::VerificationError;
+pub use report::{Recorder, TITLE, Verification};
 pub use row::{Row, Tolerance};
 
-/// Something that is checked.
+use plica::monitor::Monitor;
+
+/// A check: some rows of the table.
 pub struct Check {
-    /// Its name, for those who want it alone.
+    /// Name by which it is selected.
     pub name: &'static str,
-    /// What is checked.
-    pub about: &'static str,
-    /// Whether the quick verification leaves it out.
+    /// Subject of the check.
+    pub description: &'static str,
+    /// Whether only the full verification includes it.
     pub slow: bool,
-    run: fn(&mut Findings<'_>) -> Result<(), Trouble>,
+    run: fn(&mut Recorder<'_>) -> Result<(), VerificationError>,
 }
 
 /// All checks, in the order of the table.
@@ -46,100 +50,128 @@ pub const CHECKS: &[Check] = &[
     quick("rest", "a tube at rest", exact::rest),
     quick(
         "free-growth",
-        "a tube that is free to grow",
+        "stress-free growth of a tube with a free end",
         exact::free_growth,
     ),
     quick(
         "objectivity",
-        "a tube that is turned as a whole",
+        "rigid motion of an active tube",
         exact::objectivity,
     ),
-    quick("frame", "muscles that are turned", exact::frame),
-    quick("splines", "what splines draw", exact::splines),
+    quick(
+        "muscle-rotation",
+        "rotation of an uneven muscle",
+        exact::muscle_rotation,
+    ),
+    quick(
+        "splines",
+        "spline circle and projection on splines",
+        exact::splines,
+    ),
     quick("lame", "a ring under a small pressure", rings::lame),
-    quick("inflation", "a ring that is blown up", rings::inflation),
+    quick("inflation", "finite inflation of a ring", rings::inflation),
     quick(
         "quadratic-law",
-        "the quadratic law, blown up",
+        "finite inflation with the quadratic volumetric energy",
         rings::quadratic,
     ),
-    quick("growth", "a closed ring that has grown", rings::growth),
+    quick(
+        "growth",
+        "circumferential growth of a closed ring",
+        rings::growth,
+    ),
     quick(
         "ring-buckling",
-        "rings under pressure from outside",
+        "buckling of rings under external pressure",
         rings::buckling,
     ),
-    quick("thin-ring", "thinner and thinner rings", rings::thin_limit),
+    quick("thin-ring", "buckling of thin rings", rings::thin_limit),
     quick(
         "thick-cylinder",
-        "a thick cylinder that is nearly incompressible",
+        "a thick, nearly incompressible cylinder",
         locking::thick_cylinder,
     ),
     quick(
         "thick-contraction",
-        "a thick tube that contracts, with one element through it",
+        "contraction of a thick tube with one element through the wall",
         locking::contraction,
     ),
     quick(
-        "orders",
-        "manufactured solutions, finer and finer",
+        "convergence",
+        "orders of convergence on manufactured solutions",
         manufactured::orders,
     ),
-    quick("plates", "a tube between plates", columns::plates),
+    quick(
+        "compression",
+        "a tube compressed between sliding plates",
+        columns::plates,
+    ),
     quick(
         "thin-shell",
-        "thinner and thinner tubes between plates",
+        "axial buckling of thin shells",
         columns::thin_shell,
     ),
+    quick("column", "Euler buckling of long tubes", columns::column),
     quick(
-        "column",
-        "longer and longer tubes between plates",
-        columns::column,
+        "tangents",
+        "tangents against differences of the residual",
+        cross_checks::tangents,
     ),
-    quick("tangents", "tangents against differences", routes::tangents),
     quick(
         "solvers",
-        "two ways to solve with a tangent",
-        routes::solvers,
+        "iterative against direct linear solver",
+        cross_checks::solvers,
     ),
-    quick("symmetries", "one ring, a fold, all", routes::symmetries),
+    quick(
+        "symmetries",
+        "one ring, a cyclic sector, the whole tube",
+        cross_checks::symmetries,
+    ),
     quick(
         "schemes",
         "Newton, relaxation, pseudo-time",
-        routes::schemes,
+        cross_checks::schemes,
     ),
-    quick("threads", "one thread, several", routes::threads),
-    quick("main-case", "the paper's main case", paper::main_case),
+    quick(
+        "threads",
+        "one thread against several",
+        cross_checks::threads,
+    ),
+    quick(
+        "main-case",
+        "the main case of the paper",
+        main_case::main_case,
+    ),
     slow(
         "main-case-radii",
-        "where the main case is narrowest",
-        paper::narrowest,
+        "smallest radii of the main case",
+        main_case::radii,
     ),
     slow(
         "main-case-stability",
-        "which harmonics the main case loses",
-        paper::stability,
+        "stability of the main case to circumferential modes",
+        main_case::stability,
     ),
     slow(
         "main-case-meshes",
-        "the main case on finer and finer meshes",
-        paper::meshes,
+        "mesh convergence of the main case",
+        main_case::meshes,
     ),
     slow(
         "relaxation-alone",
-        "which harmonics relaxation alone loses",
-        paper::relaxation_alone,
+        "stability of a tube that relaxes without contracting",
+        main_case::relaxation_alone,
     ),
 ];
 
 const fn quick(
     name: &'static str,
-    about: &'static str,
-    run: fn(&mut Findings<'_>) -> Result<(), Trouble>,
+    description: &'static str,
+    run: fn(&mut Recorder<'_>) -> Result<(), VerificationError>,
 ) -> Check {
     Check {
         name,
-        about,
+        description,
         slow: false,
         run,
     }
@@ -147,41 +179,38 @@ const fn quick(
 
 const fn slow(
     name: &'static str,
-    about: &'static str,
-    run: fn(&mut Findings<'_>) -> Result<(), Trouble>,
+    description: &'static str,
+    run: fn(&mut Recorder<'_>) -> Result<(), VerificationError>,
 ) -> Check {
     Check {
         slow: true,
-        ..quick(name, about, run)
+        ..quick(name, description, run)
     }
 }
 
-/// Holds every check whose name `wanted` says yes to: those of the quick verification, or all.
+/// Runs the selected checks of the quick or the full verification.
+///
+/// A check that ends with an error becomes a failed row. The monitor gets failed rows as notices.
 ///
 /// # Errors
-/// [`Trouble::Stopped`] if the observer asked to stop. Any other trouble is a row of its own.
+/// [`VerificationError::Cancelled`] if the monitor cancels.
 pub fn verify(
     full: bool,
-    wanted: &dyn Fn(&Check) -> bool,
-    observer: &mut dyn Observer,
-) -> Result<Verification, Trouble> {
+    selected: &dyn Fn(&Check) -> bool,
+    monitor: &mut dyn Monitor,
+) -> Result<Verification, VerificationError> {
     let checks: Vec<&Check> = CHECKS
         .iter()
-        .filter(|check| (full || !check.slow) && wanted(check))
+        .filter(|check| (full || !check.slow) && selected(check))
         .collect();
-    let mut found = Findings::new(full, observer);
+    let mut recorder = Recorder::new(full, monitor);
     for (done, check) in checks.iter().enumerate() {
-        found.begins(check.about, done, checks.len());
-        found.case = check.about.into();
-        match (check.run)(&mut found) {
+        recorder.begin(check.description, done, checks.len());
+        match (check.run)(&mut recorder) {
             Ok(()) => {}
-            Err(Trouble::Stopped) => return Err(Trouble::Stopped),
-            Err(trouble) => found.failed(&trouble),
+            Err(VerificationError::Cancelled) => return Err(VerificationError::Cancelled),
+            Err(error) => recorder.failed(&error),
         }
     }
-    Ok(Verification {
-        full,
-        rows: found.rows,
-        charts: found.charts,
-    })
+    Ok(recorder.finish())
 }

@@ -1,98 +1,97 @@
-//! The reference side: a tube whose every cross-section is a circle is a function r(R), and the waves
-//! that may grow on it are three more. Both in one polynomial of high degree through the wall.
+//! Independent reference solution: an axisymmetric tube r(R) that is uniform along its axis, and the waves
+//! to which it may lose stability. Both are polynomials of high degree through the wall.
 //!
-//! Nothing of the rest of the library is used here: no spline, no kernel, no law, no solver. A mistake
-//! would have to be made twice to stay unseen.
+//! Nothing of the rest of the library is used here: no spline, no kernel, no law, no solver.
 //!
 //! | letter | meaning | unit |
 //! |---|---|---|
 //! | A, B | inner and outer radius at rest | D |
-//! | r(R) | radius of what was at R | D |
-//! | ℓ | axial stretch, the same everywhere | – |
-//! | θη, θζ | grown stretches around and along | – |
-//! | p | true pressure on the inner and the outer wall | E |
-//! | n, k | waves around; wave number along, π over the length of half a wave | –, 1/D |
+//! | r(R) | current radius of the point at R | D |
+//! | ℓ | axial stretch, uniform | – |
+//! | θη, θζ | growth stretches around and along | – |
+//! | p | follower pressure on the inner and the outer wall | E |
+//! | n, k | circumferential mode; axial wave number, π over the length of a half wave | –, 1/D |
+//!
+//! The law, in the elastic principal stretches s with I₁ = Σ s², I₂ = Σ (J/s)² and J = s₁ s₂ s₃, is
+//!
+//! w = a/2 (I₁ − 3) + b/2 (I₂ − 3) − (a + 2b) ln J + U(J),
+//!
+//! neo-Hookean for b = 0 and a = μ.
 
 use std::f64::consts::PI;
 
-/// Degree of the polynomial.
+/// Degree of the polynomials.
 const DEGREE: usize = 16;
-/// Points through the wall.
+/// Nodes through the wall.
 const POINTS: usize = DEGREE + 1;
-/// Newton's steps, of which ten are many.
+/// Limit of Newton's iterations.
 const STEPS: usize = 60;
 
-/// How the wall resists a change of volume.
+/// Volumetric energy U(J).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Resistance {
+pub enum VolumetricEnergy {
     /// λ/2 (ln J)².
     #[default]
-    Logarithm,
+    Logarithmic,
     /// λ/4 (J² − 1 − 2 ln J).
-    Square,
+    Quadratic,
 }
 
-/// A wall under a load, from radius to radius.
+/// A wall with its law and its load.
 #[derive(Clone, Copy, Debug)]
 pub struct Wall {
     /// A and B.
     pub radii: [f64; 2],
-    /// Young's modulus and Poisson's ratio.
-    pub elastic: [f64; 2],
-    /// What resists a change of volume.
-    pub resistance: Resistance,
-    /// ℓ.
+    /// Constants a and b of the law.
+    pub shear: [f64; 2],
+    /// Constant λ of the volumetric energy.
+    pub lambda: f64,
+    /// Volumetric energy.
+    pub volumetric: VolumetricEnergy,
+    /// Axial stretch ℓ.
     pub stretch: f64,
-    /// θη and θζ.
-    pub grown: [f64; 2],
-    /// On the inner and the outer wall.
+    /// Growth stretches θη and θζ.
+    pub growth: [f64; 2],
+    /// Follower pressures on the inner and the outer wall.
     pub pressures: [f64; 2],
 }
 
 /// A wall in equilibrium.
 #[derive(Clone, Debug)]
-pub struct Balanced {
+pub struct Solution {
     wall: Wall,
-    /// r at the nodes.
+    /// Current radii of the nodes.
     r: Vec<f64>,
 }
 
-/// No equilibrium was found.
+/// Newton's method found no equilibrium of the one-dimensional wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the one-dimensional wall finds no equilibrium")]
-pub struct Unbalanced;
+#[error("the one-dimensional reference solution has no equilibrium")]
+pub struct NoEquilibrium;
 
 impl Wall {
-    /// At rest, E = 1.
-    pub fn new(radii: [f64; 2], poisson_ratio: f64) -> Self {
+    /// Creates an unloaded neo-Hookean wall with E = 1.
+    pub fn new(radii: [f64; 2], nu: f64) -> Self {
         Self {
             radii,
-            elastic: [1.0, poisson_ratio],
-            resistance: Resistance::Logarithm,
+            shear: [1.0 / (2.0 * (1.0 + nu)), 0.0],
+            lambda: nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            volumetric: VolumetricEnergy::Logarithmic,
             stretch: 1.0,
-            grown: [1.0; 2],
+            growth: [1.0; 2],
             pressures: [0.0; 2],
         }
     }
 
-    /// λ and μ.
-    fn lame(&self) -> (f64, f64) {
-        let [E, nu] = self.elastic;
-        (
-            E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-            E / (2.0 * (1.0 + nu)),
-        )
-    }
-
-    /// U, J U′ and J (J U′)′ at J.
+    /// Returns U, J U′ and J (J U′)′ at J.
     fn volume(&self, J: f64) -> (f64, f64, f64) {
-        let (lambda, _) = self.lame();
-        match self.resistance {
-            Resistance::Logarithm => {
+        let lambda = self.lambda;
+        match self.volumetric {
+            VolumetricEnergy::Logarithmic => {
                 let ln = J.ln();
                 (0.5 * lambda * ln * ln, lambda * ln, lambda)
             }
-            Resistance::Square => (
+            VolumetricEnergy::Quadratic => (
                 0.25 * lambda * (J * J - 1.0 - 2.0 * J.ln()),
                 0.5 * lambda * (J * J - 1.0),
                 lambda * J * J,
@@ -100,68 +99,75 @@ impl Wall {
         }
     }
 
-    /// Elastic stretches outwards, around and along, of r and r′ at R.
+    /// Returns the elastic stretches outwards, around and along of r and r′ at R.
     fn elastic_stretches(&self, R: f64, r: f64, slope: f64) -> [f64; 3] {
-        [slope, r / (R * self.grown[0]), self.stretch / self.grown[1]]
+        [
+            slope,
+            r / (R * self.growth[0]),
+            self.stretch / self.growth[1],
+        ]
     }
 
-    /// w and its slopes over the elastic stretches.
+    /// Returns w and ∂w/∂s.
     fn energy(&self, s: [f64; 3]) -> (f64, [f64; 3]) {
-        let (_, mu) = self.lame();
+        let [a, b] = self.shear;
         let J = s[0] * s[1] * s[2];
         let (U, h, _) = self.volume(J);
-        let shape: f64 = s.iter().map(|s| s * s - 1.0).sum();
-        let w = 0.5 * mu * shape - mu * J.ln() + U;
-        (w, s.map(|s| mu * s + (h - mu) / s))
+        let I1: f64 = s.iter().map(|s| s * s).sum();
+        let I2: f64 = s.iter().map(|s| (J / s).powi(2)).sum();
+        let w = 0.5 * a * (I1 - 3.0) + 0.5 * b * (I2 - 3.0) - (a + 2.0 * b) * J.ln() + U;
+        let slope = |s: f64| s * (a + b * (I1 - s * s)) + (h - a - 2.0 * b) / s;
+        (w, s.map(slope))
     }
 
-    /// ∂²w over the elastic stretches.
+    /// Returns ∂²w/∂s∂s.
     fn curvature(&self, s: [f64; 3]) -> [[f64; 3]; 3] {
-        let (_, mu) = self.lame();
+        let [a, b] = self.shear;
         let (_, h, q) = self.volume(s[0] * s[1] * s[2]);
+        let I1: f64 = s.iter().map(|s| s * s).sum();
         let entry = |i: usize, j: usize| {
-            let own = if i == j {
-                mu + (mu - h) / (s[i] * s[i])
+            let shape = if i == j {
+                a + b * (I1 - s[i] * s[i]) + (a + 2.0 * b - h) / (s[i] * s[i])
             } else {
-                0.0
+                2.0 * b * s[i] * s[j]
             };
-            own + q / (s[i] * s[j])
+            shape + q / (s[i] * s[j])
         };
         [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
     }
 
-    /// In equilibrium, by Newton from rest. Large loads are reached in steps.
+    /// Solves for equilibrium by Newton's method from rest, with the load applied in `steps` equal steps.
     ///
     /// # Errors
-    /// [`Unbalanced`] where there is none, or it is too far.
-    pub fn balance(&self, steps: usize) -> Result<Balanced, Unbalanced> {
+    /// [`NoEquilibrium`] if a step does not converge.
+    pub fn solve(&self, steps: usize) -> Result<Solution, NoEquilibrium> {
         let nodes = Nodes::new(self.radii);
         let mut r = nodes.at.clone();
         for step in 1..=steps {
             let t = step as f64 / steps as f64;
             let part = Self {
                 stretch: 1.0 + t * (self.stretch - 1.0),
-                grown: self.grown.map(|g| 1.0 + t * (g - 1.0)),
+                growth: self.growth.map(|g| 1.0 + t * (g - 1.0)),
                 pressures: self.pressures.map(|p| t * p),
                 ..*self
             };
             part.newton(&nodes, &mut r)?;
         }
-        Ok(Balanced { wall: *self, r })
+        Ok(Solution { wall: *self, r })
     }
 
-    fn newton(&self, nodes: &Nodes, r: &mut [f64]) -> Result<(), Unbalanced> {
-        let grown = self.grown[0] * self.grown[1];
+    fn newton(&self, nodes: &Nodes, r: &mut [f64]) -> Result<(), NoEquilibrium> {
+        let volume = self.growth[0] * self.growth[1];
         for _ in 0..STEPS {
             let mut force = vec![0.0; POINTS];
             let mut stiffness = vec![vec![0.0; POINTS]; POINTS];
             for point in &nodes.points {
-                let (value, slope) = point.read(r);
+                let (value, slope) = point.interpolate(r);
                 let s = self.elastic_stretches(point.R, value, slope);
                 let (_, P) = self.energy(s);
                 let A = self.curvature(s);
-                let weight = 2.0 * PI * point.R * point.weight * grown;
-                let around = 1.0 / (point.R * self.grown[0]);
+                let weight = 2.0 * PI * point.R * point.weight * volume;
+                let around = 1.0 / (point.R * self.growth[0]);
                 for i in 0..POINTS {
                     let d = [point.slope[i], around * point.value[i]];
                     force[i] += weight * (P[0] * d[0] + P[1] * d[1]);
@@ -173,7 +179,7 @@ impl Wall {
                     }
                 }
             }
-            // Π − p π r(A)² ℓ, and the other way outside.
+            // Work of the pressures: p π r² ℓ inside, −p π r² ℓ outside.
             for (end, sign, p) in [
                 (0, -1.0, self.pressures[0]),
                 (DEGREE, 1.0, self.pressures[1]),
@@ -182,45 +188,45 @@ impl Wall {
                 force[end] += push * r[end];
                 stiffness[end][end] += push;
             }
-            let step = solve(stiffness, force).ok_or(Unbalanced)?;
+            let step = solve_linear(stiffness, force).ok_or(NoEquilibrium)?;
             let size = step.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            // No further than a tenth of the radius at once.
+            // A step changes no radius by more than a tenth of A.
             let part = (0.1 * self.radii[0] / size).min(1.0);
             for (r, step) in r.iter_mut().zip(&step) {
                 *r -= part * step;
             }
             if !size.is_finite() {
-                return Err(Unbalanced);
+                return Err(NoEquilibrium);
             }
             if size < 1e-13 * self.radii[1] {
                 return Ok(());
             }
         }
-        Err(Unbalanced)
+        Err(NoEquilibrium)
     }
 }
 
-impl Balanced {
-    /// r at A and at B.
+impl Solution {
+    /// Returns the current inner and outer radius.
     pub fn radii(&self) -> [f64; 2] {
         [self.r[0], self.r[DEGREE]]
     }
 
-    /// W over the length at rest, in E·D².
+    /// Returns the strain energy over the length at rest, in E·D².
     pub fn energy(&self) -> f64 {
-        let grown = self.wall.grown[0] * self.wall.grown[1];
+        let volume = self.wall.growth[0] * self.wall.growth[1];
         let nodes = Nodes::new(self.wall.radii);
         let points = nodes.points.iter().map(|point| {
-            let (r, slope) = point.read(&self.r);
+            let (r, slope) = point.interpolate(&self.r);
             let (w, _) = self
                 .wall
                 .energy(self.wall.elastic_stretches(point.R, r, slope));
-            2.0 * PI * point.R * point.weight * grown * w
+            2.0 * PI * point.R * point.weight * volume * w
         });
         points.sum()
     }
 
-    /// Cauchy stress outwards, around and along at A and at B.
+    /// Returns the Cauchy stresses outwards, around and along at the inner and at the outer radius.
     pub fn stress(&self) -> [[f64; 3]; 2] {
         let nodes = Nodes::new(self.wall.radii);
         [0, DEGREE].map(|end| {
@@ -234,14 +240,16 @@ impl Balanced {
         })
     }
 
-    /// How many ways there are for a wave n around and k along to lower the energy: the negative
-    /// eigenvalues of the second variation. Under pressure only for k = 0, where the area that it encloses
-    /// tells its work; panics else.
-    pub fn negative(&self, n: usize, k: f64) -> usize {
+    /// Returns the number of negative eigenvalues of the second variation of the energy for the circumferential mode
+    /// n and the axial wave number k.
+    ///
+    /// # Panics
+    /// Under pressure with k ≠ 0: only for k = 0 is the work of the pressure that on the enclosed area.
+    pub fn negative_eigenvalues(&self, n: usize, k: f64) -> usize {
         let wall = &self.wall;
         assert!(k == 0.0 || wall.pressures == [0.0; 2]);
-        let (_, mu) = wall.lame();
-        let grown = [1.0, wall.grown[0], wall.grown[1]];
+        let [a, b] = wall.shear;
+        let growth = [1.0, wall.growth[0], wall.growth[1]];
         let n = n as f64;
         // Means of cos² and sin² around and along.
         let mean = |wave: bool| if wave { [0.5, 0.5] } else { [1.0, 0.0] };
@@ -249,12 +257,13 @@ impl Balanced {
         let mut form = vec![vec![0.0; 3 * POINTS]; 3 * POINTS];
         let nodes = Nodes::new(wall.radii);
         for point in &nodes.points {
-            let (r, slope) = point.read(&self.r);
+            let (r, slope) = point.interpolate(&self.r);
             let s = wall.elastic_stretches(point.R, r, slope);
-            let (_, h, q) = wall.volume(s[0] * s[1] * s[2]);
-            let weight = 2.0 * PI * point.R * point.weight * wall.grown[0] * wall.grown[1];
-            // Gradient of (f cos nφ cos kZ, g sin nφ cos kZ, w cos nφ sin kZ), amplitudes only: rows
-            // and columns (outwards, around, along).
+            let (_, h, _) = wall.volume(s[0] * s[1] * s[2]);
+            let A = wall.curvature(s);
+            let weight = 2.0 * PI * point.R * point.weight * wall.growth[0] * wall.growth[1];
+            // Amplitudes of the gradient of (f cos nφ cos kZ, g sin nφ cos kZ, w cos nφ sin kZ): rows and columns
+            // (outwards, around, along).
             let gradient = |at: usize| -> [[f64; 3]; 3] {
                 let (value, slope) = (point.value[at / 3], point.slope[at / 3]);
                 let over = value / point.R;
@@ -270,34 +279,37 @@ impl Balanced {
                     }
                     _ => H[2] = [slope, -n * over, k * value],
                 }
-                H.map(|row| [row[0], row[1] / grown[1], row[2] / grown[2]])
+                H.map(|row| [row[0], row[1] / growth[1], row[2] / growth[2]])
             };
-            // cos or sin of each component, around and along.
-            let share = |i: usize, j: usize| {
+            // Mean of the product of the waves of components ij.
+            let mean_of = |i: usize, j: usize| {
                 let sine_around = usize::from((i == 1) != (j == 1));
                 let sine_along = usize::from((i == 2) != (j == 2));
                 around[sine_around] * along[sine_along]
             };
             let gradients: Vec<_> = (0..3 * POINTS).map(gradient).collect();
-            for (a, G) in gradients.iter().enumerate() {
-                for (b, H) in gradients.iter().enumerate() {
+            // Moduli of an isotropic law in the principal frame: A_iijj = ∂²w/∂s_i∂s_j, and for i ≠ j with k the third
+            // A_ijij = a + b s_k² and A_ijji = −b s_i s_j + (a + 2b − h)/(s_i s_j).
+            for (row, G) in gradients.iter().enumerate() {
+                for (column, H) in gradients.iter().enumerate() {
                     let mut sum = 0.0;
-                    let (mut trace_G, mut trace_H) = (0.0, 0.0);
                     for i in 0..3 {
-                        trace_G += G[i][i] / s[i];
-                        trace_H += H[i][i] / s[i];
                         for j in 0..3 {
-                            sum += share(i, j)
-                                * (mu * G[i][j] * H[i][j]
-                                    + (mu - h) * G[i][j] * H[j][i] / (s[i] * s[j]));
+                            sum += mean_of(i, i) * A[i][j] * G[i][i] * H[j][j];
+                            if i != j {
+                                let product = s[i] * s[j];
+                                let same = a + b * s[3 - i - j].powi(2);
+                                let crossed = (a + 2.0 * b - h) / product - b * product;
+                                sum += mean_of(i, j)
+                                    * (same * G[i][j] * H[i][j] + crossed * G[i][j] * H[j][i]);
+                            }
                         }
                     }
-                    sum += share(0, 0) * q * trace_G * trace_H;
-                    form[a][b] += weight * sum;
+                    form[row][column] += weight * sum;
                 }
             }
         }
-        // The area within a circle with a wave on it: ½ ∮ f̂² + ĝ² + f̂ ĝ′ − ĝ f̂′ beyond first order.
+        // Second variation of the area within a circle with a wave: ½ ∮ f̂² + ĝ² + f̂ ĝ′ − ĝ f̂′.
         for (end, sign, p) in [
             (0, -1.0, wall.pressures[0]),
             (DEGREE, 1.0, wall.pressures[1]),
@@ -314,9 +326,12 @@ impl Balanced {
     }
 }
 
-/// Where a count first differs from none between two numbers, to the last digits; not a number where it
-/// is none at the second, too.
-pub fn first<E>(
+/// Returns the load between a stable and an unstable one at which the number of negative eigenvalues first differs
+/// from zero, by bisection to a relative width of 1e-11; NaN if it is zero at `unstable` too.
+///
+/// # Errors
+/// The error of `negative`.
+pub fn critical_load<E>(
     mut stable: f64,
     mut unstable: f64,
     mut negative: impl FnMut(f64) -> Result<usize, E>,
@@ -335,31 +350,32 @@ pub fn first<E>(
     Ok(0.5 * (stable + unstable))
 }
 
-/// The polynomial's nodes, and where it is integrated.
+/// Interpolation nodes and quadrature points.
 struct Nodes {
     at: Vec<f64>,
     /// Slope at node i of the polynomial that is one at node j.
     slopes: Vec<Vec<f64>>,
-    points: Vec<Place>,
+    points: Vec<Point>,
 }
 
-/// The polynomials at a point.
-struct Place {
+/// The Lagrange polynomials at a quadrature point.
+struct Point {
     R: f64,
     weight: f64,
     value: Vec<f64>,
     slope: Vec<f64>,
 }
 
-impl Place {
-    fn read(&self, r: &[f64]) -> (f64, f64) {
+impl Point {
+    /// Returns r and r′ of nodal values.
+    fn interpolate(&self, r: &[f64]) -> (f64, f64) {
         let sum = |of: &[f64]| of.iter().zip(r).map(|(n, r)| n * r).sum();
         (sum(&self.value), sum(&self.slope))
     }
 }
 
 impl Nodes {
-    /// Chebyshev's points, ends among them, and barycentric weights (Berrut and Trefethen 2004).
+    /// Creates Chebyshev points of the second kind with barycentric weights (Berrut and Trefethen 2004).
     fn new([inner, outer]: [f64; 2]) -> Self {
         let place = |x: f64| inner + 0.5 * (outer - inner) * (1.0 + x);
         let at: Vec<f64> = (0..POINTS)
@@ -384,7 +400,7 @@ impl Nodes {
             let slope = (0..POINTS)
                 .map(|j| (0..POINTS).map(|i| value[i] * slopes[i][j]).sum())
                 .collect();
-            Place {
+            Point {
                 R,
                 weight: 0.5 * (outer - inner) * w,
                 value,
@@ -399,7 +415,7 @@ impl Nodes {
     }
 }
 
-/// Gauss's points and weights on −1 to 1, by Newton on Legendre's polynomial.
+/// Returns Gauss points and weights on −1 to 1, by Newton's method on the Legendre polynomial.
 fn gauss(count: usize) -> Vec<(f64, f64)> {
     let legendre = |x: f64| {
         let (mut before, mut now) = (1.0, x);
@@ -421,8 +437,8 @@ fn gauss(count: usize) -> Vec<(f64, f64)> {
     (0..count).map(point).collect()
 }
 
-/// x of A x = b, by elimination with the largest pivots of columns; none if A is singular.
-fn solve(mut A: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
+/// Solves A x = b by elimination with partial pivoting; none if A is singular.
+fn solve_linear(mut A: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     let n = b.len();
     for i in 0..n {
         let pivot = (i..n).max_by(|&j, &k| A[j][i].abs().total_cmp(&A[k][i].abs()))?;
@@ -446,7 +462,8 @@ fn solve(mut A: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     Some(b)
 }
 
-/// Negative pivots of a symmetric matrix, its negative eigenvalues; a row of zeros is left out.
+/// Returns the number of negative pivots of a symmetric matrix, that of its negative eigenvalues; zero rows are
+/// left out.
 fn negative_pivots(mut A: Vec<Vec<f64>>) -> usize {
     let n = A.len();
     let largest = (0..n).fold(0.0_f64, |most, i| most.max(A[i][i].abs()));
@@ -471,35 +488,38 @@ fn negative_pivots(mut A: Vec<Vec<f64>>) -> usize {
 mod tests {
     use super::*;
 
-    /// E = 1, ν = 0.495, from 0.44 to 0.5.
+    /// Returns a wall with E = 1, ν = 0.495, A = 0.44 and B = 0.5.
     fn wall() -> Wall {
         Wall::new([0.44, 0.5], 0.495)
     }
 
-    fn near(found: f64, expected: f64, digits: f64) {
-        let off = (found / expected - 1.0).abs();
-        assert!(off < digits, "{found} not {expected}: off by {off:.1e}");
+    fn assert_near(computed: f64, expected: f64, tolerance: f64) {
+        let error = (computed / expected - 1.0).abs();
+        assert!(
+            error < tolerance,
+            "{computed} instead of {expected}: error {error:.1e}"
+        );
     }
 
     #[test]
-    fn lame_s_displacements_and_stresses() {
+    fn small_pressure_gives_the_displacements_and_stresses_of_lame() {
         let p = 1e-6;
         let wall = Wall {
             pressures: [p, 0.0],
             ..wall()
         };
-        let balanced = wall.balance(1).unwrap();
-        let [a, b] = balanced.radii();
-        near((a - 0.44) / p, 2.93835994, 3e-5);
-        near((b - 0.5) / p, 2.59154539, 3e-5);
-        let [inner, outer] = balanced.stress();
-        near(inner[1] / p, 7.86524823, 3e-5);
-        near(outer[1] / p, 6.86524823, 3e-5);
-        near(inner[2] / p, 3.39829787, 3e-5);
+        let solution = wall.solve(1).unwrap();
+        let [a, b] = solution.radii();
+        assert_near((a - 0.44) / p, 2.93835994, 3e-5);
+        assert_near((b - 0.5) / p, 2.59154539, 3e-5);
+        let [inner, outer] = solution.stress();
+        assert_near(inner[1] / p, 7.86524823, 3e-5);
+        assert_near(outer[1] / p, 6.86524823, 3e-5);
+        assert_near(inner[2] / p, 3.39829787, 3e-5);
     }
 
     #[test]
-    fn inflation_and_growth_as_others_found_them() {
+    fn inflation_and_growth_agree_with_independent_codes() {
         for (p, b, [at_a, at_b]) in [
             (0.0122352033, 0.5391973105, [0.11511727, 0.10041075]),
             (0.0329557773, 0.7016189198, [0.56679648, 0.48463349]),
@@ -508,51 +528,56 @@ mod tests {
                 pressures: [p, 0.0],
                 ..wall()
             };
-            let balanced = wall.balance(8).unwrap();
-            near(balanced.radii()[1], b, 3e-9);
-            near(balanced.stress()[0][1], at_a, 1e-7);
-            near(balanced.stress()[1][1], at_b, 1e-7);
+            let solution = wall.solve(8).unwrap();
+            assert_near(solution.radii()[1], b, 3e-9);
+            assert_near(solution.stress()[0][1], at_a, 1e-7);
+            assert_near(solution.stress()[1][1], at_b, 1e-7);
         }
         for (g, a, b, W, at_a) in [
             (0.75, 0.3227579338, 0.3827173371, 1.32551829e-5, -0.02939486),
             (0.5, 0.2058835933, 0.2656827340, 7.91898869e-5, -0.08803335),
         ] {
             let wall = Wall {
-                grown: [g, 1.0],
+                growth: [g, 1.0],
                 ..wall()
             };
-            let balanced = wall.balance(8).unwrap();
-            near(balanced.radii()[0], a, 1e-9);
-            near(balanced.radii()[1], b, 1e-9);
-            near(balanced.energy(), W, 1e-8);
-            near(balanced.stress()[0][1], at_a, 1e-6);
+            let solution = wall.solve(8).unwrap();
+            assert_near(solution.radii()[0], a, 1e-9);
+            assert_near(solution.radii()[1], b, 1e-9);
+            assert_near(solution.energy(), W, 1e-8);
+            assert_near(solution.stress()[0][1], at_a, 1e-6);
         }
     }
 
     #[test]
-    fn buckling_as_others_found_it() {
-        let pressed = |n: usize, p: f64| {
+    fn buckling_loads_agree_with_independent_codes() {
+        let negative_under_pressure = |n: usize, p: f64| {
             let wall = Wall {
                 pressures: [0.0, p],
                 ..wall()
             };
-            wall.balance(1).map(|balanced| balanced.negative(n, 0.0))
+            wall.solve(1)
+                .map(|solution| solution.negative_eigenvalues(n, 0.0))
         };
         for (n, p) in [(2, 6.94351e-4), (3, 1.883913e-3)] {
-            let found = first(0.0, 2.0 * p, |p| pressed(n, p)).unwrap();
-            near(found, p, 1e-6);
+            let found = critical_load(0.0, 2.0 * p, |p| negative_under_pressure(n, p)).unwrap();
+            assert_near(found, p, 1e-6);
         }
-        let shortened = |n: usize, m: usize, strain: f64| {
+        let negative_when_shortened = |n: usize, m: usize, strain: f64| {
             let wall = Wall {
                 stretch: 1.0 - strain,
                 ..wall()
             };
             let k = PI * m as f64 / 3.0;
-            wall.balance(1).map(|balanced| balanced.negative(n, k))
+            wall.solve(1)
+                .map(|solution| solution.negative_eigenvalues(n, k))
         };
         for (n, m, strain) in [(2, 2, 0.0552884), (0, 9, 0.0805741), (3, 5, 0.0762781)] {
-            let found = first(0.0, 1.5 * strain, |strain| shortened(n, m, strain)).unwrap();
-            near(found, strain, 2e-6);
+            let found = critical_load(0.0, 1.5 * strain, |strain| {
+                negative_when_shortened(n, m, strain)
+            })
+            .unwrap();
+            assert_near(found, strain, 2e-6);
         }
     }
 }

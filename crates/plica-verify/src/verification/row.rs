@@ -1,46 +1,46 @@
-//! One line of the table: what was computed, what it should be, and whether it is.
+//! Rows of the table: a computed quantity, its reference and its tolerance.
 
 use std::fmt::Write as _;
 
-/// How far a number may be off.
+/// Largest accepted error of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// So much of the reference.
+    /// Relative to the reference.
     Relative(f64),
-    /// So much, in the unit of the quantity.
+    /// In the unit of the quantity.
     Absolute(f64),
 }
 
-/// A quantity of a case against its reference.
+/// A computed quantity with its reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// What it is found on.
+    /// Problem for which it is computed.
     pub case: String,
-    /// What it is; symbols are those of docs/model.md.
+    /// Name of the quantity; symbols are those of docs/model.md.
     pub quantity: String,
-    /// What Plica finds; not a number where it finds nothing.
+    /// Value computed by Plica; NaN if the computation failed.
     pub computed: f64,
-    /// What it should be.
+    /// Reference value.
     pub reference: f64,
-    /// Who says so.
+    /// Source of the reference value.
     pub source: String,
-    /// How far it may be off.
+    /// Largest accepted error.
     pub tolerance: Tolerance,
-    /// Why nothing was found.
-    pub trouble: Option<String>,
+    /// Error message of a failed computation.
+    pub failure: Option<String>,
 }
 
 impl Row {
-    /// How far it is off, as the tolerance counts.
+    /// Returns the error, relative or absolute as the tolerance is.
     pub fn error(&self) -> f64 {
-        let off = (self.computed - self.reference).abs();
+        let difference = (self.computed - self.reference).abs();
         match self.tolerance {
-            Tolerance::Relative(_) => off / self.reference.abs(),
-            Tolerance::Absolute(_) => off,
+            Tolerance::Relative(_) => difference / self.reference.abs(),
+            Tolerance::Absolute(_) => difference,
         }
     }
 
-    /// Whether it is near enough. Not a number never is.
+    /// Returns whether the error is within the tolerance; false for NaN.
     pub fn passes(&self) -> bool {
         let (Tolerance::Relative(most) | Tolerance::Absolute(most)) = self.tolerance;
         self.error() <= most
@@ -68,7 +68,7 @@ const COLUMNS: [&str; 8] = [
     "source",
 ];
 
-/// The numbers of a row, in the columns' order.
+/// Returns the cells of a row, in the order of the columns.
 fn cells(row: &Row) -> [String; 8] {
     [
         row.case.clone(),
@@ -78,14 +78,14 @@ fn cells(row: &Row) -> [String; 8] {
         short(row.error()),
         row.tolerance.text(),
         if row.passes() { "ok" } else { "FAILED" }.into(),
-        match &row.trouble {
-            Some(trouble) => format!("{} ({trouble})", row.source),
+        match &row.failure {
+            Some(failure) => format!("{} ({failure})", row.source),
             None => row.source.clone(),
         },
     ]
 }
 
-/// Eight digits, as a table has them.
+/// Formats a number with eight digits.
 fn long(x: f64) -> String {
     if x == 0.0 {
         "0".into()
@@ -105,7 +105,7 @@ fn short(x: f64) -> String {
     }
 }
 
-/// The rows in columns, for a terminal.
+/// Returns the rows as a table in aligned columns, for a terminal.
 pub fn in_columns(rows: &[Row]) -> String {
     let cells: Vec<[String; 8]> = std::iter::once(COLUMNS.map(String::from))
         .chain(rows.iter().map(cells))
@@ -119,7 +119,7 @@ pub fn in_columns(rows: &[Row]) -> String {
     for (at, row) in cells.iter().enumerate() {
         let mut line = String::new();
         for (i, cell) in row.iter().enumerate() {
-            // A case is named once.
+            // A case is written in its first row only.
             let cell = if i == 0 && at > 0 && cell == case {
                 ""
             } else {
@@ -138,7 +138,7 @@ pub fn in_columns(rows: &[Row]) -> String {
     text
 }
 
-/// The rows as a table of Markdown.
+/// Returns the rows as a table of Markdown.
 pub fn in_markdown(rows: &[Row]) -> String {
     let line = |cells: [String; 8]| {
         format!(
@@ -166,12 +166,12 @@ mod tests {
             reference: 2.0,
             source: "Lamé".into(),
             tolerance,
-            trouble: None,
+            failure: None,
         }
     }
 
     #[test]
-    fn a_row_passes_within_its_tolerance_and_never_without_a_number() {
+    fn a_row_passes_within_its_tolerance_and_never_with_nan() {
         assert!(row(2.001, Tolerance::Relative(1e-3)).passes());
         assert!(!row(2.003, Tolerance::Relative(1e-3)).passes());
         assert!(row(2.003, Tolerance::Absolute(4e-3)).passes());
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_stand_under_each_other() {
+    fn columns_are_aligned() {
         let rows = [
             row(2.0, Tolerance::Relative(1e-3)),
             row(1.5, Tolerance::Absolute(1e-3)),

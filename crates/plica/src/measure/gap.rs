@@ -1,11 +1,11 @@
-//! How near a wall comes to itself.
+//! Smallest distance of a wall from itself.
 
 use super::Wall;
 
 impl Wall {
-    /// The smallest distance between two of its points that are at least `apart` from each other along the
-    /// wall, or between its ends if it is shorter than that; 0 if the wall crosses itself anywhere.
-    pub fn gap(&self, apart: f64) -> f64 {
+    /// Returns the smallest distance between two points that are at least `min_arc_length` apart along the
+    /// wall, or between its ends if the wall is shorter than that; 0 if the wall crosses itself.
+    pub fn gap(&self, min_arc_length: f64) -> f64 {
         let points = &self.points;
         let [first, .., last] = points[..] else {
             return 0.0;
@@ -26,18 +26,18 @@ impl Wall {
             let mut j = i + 2;
             while j < points.len() {
                 let far = distance(points[i], points[j]);
-                let meet = i + 1 < points.len()
+                let crosses = i + 1 < points.len()
                     && j + 1 < points.len()
                     && cross([points[i], points[i + 1]], [points[j], points[j + 1]]);
-                if meet {
+                if crosses {
                     return 0.0;
                 }
-                if along[j] - along[i] >= apart {
+                if along[j] - along[i] >= min_arc_length {
                     gap = gap.min(far);
                 }
-                // No nearer than this many points on, nor crossing before.
-                let room = far - gap.max(2.0 * longest);
-                j += 1 + (room / longest).max(0.0) as usize;
+                // Points move at most `longest` per index, so none of the skipped ones is nearer or crosses.
+                let margin = far - gap.max(2.0 * longest);
+                j += 1 + (margin / longest).max(0.0) as usize;
             }
         }
         if gap.is_finite() {
@@ -48,16 +48,17 @@ impl Wall {
     }
 }
 
-type Place = (f64, f64);
+/// A point (z, ρ).
+type Point = (f64, f64);
 
-fn distance(a: Place, b: Place) -> f64 {
+fn distance(a: Point, b: Point) -> f64 {
     (a.0 - b.0).hypot(a.1 - b.1)
 }
 
-/// Whether two straight pieces have a point in common; pieces of one line do not count.
-fn cross([a, b]: [Place; 2], [c, d]: [Place; 2]) -> bool {
-    let turn = |a: Place, b: Place, c: Place| (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0);
-    let sides = |a: Place, b: Place, c: Place, d: Place| turn(a, b, c) * turn(a, b, d) < 0.0;
+/// Returns whether two straight segments intersect; collinear segments do not.
+fn cross([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
+    let turn = |a: Point, b: Point, c: Point| (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0);
+    let sides = |a: Point, b: Point, c: Point, d: Point| turn(a, b, c) * turn(a, b, d) < 0.0;
     sides(a, b, c, d) && sides(c, d, a, b)
 }
 
@@ -65,7 +66,7 @@ fn cross([a, b]: [Place; 2], [c, d]: [Place; 2]) -> bool {
 mod tests {
     use super::*;
 
-    fn wall(points: Vec<Place>) -> Wall {
+    fn wall(points: Vec<Point>) -> Wall {
         Wall {
             angle: 0.0,
             reference_z: vec![0.0; points.len()],
@@ -73,8 +74,8 @@ mod tests {
         }
     }
 
-    /// Points along straight lines between corners.
-    fn through(corners: &[Place]) -> Wall {
+    /// Returns a wall through 100 points on each straight line between corners.
+    fn through(corners: &[Point]) -> Wall {
         let lines = corners.windows(2).flat_map(|ends| {
             let [(a, b), (c, d)] = [ends[0], ends[1]];
             (0..100).map(move |i| {
@@ -86,21 +87,20 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_wall_is_as_near_to_itself_as_is_asked() {
+    fn the_gap_of_a_straight_wall_is_the_least_arc_length() {
         let gap = through(&[(0.0, 0.5), (3.0, 0.5)]).gap(0.06);
         assert!((0.06..0.1).contains(&gap), "{gap}");
     }
 
     #[test]
-    fn a_wall_that_is_shorter_has_the_distance_of_its_ends() {
+    fn the_gap_of_a_short_wall_is_the_distance_of_its_ends() {
         let short = wall(vec![(0.0, 0.5), (0.02, 0.5), (0.04, 0.47)]);
         assert!((short.gap(0.06) - 0.05).abs() < 1e-12);
         assert_eq!(wall(vec![(0.1, 0.5); 3]).gap(0.06), 0.0);
     }
 
     #[test]
-    fn a_fold_is_as_near_to_itself_as_it_is_wide() {
-        // Runs back 0.02 below where it came.
+    fn the_gap_of_a_fold_is_its_width() {
         let fold = through(&[
             (0.0, 0.5),
             (1.0, 0.5),
@@ -117,7 +117,7 @@ mod tests {
     fn a_wall_that_crosses_itself_has_no_gap() {
         let fold = through(&[(0.0, 0.5), (1.0, 0.5), (1.0, 0.4), (0.7, 0.6), (0.7, 0.7)]);
         assert_eq!(fold.gap(0.06), 0.0);
-        // However short the loop is.
+        // Also in a loop of three points.
         let loop_ = through(&[
             (0.0, 0.5),
             (1.0, 0.5),
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pair_of_points_would_say_the_same() {
+    fn the_gap_equals_that_of_all_pairs_of_points() {
         let mut fold = through(&[(0.0, 0.5), (1.0, 0.45), (0.6, 0.3), (1.4, 0.25), (3.0, 0.5)]);
         for (i, p) in fold.points.iter_mut().enumerate() {
             p.1 += 1e-3 * (i as f64 * 0.7).sin();

@@ -1,42 +1,42 @@
-//! Meridians of a state, in planes that turn with the tube; and how far it is from axisymmetric.
+//! Meridians of a state in planes that rotate with the tube, and the asymmetry of the state.
 
 use super::{Face, Wall};
 use crate::assembly::{Point, SplineTube};
 use crate::tube::{Load, Tube};
 use std::f64::consts::{PI, TAU};
 
-/// Meridians that are looked at where they differ: harmonics up to 7 of the sector are told apart.
-pub(super) const MERIDIANS: usize = 16;
+/// Meridians sampled where they differ, which resolve the harmonics up to 7 of the sector.
+const MERIDIANS: usize = 16;
 
-/// Departure, in D, up to which a tube counts as axisymmetric: what solvers leave of nothing.
-const ROUND: f64 = 1e-9;
+/// Amplitude, in D, up to which a tube counts as axisymmetric; solvers leave errors of this size.
+const AXISYMMETRIC: f64 = 1e-9;
 
-/// An angle, in radians, below which what parts a crest from half a turn is rounding.
-const SAME_SIDE: f64 = 1e-4;
+/// Angle, in radians, below which the deviation of a crest from half a turn is rounding.
+const ROUNDING: f64 = 1e-4;
 
-/// A state, and where its meridians have turned to.
+/// A state whose meridians are evaluated.
 pub struct Meridians<'a> {
     tube: &'a SplineTube,
     load: &'a Load,
     u: &'a [f64],
-    /// Where meridians may differ, the axisymmetric part of the state: its tube and its unknowns.
+    /// Axisymmetric part of the state, as a tube of one ring and its unknowns; none if all meridians are the same.
     mean: Option<(SplineTube, Vec<f64>)>,
 }
 
-/// How far a state is from axisymmetric: the largest wave around its outer face.
+/// Deviation of a state from axisymmetry: the largest wave around its outer face.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Asymmetry {
-    /// Amplitude of the wave's displacement along the axis and of the radius, together; in D.
+    /// Amplitude √(aᶻ² + aᵨ²) of its axial and radial parts, in D.
     pub amplitude: f64,
-    /// Its waves around the tube, at least 1; 0 if the tube is axisymmetric.
+    /// Circumferential mode n of the wave, at least 1; 0 if the tube is axisymmetric.
     pub harmonic: usize,
     /// Reference angle of a crest, in radians, from −π/n to π/n.
     pub crest: f64,
 }
 
 impl Asymmetry {
-    /// Reference angles of a crest and of the trough beside it: both sides of a tube that leans,
-    /// the widest and the narrowest meridian of an oval one.
+    /// Returns the reference angles of a crest and of the next trough: the two sides of a tilted tube, or the widest
+    /// and the narrowest meridian of an oval one.
     pub fn crest_and_trough(&self) -> [f64; 2] {
         [
             self.crest,
@@ -46,7 +46,7 @@ impl Asymmetry {
 }
 
 impl<'a> Meridians<'a> {
-    /// The meridians of a state.
+    /// Prepares the meridians of a state.
     pub fn of(tube: &'a SplineTube, load: &'a Load, u: &'a [f64]) -> Self {
         let rings = tube.sector.rings;
         let mean = (rings > 1).then(|| {
@@ -62,58 +62,58 @@ impl<'a> Meridians<'a> {
         }
     }
 
-    /// Meridians of a face at reference angles, through points at reference positions along the tube.
+    /// Returns the meridians of a face at reference angles, each through points at axial reference positions.
     pub fn walls(&self, face: Face, angles: &[f64], reference_z: &[f64]) -> Vec<Wall> {
         let radius = match face {
             Face::Outer => Tube::OUTER_RADIUS,
             Face::Inner => self.tube.tube.inner_radius(),
         };
         let at = |z: f64, angle: f64| Point { z, radius, angle };
-        // exp(iω) where rings may be turned against where they were, and the radius there, now and
-        // at rest.
-        let turned = |&z: &f64| {
+        // exp(iω) of the axisymmetric part as (cos ω, sin ω), its radius, and its radius at rest.
+        let mean_at = |&z: &f64| {
             let (tube, u) = self.mean.as_ref()?;
             let sample = tube.sample(self.load, u, at(z, 0.0));
             let ([_, x, y], [_, x0, y0]) = (sample.position, sample.reference);
-            let (size, drawn) = (x.hypot(y), x0.hypot(y0));
+            let (size, size_at_rest) = (x.hypot(y), x0.hypot(y0));
             Some(if size > 0.0 {
-                [x / size, y / size, size, drawn]
+                [x / size, y / size, size, size_at_rest]
             } else {
-                [1.0, 0.0, size, drawn]
+                [1.0, 0.0, size, size_at_rest]
             })
         };
-        let turned: Vec<Option<[f64; 4]>> = reference_z.iter().map(turned).collect();
+        let means: Vec<Option<[f64; 4]>> = reference_z.iter().map(mean_at).collect();
         let wall = |&angle: &f64| {
             let (sin, cos) = angle.sin_cos();
-            let point = |(&z, turned): (&f64, &Option<[f64; 4]>)| {
+            let point = |(&z, mean): (&f64, &Option<[f64; 4]>)| {
                 let sample = self.tube.sample(self.load, self.u, at(z, angle));
                 let [z, x, y] = sample.position;
-                match turned {
+                match mean {
                     None => (z, x.hypot(y)),
-                    &Some([c, s, size, drawn]) => {
-                        // Splines draw a circle with waves of their own, which are no departure.
+                    &Some([c, s, size, size_at_rest]) => {
+                        // The waves of the spline circle itself are no asymmetry.
                         let at_rest = sample.reference[1].hypot(sample.reference[2]);
                         let radius = x * (c * cos - s * sin) + y * (s * cos + c * sin);
-                        (z, radius - size * (at_rest / drawn - 1.0))
+                        (z, radius - size * (at_rest / size_at_rest - 1.0))
                     }
                 }
             };
             Wall {
                 angle,
-                points: reference_z.iter().zip(&turned).map(point).collect(),
+                points: reference_z.iter().zip(&means).map(point).collect(),
                 reference_z: reference_z.to_vec(),
             }
         };
         angles.iter().map(wall).collect()
     }
 
-    /// The largest wave around the outer face.
+    /// Returns the largest wave around the outer face, sampled once per axial element.
     pub fn asymmetry(&self) -> Asymmetry {
         let mut largest = Asymmetry::default();
         if self.mean.is_none() {
             return largest;
         }
-        let walls = self.walls(Face::Outer, &self.around(0.0), &self.every_element());
+        let z = self.tube.axial.spread(self.tube.axial.elements() + 1);
+        let walls = self.walls(Face::Outer, &self.sample_angles(0.0), &z);
         for i in 0..walls[0].points.len() {
             for m in 1..MERIDIANS / 2 {
                 let harmonic = m * self.tube.sector.repeats() as usize;
@@ -127,8 +127,8 @@ impl<'a> Meridians<'a> {
                     } else {
                         along
                     };
-                    // What rounding makes of a crest at half a turn is at the same side always.
-                    let angle = if re < 0.0 && im < 0.0 && im > SAME_SIDE * re {
+                    // A crest at half a turn gets the angle π, also where rounding makes it −π.
+                    let angle = if re < 0.0 && im < 0.0 && im > ROUNDING * re {
                         PI
                     } else {
                         im.atan2(re)
@@ -141,16 +141,16 @@ impl<'a> Meridians<'a> {
                 }
             }
         }
-        if largest.amplitude > ROUND {
+        if largest.amplitude > AXISYMMETRIC {
             largest
         } else {
             Asymmetry::default()
         }
     }
 
-    /// Reference angles spread over the sector that repeats, from one on; one if all meridians are
-    /// the same.
-    pub(super) fn around(&self, first: f64) -> Vec<f64> {
+    /// Returns reference angles spread evenly over the sector that repeats, beginning with `first`; one angle if all
+    /// meridians are the same.
+    pub(super) fn sample_angles(&self, first: f64) -> Vec<f64> {
         if self.mean.is_none() {
             return vec![0.0];
         }
@@ -159,9 +159,9 @@ impl<'a> Meridians<'a> {
         (0..MERIDIANS).map(angle).collect()
     }
 
-    /// Walls at the angles of [`Meridians::around`], as seen from the tube's own axis: that about
-    /// which the radii of the first face have no first harmonic. (In a sector that repeats none have.)
-    pub(super) fn about_own_axis<const N: usize>(&self, faces: [&[Wall]; N]) -> [Vec<Wall>; N] {
+    /// Returns the walls at [`Meridians::sample_angles`] with radii about the tube's own axis, about which the radii
+    /// of the first face have no first harmonic. In a sector that repeats that is the axis itself.
+    pub(super) fn centred<const N: usize>(&self, faces: [&[Wall]; N]) -> [Vec<Wall>; N] {
         let mut centred = faces.map(<[Wall]>::to_vec);
         if self.mean.is_none() || self.tube.sector.repeats() > 1.0 {
             return centred;
@@ -176,27 +176,23 @@ impl<'a> Meridians<'a> {
         centred
     }
 
-    /// Smallest width across a face, whose meridians are those at the angles of [`Meridians::around`].
-    pub(super) fn narrowest_across(&self, walls: &[Wall]) -> f64 {
-        // Half a turn on is a meridian of the same kind: half a sector on if an odd number of them makes the tube.
+    /// Returns the smallest width of a face, from its meridians at [`Meridians::sample_angles`].
+    pub(super) fn min_width(&self, walls: &[Wall]) -> f64 {
+        // With an odd number of sectors the opposite meridian is half a sector further, with an even number it repeats
+        // this one.
         let odd = self.mean.is_some() && self.tube.sector.repeats() % 2.0 == 1.0;
-        let on = if odd { walls.len() / 2 } else { 0 };
-        let across = |(i, wall): (usize, &Wall)| {
-            let opposite = &walls[(i + on) % walls.len()];
+        let offset = if odd { walls.len() / 2 } else { 0 };
+        let width = |(i, wall): (usize, &Wall)| {
+            let opposite = &walls[(i + offset) % walls.len()];
             let pairs = wall.points.iter().zip(&opposite.points);
             pairs.fold(f64::INFINITY, |least, (a, b)| least.min(a.1 + b.1))
         };
-        let widths = walls.iter().enumerate().map(across);
+        let widths = walls.iter().enumerate().map(width);
         widths.fold(f64::INFINITY, f64::min)
-    }
-
-    /// A point per element along the tube.
-    fn every_element(&self) -> Vec<f64> {
-        self.tube.axial.spread(self.tube.axial.elements() + 1)
     }
 }
 
-/// (a, b) of the wave a cos nφ + b sin nφ in what evenly spread meridians hold.
+/// Returns the Fourier coefficients (a, b) of a cos nφ + b sin nφ of a quantity of evenly spread meridians.
 fn wave(walls: &[Wall], harmonic: usize, of: impl Fn(&Wall) -> f64) -> (f64, f64) {
     let scale = 2.0 / walls.len() as f64;
     walls.iter().fold((0.0, 0.0), |(a, b), wall| {

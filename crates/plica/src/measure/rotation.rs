@@ -1,37 +1,38 @@
-//! How the wall beside a contraction turns, and about what.
+//! Rotation of the flanks of a contraction.
 
 use super::{Side, Wall};
 use crate::tube::Tube;
 
-/// Parts of the depth between which a flank is looked at: its straight part.
+/// Fractions of the depth at the ends of a flank.
 const FLANK: [f64; 2] = [0.25, 0.75];
 
-/// A flank of a narrowed tube: the straight line through the wall on one side of its narrowest place, where it is a
-/// quarter and three quarters of the depth below its radius at rest.
+/// Flank of a narrowed tube: the straight line through the two points on one side of the narrowest point where the
+/// wall is narrowed by a quarter and three quarters of the depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flank {
-    /// The middle of its two ends, (z, ρ).
+    /// Midpoint (z, ρ) of its two ends.
     pub middle: (f64, f64),
-    /// How steeply it leads inwards, seen from its own shoulder: 0° along the tube, 90° straight in, past 90° where it
+    /// Angle to the axis, measured from its own shoulder inwards: 0° along the tube, 90° radial, above 90° where it
     /// overhangs.
     pub angle_deg: f64,
+    /// 1 on the colon side, −1 on the ileum side.
     side: f64,
 }
 
-/// What a flank turns about from state to state.
+/// Rotation of a flank over several states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
-    /// The centre: the place that has the least squared distance from all the lines, (z, ρ).
+    /// Centre (z, ρ): the point with the least squared distance from all the lines.
     pub centre: (f64, f64),
-    /// How far the flank turns from the first state to the last, in degrees; positive if it gets steeper.
-    pub turned_deg: f64,
-    /// How far the lines pass from the centre, at most: 0 if the flank does nothing but turn about it.
-    pub off: f64,
+    /// Rotation from the first state to the last, in degrees; positive if the flank gets steeper.
+    pub angle_deg: f64,
+    /// Largest distance of a line from the centre, in D: 0 for a pure rotation.
+    pub max_distance: f64,
 }
 
 impl Flank {
-    /// The flank of a wall towards an end; none if the wall is nowhere narrower than at rest, or the flank has no such
-    /// places.
+    /// Returns the flank of a wall on one side; none if the wall is nowhere narrower than at rest, or does not return
+    /// to a quarter of the depth on that side.
     pub fn of(wall: &Wall, side: Side) -> Option<Self> {
         let points = &wall.points;
         let narrowest = (0..points.len()).min_by(|&a, &b| points[a].1.total_cmp(&points[b].1))?;
@@ -39,15 +40,14 @@ impl Flank {
         if depth <= 0.0 {
             return None;
         }
-        // Out of the narrowest place towards the end.
-        let outwards: Vec<(f64, f64)> = match side {
+        let half: Vec<(f64, f64)> = match side {
             Side::Colon => points[..=narrowest].iter().rev().copied().collect(),
             Side::Ileum => points[narrowest..].to_vec(),
             Side::None => return None,
         };
         let crossing = |part: f64| {
             let radius = Tube::OUTER_RADIUS - part * depth;
-            let pair = outwards.windows(2).find(|p| p[1].1 >= radius)?;
+            let pair = half.windows(2).find(|p| p[1].1 >= radius)?;
             let [(z0, r0), (z1, r1)] = [pair[0], pair[1]];
             Some((z0 + (z1 - z0) * (radius - r0) / (r1 - r0), radius))
         };
@@ -55,54 +55,57 @@ impl Flank {
         let [Some(outer), Some(inner)] = ends else {
             return None;
         };
-        let along = if side == Side::Colon { 1.0 } else { -1.0 };
+        let sign = if side == Side::Colon { 1.0 } else { -1.0 };
         Some(Self {
             middle: (0.5 * (outer.0 + inner.0), 0.5 * (outer.1 + inner.1)),
             angle_deg: (outer.1 - inner.1)
-                .atan2(along * (inner.0 - outer.0))
+                .atan2(sign * (inner.0 - outer.0))
                 .to_degrees(),
-            side: along,
+            side: sign,
         })
     }
 
-    /// How far a place lies to one side of its line.
-    fn distance(&self, (z, r): (f64, f64)) -> f64 {
+    /// Returns the unit normal (z, ρ) of its line, whose direction is (side · cos, −sin).
+    fn normal(&self) -> (f64, f64) {
         let (sin, cos) = self.angle_deg.to_radians().sin_cos();
-        // The line leads along (side · cos, −sin).
-        let (across_z, across_r) = (sin, self.side * cos);
-        across_z * (z - self.middle.0) + across_r * (r - self.middle.1)
+        (sin, self.side * cos)
+    }
+
+    /// Returns the signed distance of a point from its line.
+    fn distance(&self, (z, r): (f64, f64)) -> f64 {
+        let (nz, nr) = self.normal();
+        nz * (z - self.middle.0) + nr * (r - self.middle.1)
     }
 }
 
 impl Rotation {
-    /// The rotation of a flank through states of a tube, in their order, from its lines in each. None if there are fewer
-    /// than two, if a wall has no such flank, or if the lines are parallel.
+    /// Returns the rotation of a flank over the walls of successive states; none for fewer than two walls, if a wall has
+    /// no such flank, or if the lines are parallel.
     pub fn of(walls: &[&Wall], side: Side) -> Option<Self> {
         let flanks: Option<Vec<Flank>> = walls.iter().map(|wall| Flank::of(wall, side)).collect();
         let flanks = flanks?;
         let [first, .., last] = flanks.as_slice() else {
             return None;
         };
-        // Least squares: Σ n (n · c − n · m) = 0 over the lines' normals n and middles m.
+        // Least squares: Σ n (n · c − n · m) = 0 over the lines' unit normals n and midpoints m.
         let (mut zz, mut zr, mut rr, mut z, mut r) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for flank in &flanks {
-            let (sin, cos) = flank.angle_deg.to_radians().sin_cos();
-            let (nz, nr) = (sin, flank.side * cos);
+            let (nz, nr) = flank.normal();
             let at = nz * flank.middle.0 + nr * flank.middle.1;
             (zz, zr, rr) = (zz + nz * nz, zr + nz * nr, rr + nr * nr);
             (z, r) = (z + nz * at, r + nr * at);
         }
         let det = zz * rr - zr * zr;
-        // The sine of the angle between two lines, squared.
+        // For two lines `det` is the squared sine of the angle between them.
         if det < 1e-6 {
             return None;
         }
         let centre = ((rr * z - zr * r) / det, (zz * r - zr * z) / det);
-        let off = flanks.iter().map(|flank| flank.distance(centre).abs());
+        let distances = flanks.iter().map(|flank| flank.distance(centre).abs());
         Some(Self {
             centre,
-            turned_deg: last.angle_deg - first.angle_deg,
-            off: off.fold(0.0, f64::max),
+            angle_deg: last.angle_deg - first.angle_deg,
+            max_distance: distances.fold(0.0, f64::max),
         })
     }
 }
@@ -111,7 +114,7 @@ impl Rotation {
 mod tests {
     use super::*;
 
-    /// A notch between (a, 0.5) and (b, 0.5), 0.3 deep, whose flanks lean by angles.
+    /// Returns a notch between (a, 0.5) and (b, 0.5), 0.3 deep, with flanks at the given angles.
     fn notch(a: f64, b: f64, [colon, ileum]: [f64; 2]) -> Wall {
         let run = |angle: f64| 0.3 / angle.to_radians().tan();
         let corners = [
@@ -138,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn flanks_lean_as_they_are_drawn() {
+    fn flanks_have_the_angles_of_the_wall() {
         let wall = notch(0.5, 1.5, [60.0, 100.0]);
         let [colon, ileum] = [Side::Colon, Side::Ileum].map(|side| Flank::of(&wall, side).unwrap());
         assert!((colon.angle_deg - 60.0).abs() < 1e-9, "{colon:?}");
@@ -154,22 +157,22 @@ mod tests {
     }
 
     #[test]
-    fn a_flank_that_turns_about_a_place_has_its_centre_there() {
-        // The line of the colon flank goes through (0.7, 0.4) at every angle.
+    fn the_centre_of_a_flank_that_rotates_about_a_point_is_that_point() {
+        // The line of the colon flank passes through (0.7, 0.4) at every angle.
         let through = |angle: f64| 0.7 - 0.1 / angle.to_radians().tan();
         let walls = [55.0, 85.0, 105.0].map(|angle| notch(through(angle), 1.9, [angle, 70.0]));
         let walls: Vec<&Wall> = walls.iter().collect();
         let rotation = Rotation::of(&walls, Side::Colon).unwrap();
         assert!((rotation.centre.0 - 0.7).abs() < 1e-9, "{rotation:?}");
         assert!((rotation.centre.1 - 0.4).abs() < 1e-9);
-        assert!((rotation.turned_deg - 50.0).abs() < 1e-9 && rotation.off < 1e-9);
-        // The other flank stays as it is.
+        assert!((rotation.angle_deg - 50.0).abs() < 1e-9 && rotation.max_distance < 1e-9);
+        // The other flank does not rotate.
         assert_eq!(Rotation::of(&walls, Side::Ileum), None);
         assert_eq!(Rotation::of(&walls[..1], Side::Colon), None);
     }
 
     #[test]
-    fn the_flank_of_the_other_side_is_its_mirror_image() {
+    fn the_rotation_of_a_mirrored_wall_is_mirrored() {
         let walls = [55.0, 95.0].map(|angle| notch(0.6, 1.9, [angle, 70.0]));
         let mirrored = walls.clone().map(|wall| Wall {
             points: wall
@@ -182,17 +185,17 @@ mod tests {
         });
         let of = |walls: &[Wall; 2], side| Rotation::of(&[&walls[0], &walls[1]], side).unwrap();
         let (colon, ileum) = (of(&walls, Side::Colon), of(&mirrored, Side::Ileum));
-        assert!((colon.turned_deg - ileum.turned_deg).abs() < 1e-9);
+        assert!((colon.angle_deg - ileum.angle_deg).abs() < 1e-9);
         assert!((colon.centre.0 - (3.0 - ileum.centre.0)).abs() < 1e-9);
         assert!((colon.centre.1 - ileum.centre.1).abs() < 1e-9);
     }
 
     #[test]
-    fn a_flank_that_also_shifts_says_how_far() {
+    fn a_translation_of_the_flank_increases_the_distance_from_the_centre() {
         let walls = [(0.0, 60.0), (0.02, 80.0), (0.0, 100.0)]
             .map(|(shift, angle)| notch(0.6 + shift, 1.9, [angle, 70.0]));
         let walls: Vec<&Wall> = walls.iter().collect();
-        let off = Rotation::of(&walls, Side::Colon).unwrap().off;
-        assert!((0.005..0.02).contains(&off), "{off}");
+        let distance = Rotation::of(&walls, Side::Colon).unwrap().max_distance;
+        assert!((0.005..0.02).contains(&distance), "{distance}");
     }
 }

@@ -1,75 +1,75 @@
-//! V, U, square or invaginated?
+//! Classification of the contracting region: V, U, square, invaginated, and tubes without contraction.
 
 use super::Wall;
 use crate::tube::Tube;
+use std::fmt;
 
-/// The side a tube invaginates to.
+/// Side towards which a tube invaginates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
-    /// Toward z = 0.
+    /// Towards z = 0.
     Colon,
-    /// Toward z = L.
+    /// Towards z = L.
     Ileum,
-    /// It does not, or to both sides alike.
+    /// No overhang, or equal overhangs on both sides.
     None,
 }
 
-/// What the contracting region looks like (Okino et al. 2025, Fig. 4, name the shapes but give no
-/// measure; these thresholds are ours). V, U, square and invaginated are shapes of a tube that its
-/// circular muscles narrow; without them a tube that leaves its cylinder has
-/// swollen, in one bulge outwards, or else collapsed.
+/// Shape of the contracting region.
+///
+/// Okino et al. (2025), Fig. 4, name the first shapes without a measure; the thresholds are Plica's.
+/// V, U, square and invaginated describe a tube narrowed by its circular muscles. A tube without such a
+/// contraction that leaves its cylinder is swollen, with a single outward bulge, or else collapsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
-    /// The outer face stays within 2 % of D of the cylinder, or its circular muscles widen it.
+    /// The outer face stays within 2 % of D of the cylinder, or the circular muscles widen it.
     Straight,
-    /// Narrowed, with a pointed bottom: flatness below 0.5, that of a raised cosine.
+    /// Narrowed, with a flatness below 0.5, that of a raised cosine.
     #[serde(rename = "V")]
     V,
-    /// Narrowed, with a rounded bottom.
+    /// Narrowed, with a flatness of 0.5 or more.
     #[serde(rename = "U")]
     U,
-    /// Narrowed, with a wall steeper than 78°.
+    /// Narrowed, with a wall angle of 78° or more.
     Square,
-    /// Narrowed, with a wall that overhangs.
+    /// Narrowed, with a wall angle of 90° or more: the wall overhangs.
     Invaginated,
-    /// Wider than the cylinder by more than 2 % of D in one bulge, nowhere narrower by as much, without
-    /// a muscle that narrows it.
+    /// Not contracted, wider than the cylinder by 2 % of D or more in one bulge, and nowhere narrower by as much.
     Swollen,
-    /// Buckled out of the cylinder by more than 2 % of D without a muscle that narrows it, or the
-    /// lumen is closed.
+    /// Not contracted, and buckled out of the cylinder by 2 % of D or more; or the lumen is closed.
     Collapsed,
 }
 
 impl Shape {
-    /// Depth or bulge, in D, below which a tube counts as straight.
-    pub const LEAVES: f64 = 0.02;
-    /// Flatness that parts V from U.
-    pub const FLAT: f64 = 0.5;
+    /// Depth or bulge, in D, below which a tube is straight; also the least contraction 1 − Dmin/D.
+    pub const MIN_DEPTH: f64 = 0.02;
+    /// Flatness from which a narrowed region is a U.
+    const U_FLATNESS: f64 = 0.5;
     /// Wall angle from which a narrowed region is square, in degrees.
-    pub const STEEP_DEG: f64 = 78.0;
+    const SQUARE_ANGLE_DEG: f64 = 78.0;
 
-    /// Names the shape of a tube, from the meridian of its outer face that goes deepest, that of
-    /// its inner face, its steepest wall angle in degrees, and its diameter ratio Dmin/D.
-    pub fn of(outer: &Wall, inner: &Wall, steepest_angle_deg: f64, diameter_ratio: f64) -> Self {
+    /// Classifies a tube by its narrowest outer meridian, the inner meridian there, its largest wall angle in degrees,
+    /// and its diameter ratio Dmin/D.
+    pub fn of(outer: &Wall, inner: &Wall, wall_angle_deg: f64, diameter_ratio: f64) -> Self {
         let depth = Tube::OUTER_RADIUS - outer.narrowest().1;
         let widest = outer.points.iter().map(|p| p.1).fold(0.0, f64::max);
         let bulge = widest - Tube::OUTER_RADIUS;
-        let contracted = diameter_ratio <= 1.0 - Self::LEAVES;
+        let contracted = diameter_ratio <= 1.0 - Self::MIN_DEPTH;
         if inner.narrowest().1 <= 0.0 {
             Self::Collapsed
-        } else if depth.max(bulge) < Self::LEAVES || diameter_ratio > 1.0 {
+        } else if depth.max(bulge) < Self::MIN_DEPTH || diameter_ratio > 1.0 {
             Self::Straight
-        } else if !contracted && depth < Self::LEAVES && bulges_once(outer) {
+        } else if !contracted && depth < Self::MIN_DEPTH && bulges_once(outer) {
             Self::Swollen
         } else if !contracted {
             Self::Collapsed
-        } else if steepest_angle_deg >= 90.0 {
+        } else if wall_angle_deg >= 90.0 {
             Self::Invaginated
-        } else if steepest_angle_deg >= Self::STEEP_DEG {
+        } else if wall_angle_deg >= Self::SQUARE_ANGLE_DEG {
             Self::Square
-        } else if outer.flatness() < Self::FLAT {
+        } else if outer.flatness() < Self::U_FLATNESS {
             Self::V
         } else {
             Self::U
@@ -77,34 +77,8 @@ impl Shape {
     }
 }
 
-impl std::fmt::Display for Side {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Colon => "colon",
-            Self::Ileum => "ileum",
-            Self::None => "none",
-        })
-    }
-}
-
-/// Rise of the radius after a fall, in D, from which a wall counts as rising again.
-const FALL: f64 = 1e-3;
-
-/// Whether the radius rises along the wall at most once before it falls for good.
-fn bulges_once(wall: &Wall) -> bool {
-    let (mut highest, mut lowest_since) = (f64::NEG_INFINITY, f64::INFINITY);
-    wall.points.iter().all(|&(_, r)| {
-        if r > highest {
-            (highest, lowest_since) = (r, r);
-        }
-        lowest_since = lowest_since.min(r);
-        // Once fallen from its highest it must not rise again.
-        r <= lowest_since + FALL
-    })
-}
-
-impl std::fmt::Display for Shape {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Shape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Straight => "straight",
             Self::V => "V",
@@ -117,11 +91,36 @@ impl std::fmt::Display for Shape {
     }
 }
 
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Colon => "colon",
+            Self::Ileum => "ileum",
+            Self::None => "none",
+        })
+    }
+}
+
+/// Rise of the radius after a fall, in D, from which a wall rises again.
+const MIN_RISE: f64 = 1e-3;
+
+/// Returns whether the radius rises along the wall at most once before it falls for good.
+fn bulges_once(wall: &Wall) -> bool {
+    let (mut highest, mut lowest_since) = (f64::NEG_INFINITY, f64::INFINITY);
+    wall.points.iter().all(|&(_, r)| {
+        if r > highest {
+            (highest, lowest_since) = (r, r);
+        }
+        lowest_since = lowest_since.min(r);
+        r <= lowest_since + MIN_RISE
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A wall drawn through corners (z, r).
+    /// Returns a wall through 100 points on each straight line between corners (z, r).
     fn wall(corners: &[(f64, f64)]) -> Wall {
         let mut points = vec![corners[0]];
         for w in corners.windows(2) {
@@ -140,6 +139,7 @@ mod tests {
         }
     }
 
+    /// Classifies a tube of thickness 0.06 by its outer wall.
     fn shape(corners: &[(f64, f64)], diameter_ratio: f64) -> Shape {
         let outer = wall(corners);
         let mut inner = outer.clone();
@@ -149,89 +149,128 @@ mod tests {
         Shape::of(&outer, &inner, outer.steepest_angle_deg(), diameter_ratio)
     }
 
-    fn named(corners: &[(f64, f64)]) -> (Shape, Side) {
-        (shape(corners, 0.25), wall(corners).overhang().1)
+    /// Returns a notch of radius `bottom` whose corners have the given axial positions.
+    fn notch([a, b, c, d]: [f64; 4], bottom: f64) -> [(f64, f64); 6] {
+        [
+            (0.0, 0.5),
+            (a, 0.5),
+            (b, bottom),
+            (c, bottom),
+            (d, 0.5),
+            (3.0, 0.5),
+        ]
     }
 
     #[test]
-    fn synthetic_walls_are_named() {
-        let v = [(0.0, 0.5), (0.5, 0.5), (0.75, 0.2), (1.0, 0.5), (3.0, 0.5)];
-        assert_eq!(named(&v), (Shape::V, Side::None));
-        let u = [
-            (0.0, 0.5),
-            (0.5, 0.5),
-            (0.6, 0.2),
-            (0.9, 0.2),
-            (1.0, 0.5),
-            (3.0, 0.5),
-        ];
-        assert_eq!(named(&u), (Shape::U, Side::None));
-        let square = [
-            (0.0, 0.5),
-            (0.5, 0.5),
-            (0.53, 0.2),
-            (0.97, 0.2),
-            (1.0, 0.5),
-            (3.0, 0.5),
-        ];
-        assert_eq!(named(&square), (Shape::Square, Side::None));
-        let colon = [
-            (0.0, 0.5),
-            (0.5, 0.5),
-            (0.4, 0.2),
-            (0.9, 0.2),
-            (1.0, 0.5),
-            (3.0, 0.5),
-        ];
-        assert_eq!(named(&colon), (Shape::Invaginated, Side::Colon));
-        let ileum = [
-            (0.0, 0.5),
-            (0.5, 0.5),
-            (0.6, 0.2),
-            (1.1, 0.2),
-            (1.0, 0.5),
-            (3.0, 0.5),
-        ];
-        assert_eq!(named(&ileum), (Shape::Invaginated, Side::Ileum));
-        assert_eq!(
-            named(&[(0.0, 0.5), (3.0, 0.5)]),
-            (Shape::Straight, Side::None)
-        );
+    fn notches_are_classified_with_their_side() {
+        for (z, expected) in [
+            ([0.5, 0.75, 0.75, 1.0], (Shape::V, Side::None)),
+            ([0.5, 0.6, 0.9, 1.0], (Shape::U, Side::None)),
+            ([0.5, 0.53, 0.97, 1.0], (Shape::Square, Side::None)),
+            ([0.5, 0.4, 0.9, 1.0], (Shape::Invaginated, Side::Colon)),
+            ([0.5, 0.6, 1.1, 1.0], (Shape::Invaginated, Side::Ileum)),
+            ([0.5, 0.4, 1.1, 1.0], (Shape::Invaginated, Side::None)),
+        ] {
+            let corners = notch(z, 0.2);
+            let found = (shape(&corners, 0.25), wall(&corners).overhang().1);
+            assert_eq!(found, expected, "{z:?}");
+        }
     }
 
     #[test]
-    fn without_a_muscle_that_narrows_it_a_tube_collapses() {
-        let buckled = [(0.0, 0.5), (0.5, 0.6), (0.4, 0.3), (1.0, 0.5), (3.0, 0.5)];
-        assert_eq!(shape(&buckled, 1.0), Shape::Collapsed);
-        assert_eq!(shape(&buckled, 0.25), Shape::Invaginated);
-        assert_eq!(
-            shape(&[(0.0, 0.5), (0.5, 0.51), (3.0, 0.5)], 1.0),
-            Shape::Straight
-        );
-        assert_eq!(
-            shape(&[(0.0, 0.5), (0.5, 0.05), (3.0, 0.5)], 0.25),
-            Shape::Collapsed
-        );
+    fn a_wall_angle_of_78_degrees_is_square_and_one_of_90_invaginated() {
+        let outer = wall(&notch([0.5, 0.75, 0.75, 1.0], 0.2));
+        let mut inner = outer.clone();
+        inner.points.iter_mut().for_each(|p| p.1 -= 0.06);
+        for (angle, expected) in [
+            (77.9, Shape::V),
+            (78.0, Shape::Square),
+            (89.9, Shape::Square),
+            (90.0, Shape::Invaginated),
+        ] {
+            let found = Shape::of(&outer, &inner, angle, 0.25);
+            assert_eq!(found, expected, "{angle}");
+        }
     }
 
     #[test]
-    fn a_tube_that_is_wider_in_one_bulge_is_swollen() {
+    fn a_flatness_of_one_half_separates_v_from_u() {
+        // Flanks of axial length 0.4 and a flat bottom w have the flatness (w + 0.2)/(w + 0.6).
+        for (w, expected) in [(0.17, Shape::V), (0.23, Shape::U)] {
+            let corners = notch([0.5, 0.9, 0.9 + w, 1.3 + w], 0.2);
+            let flatness = wall(&corners).flatness();
+            assert!((flatness - (w + 0.2) / (w + 0.6)).abs() < 0.01);
+            assert_eq!(shape(&corners, 0.25), expected, "{flatness}");
+        }
+    }
+
+    #[test]
+    fn a_depth_of_two_percent_is_no_longer_straight() {
+        for (depth, expected) in [(0.0199, Shape::Straight), (0.0201, Shape::V)] {
+            let corners = notch([0.5, 0.75, 0.75, 1.0], 0.5 - depth);
+            assert_eq!(shape(&corners, 0.25), expected, "{depth}");
+        }
+        for (bulge, expected) in [(0.0199, Shape::Straight), (0.0201, Shape::Swollen)] {
+            let corners = notch([0.5, 0.75, 0.75, 1.0], 0.5 + bulge);
+            assert_eq!(shape(&corners, 1.0), expected, "{bulge}");
+        }
+    }
+
+    #[test]
+    fn only_a_contraction_of_two_percent_narrows_a_tube() {
+        let narrowed = notch([0.5, 0.75, 0.75, 1.0], 0.2);
+        for (diameter_ratio, expected) in [
+            (0.9799, Shape::V),
+            (0.9801, Shape::Collapsed),
+            (1.0, Shape::Collapsed),
+            (1.0001, Shape::Straight),
+        ] {
+            let found = shape(&narrowed, diameter_ratio);
+            assert_eq!(found, expected, "{diameter_ratio}");
+        }
+        let overhanging = notch([0.5, 0.4, 0.9, 1.0], 0.2);
+        assert_eq!(shape(&overhanging, 1.0), Shape::Collapsed);
+    }
+
+    #[test]
+    fn a_closed_lumen_is_collapsed() {
+        for (bottom, expected) in [(0.0601, Shape::V), (0.06, Shape::Collapsed)] {
+            let corners = notch([0.5, 0.95, 0.95, 1.4], bottom);
+            assert_eq!(shape(&corners, 0.25), expected, "{bottom}");
+        }
+    }
+
+    #[test]
+    fn a_tube_with_one_bulge_is_swollen_and_one_with_two_collapsed() {
         let swollen = [(0.0, 0.5), (0.5, 0.56), (1.5, 0.7), (2.5, 0.56), (3.0, 0.5)];
         assert_eq!(shape(&swollen, 1.0), Shape::Swollen);
         assert_eq!(shape(&[(0.0, 0.6), (3.0, 0.6)], 1.0), Shape::Swollen);
-        let rings = [(0.0, 0.5), (0.5, 0.56), (1.0, 0.5), (1.5, 0.56), (3.0, 0.5)];
-        assert_eq!(shape(&rings, 1.0), Shape::Collapsed);
+        for (rise, expected) in [(0.9e-3, Shape::Swollen), (1.1e-3, Shape::Collapsed)] {
+            let rings = [
+                (0.0, 0.5),
+                (0.5, 0.56),
+                (1.0, 0.53),
+                (1.5, 0.53 + rise),
+                (3.0, 0.5),
+            ];
+            assert_eq!(shape(&rings, 1.0), expected, "{rise}");
+        }
+        for (depth, expected) in [(0.0199, Shape::Swollen), (0.0201, Shape::Collapsed)] {
+            let necked = [(0.0, 0.5), (1.5, 0.6), (3.0, 0.5 - depth)];
+            assert_eq!(shape(&necked, 1.0), expected, "{depth}");
+        }
     }
 
     #[test]
-    fn overhang_is_how_far_the_wall_runs_back() {
-        let (overhang, _) =
-            wall(&[(0.0, 0.5), (0.5, 0.5), (0.4, 0.2), (0.9, 0.2), (1.0, 0.5)]).overhang();
-        assert!((overhang - 0.1).abs() < 1e-12);
+    fn overhang_is_an_axial_distance_independent_of_the_depth() {
+        for bottom in [0.4, 0.2] {
+            let (overhang, side) = wall(&notch([0.5, 0.4, 0.9, 1.0], bottom)).overhang();
+            assert!((overhang - 0.1).abs() < 1e-12 && side == Side::Colon);
+        }
     }
 
     #[test]
-    fn angles_are_those_of_the_wall() {
+    fn wall_angles_are_those_of_the_drawn_lines() {
         let angle = |z: f64, r: f64| wall(&[(0.0, 0.5), (z, 0.5 - r)]).steepest_angle_deg();
         assert!((angle(0.3, 0.3) - 45.0).abs() < 1e-9);
         assert!((angle(-0.3, 0.3) - 135.0).abs() < 1e-9);

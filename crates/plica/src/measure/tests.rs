@@ -1,11 +1,11 @@
-//! Tilted, shifted, oval and twisted tubes, whose measures are known.
+//! Measures of tilted, shifted, oval and twisted tubes with known values.
 
 use super::{Asymmetry, Measures, Meridians, Side};
 use crate::assembly::SplineTube;
 use crate::material::{Material, NeoHookean};
 use crate::tube::{Mesh, Support, Tube};
 
-/// A long tube of `rings` rings of 24, which draw a circle to 1.2e-5.
+/// Returns a tube with 24 control points around, which approximate a circle to 1.2e-5.
 fn tube(rings: usize) -> SplineTube {
     let tube = Tube {
         length: 3.0,
@@ -26,8 +26,8 @@ fn tube(rings: usize) -> SplineTube {
     SplineTube::new(&tube, &mesh, rings)
 }
 
-/// Unknowns that take every control point at (z, x, y) where a map says.
-fn moved(tube: &SplineTube, to: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
+/// Returns the unknowns that move every control point (z, x, y) to `to([z, x, y])`.
+fn mapped(tube: &SplineTube, to: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
     tube.control_values_from(|z, r, ring| {
         let r = r * tube.circle.control_radius;
         let (sin, cos) = tube.sector.ring_angle(ring).sin_cos();
@@ -41,7 +41,7 @@ fn measures(tube: &SplineTube, u: &[f64]) -> Measures {
     Measures::of(tube, &tube.tube.rest(), u)
 }
 
-/// A narrow place in the middle, and a turn about the axis that grows along it.
+/// Narrows the middle, and twists the tube about its axis.
 fn narrow([z, x, y]: [f64; 3]) -> [f64; 3] {
     let narrow = 1.0 - 0.6 * (-(z - 1.5_f64).powi(2) / 0.1).exp();
     let (sin, cos) = (0.5 * z).sin_cos();
@@ -53,11 +53,11 @@ fn narrow([z, x, y]: [f64; 3]) -> [f64; 3] {
 }
 
 #[test]
-fn a_tube_that_is_round_has_the_measures_of_one_ring_though_it_twists() {
+fn a_twisted_axisymmetric_tube_of_all_rings_has_the_measures_of_one_ring() {
     let (one, whole) = (tube(1), tube(24));
     let (a, b) = (
-        measures(&one, &moved(&one, narrow)),
-        measures(&whole, &moved(&whole, narrow)),
+        measures(&one, &mapped(&one, narrow)),
+        measures(&whole, &mapped(&whole, narrow)),
     );
     assert_eq!(b.asymmetry, Asymmetry::default());
     assert!((a.outer_radius_min - b.outer_radius_min).abs() < 1e-5);
@@ -67,11 +67,11 @@ fn a_tube_that_is_round_has_the_measures_of_one_ring_though_it_twists() {
 }
 
 #[test]
-fn a_shift_that_takes_the_axis_out_of_the_lumen_bends_no_wall_and_narrows_nothing() {
-    // Half a diameter sideways for every diameter along: the meridians lean by atan ½.
+fn a_shear_that_moves_the_axis_out_of_the_lumen_keeps_radius_and_lumen() {
+    // The meridians have the angle atan ½.
     let whole = tube(24);
     let (sin, cos) = 0.7_f64.sin_cos();
-    let u = moved(&whole, |[z, x, y]| {
+    let u = mapped(&whole, |[z, x, y]| {
         [z, x + 0.5 * z * cos, y + 0.5 * z * sin]
     });
     let found = measures(&whole, &u);
@@ -88,45 +88,45 @@ fn a_shift_that_takes_the_axis_out_of_the_lumen_bends_no_wall_and_narrows_nothin
     assert!(off.abs() < 2e-5, "{off}");
     assert_eq!((found.overhang, found.side), (0.0, Side::None));
     assert!((found.lumen - 0.88).abs() < 4e-5, "{}", found.lumen);
-    // The meridian on the lee side goes through the axis as straight as it came.
+    // The meridian at the trough passes straight through the axis.
     let rest = whole.tube.rest();
     let meridians = Meridians::of(&whole, &rest, &u);
-    let lee = found.asymmetry.crest_and_trough()[1];
-    let wall = &meridians.walls(super::Face::Outer, &[lee], &[0.5, 2.5])[0];
+    let trough = found.asymmetry.crest_and_trough()[1];
+    let wall = &meridians.walls(super::Face::Outer, &[trough], &[0.5, 2.5])[0];
     for &(z, radius) in &wall.points {
         assert!((radius - (0.5 - 0.5 * z)).abs() < 2e-5, "{wall:?}");
     }
 }
 
 #[test]
-fn a_tube_turned_about_an_axis_across_it_leans_by_that_angle() {
+fn a_rotation_about_a_transverse_axis_is_a_mode_of_one_wave() {
     let (sin, cos) = 0.3_f64.sin_cos();
     let whole = tube(24);
-    let u = moved(&whole, |[z, x, y]| {
+    let u = mapped(&whole, |[z, x, y]| {
         [z * cos - x * sin, z * sin + x * cos, y]
     });
     let found = measures(&whole, &u);
     assert_eq!(found.asymmetry.harmonic, 1);
     assert!(found.asymmetry.crest.abs() < 1e-6);
-    // At its far end: 3 sin β sideways, ½ sin β along.
+    // At the far end the amplitudes are 3 sin β across and ½ sin β along the axis.
     let expected = 3.0_f64.hypot(0.5) * sin;
     assert!((found.asymmetry.amplitude - expected).abs() < 1e-5);
     assert!((found.max_wall_angle_deg - 0.3_f64.to_degrees()).abs() < 1e-4);
 }
 
 #[test]
-fn an_oval_is_as_narrow_as_its_short_axis_wherever_that_points() {
+fn the_smallest_radius_of_an_oval_is_its_short_axis_at_any_phase() {
     let whole = tube(24);
     for phase in [0.0, 0.4, -1.2] {
-        // Longer along the phase by a fifth, shorter across.
-        let u = moved(&whole, |at| {
+        // Longer by a fifth in the direction of the phase, shorter by a fifth across.
+        let u = mapped(&whole, |at| {
             let [z, x, y] = narrow(at);
             let turned = phase + 0.5 * z;
             let (s, c) = turned.sin_cos();
             let (long, short) = (1.2 * (x * c + y * s), 0.8 * (y * c - x * s));
             [z, long * c - short * s, long * s + short * c]
         });
-        let round = measures(&whole, &moved(&whole, narrow));
+        let round = measures(&whole, &mapped(&whole, narrow));
         let found = measures(&whole, &u);
         let expected = 0.8 * round.outer_radius_min;
         assert_eq!(found.asymmetry.harmonic, 2);
@@ -145,21 +145,20 @@ fn an_oval_is_as_narrow_as_its_short_axis_wherever_that_points() {
 }
 
 #[test]
-fn departures_of_a_fold_are_its_harmonics() {
-    let fold = tube(8);
-    let u = moved(&fold, |[z, x, y]| {
+fn the_asymmetry_of_a_sector_is_a_multiple_of_its_repeats() {
+    let sector = tube(8);
+    let u = mapped(&sector, |[z, x, y]| {
         let scale = 1.0 + 0.02 * (3.0 * y.atan2(x)).cos();
         [z, scale * x, scale * y]
     });
-    let measured = measures(&fold, &u);
-    // A crest lies across from a trough: nowhere is it narrower than a round one, but for what waves of the second
-    // order and a polygon of 24 make of it.
+    let measured = measures(&sector, &u);
+    // A crest is opposite a trough, so the width is that of a circle up to second order.
     assert!((measured.lumen / 0.88 - 1.0).abs() < 1e-3, "{measured:?}");
     let found = measured.asymmetry;
     assert_eq!(found.harmonic, 3);
-    // e^{iφ} cos 3φ: waves of four turns and of two, flattened as the splines draw them.
-    let drawn = |turns| fold.sector.control_wave(1) / fold.sector.control_wave(turns);
-    let expected = 0.01 * 0.5 * (drawn(4) + drawn(2));
+    // e^{iφ} cos 3φ is the sum of waves 4 and 2, each scaled by the splines.
+    let scale = |turns| sector.sector.control_wave(1) / sector.sector.control_wave(turns);
+    let expected = 0.01 * 0.5 * (scale(4) + scale(2));
     let off = found.amplitude / expected - 1.0;
     assert!(
         off.abs() < 0.01 && found.crest.abs() < 1e-6,
@@ -168,10 +167,10 @@ fn departures_of_a_fold_are_its_harmonics() {
 }
 
 #[test]
-fn walls_that_have_passed_through_each_other_leave_a_lumen_of_negative_width() {
+fn walls_that_have_passed_through_each_other_have_a_negative_lumen() {
     let whole = tube(24);
     let flat = |short: f64| {
-        let u = moved(&whole, |[z, x, y]| [z, 1.4 * x, short * y]);
+        let u = mapped(&whole, |[z, x, y]| [z, 1.4 * x, short * y]);
         measures(&whole, &u).lumen
     };
     let (open, crossed) = (flat(0.1), flat(-0.1));

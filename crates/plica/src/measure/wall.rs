@@ -1,4 +1,4 @@
-//! One meridian of the wall, as a curve in (z, ρ).
+//! A meridian of one face of the wall, as a curve in (z, ρ).
 
 use super::Side;
 use crate::tube::Tube;
@@ -17,20 +17,20 @@ pub enum Face {
 pub struct Wall {
     /// Reference angle of the meridian, in radians.
     pub angle: f64,
-    /// Reference position of its points along the tube, in D.
+    /// Axial reference positions of its points, in D.
     pub reference_z: Vec<f64>,
-    /// Current (z, ρ) of its points, in D, colon to ileum. ρ is negative past the axis.
+    /// Current positions (z, ρ) of its points, in D, colon to ileum; ρ is negative past the axis.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Wall {
-    /// The point that lies deepest: (z, ρ).
+    /// Returns the point (z, ρ) with the smallest radius; NaN if the wall has no points.
     pub fn narrowest(&self) -> (f64, f64) {
         let nearest = self.points.iter().min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.copied().unwrap_or((f64::NAN, f64::NAN))
     }
 
-    /// The steepest angle to the axis, in degrees, from 0 to 180.
+    /// Returns the largest wall angle, in degrees, from 0 to 180.
     pub fn steepest_angle_deg(&self) -> f64 {
         let angle = |w: &[(f64, f64)]| (w[1].1 - w[0].1).abs().atan2(w[1].0 - w[0].0);
         self.points
@@ -40,7 +40,7 @@ impl Wall {
             .to_degrees()
     }
 
-    /// How far the wall runs back along the axis, and on which side it does so more.
+    /// Returns the overhang, an axial distance in D, and the side of the larger overhang.
     pub fn overhang(&self) -> (f64, Side) {
         let narrowest = self
             .points
@@ -49,29 +49,28 @@ impl Wall {
             .min_by(|a, b| a.1.1.total_cmp(&b.1.1));
         let middle = narrowest.map_or(0, |(i, _)| i);
         let (colon, ileum) = (
-            runs_back(&self.points[..=middle]),
-            runs_back(&self.points[middle..]),
+            overhang_of(&self.points[..=middle]),
+            overhang_of(&self.points[middle..]),
         );
         let side = match colon.max(ileum) {
-            // Nowhere, or on both sides alike.
             most if most <= 0.0 || (colon - ileum).abs() < 1e-6 => Side::None,
             most if most == colon => Side::Colon,
             _ => Side::Ileum,
         };
-        (runs_back(&self.points), side)
+        (overhang_of(&self.points), side)
     }
 
-    /// Axial extent of the wall deeper than ¾ of the depth, over that deeper than ¼: ⅓ of a V with straight
-    /// flanks, ½ of a raised cosine, 1 of a square. Of a wall that is nowhere narrower than at rest it says nothing.
+    /// Returns the flatness of the narrowed region: ⅓ for a V with straight flanks, ½ for a raised cosine, 1 for a
+    /// square. It has no meaning for a wall that is nowhere narrower than at rest.
     pub fn flatness(&self) -> f64 {
         let depth = Tube::OUTER_RADIUS - self.narrowest().1;
         let extent = |part: f64| self.extent_below(Tube::OUTER_RADIUS - part * depth);
-        let (deep, wide) = (extent(0.75), extent(0.25));
-        if wide > 0.0 { deep / wide } else { 0.0 }
+        let (bottom, top) = (extent(0.75), extent(0.25));
+        if top > 0.0 { bottom / top } else { 0.0 }
     }
 
-    /// Axial extent of the part that lies deeper than a radius.
-    pub fn extent_below(&self, radius: f64) -> f64 {
+    /// Returns the axial extent of the part whose radius is at most `radius`.
+    fn extent_below(&self, radius: f64) -> f64 {
         let below = self.points.iter().filter(|p| p.1 <= radius);
         let (low, high) = below.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
             (low.min(p.0), high.max(p.0))
@@ -80,7 +79,8 @@ impl Wall {
     }
 }
 
-fn runs_back(points: &[(f64, f64)]) -> f64 {
+/// Returns the largest axial distance from a point back to a later one.
+fn overhang_of(points: &[(f64, f64)]) -> f64 {
     let (mut furthest, mut back) = (f64::NEG_INFINITY, 0.0_f64);
     for &(z, _) in points {
         furthest = furthest.max(z);

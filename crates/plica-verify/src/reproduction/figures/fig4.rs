@@ -177,7 +177,7 @@ fn walls(page: &mut Page, main: &Ran) -> Result<(), Trouble> {
         ),
         [&colon, &ileum].iter().all(|turn| {
             turn.as_ref().is_some_and(|turn| {
-                turn.most() > 10.0 && turn.rotation.off < 0.5 * main.plan.tube.thickness
+                turn.most() > 10.0 && turn.rotation.max_distance < 0.5 * main.plan.tube.thickness
             })
         }),
     );
@@ -230,9 +230,13 @@ impl Turn {
 
     fn told(&self) -> String {
         let angles: Vec<String> = self.angles.iter().map(|a| format!("{a:.0}°")).collect();
-        let Rotation { centre, off, .. } = self.rotation;
+        let Rotation {
+            centre,
+            max_distance,
+            ..
+        } = self.rotation;
         format!(
-            "at {} about ({:.2}, {:.2}) D, to {off:.3} D",
+            "at {} about ({:.2}, {:.2}) D, to {max_distance:.3} D",
             angles.join(", "),
             centre.0,
             centre.1

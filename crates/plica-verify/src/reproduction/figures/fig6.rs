@@ -46,23 +46,23 @@ fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
             .into_iter()
             .collect();
         let walls = walls?;
-        let straight = walls[0].overlay(&walls[1], REACH);
+        let straight = walls[0].align(&walls[1], REACH);
         // A mirror image of the one is the other.
-        let mirrored = walls[0].overlay(&walls[1].mirrored(), 4.0);
+        let mirrored = walls[0].align(&walls[1].mirrored(), 4.0);
         page.claim(
             panel,
             &format!("nearly the same walls at Lmax/L = {at}"),
             format!(
                 "{:.1e} D apart at most, {:.1e} D if one is mirrored",
-                straight.apart, mirrored.apart
+                straight.distance, mirrored.distance
             ),
-            straight.apart < NEARLY,
+            straight.distance < NEARLY,
         );
         rows.push(vec![
             format!("{at:.2}"),
             format!("{:.4}", straight.shift),
-            format!("{:.1e}", straight.apart),
-            format!("{:.1e}", mirrored.apart),
+            format!("{:.1e}", straight.distance),
+            format!("{:.1e}", mirrored.distance),
         ]);
         let [full, mut dashed] = [walls[0].clone(), walls[1].clone()];
         dashed.points.iter_mut().for_each(|p| p.0 += straight.shift);

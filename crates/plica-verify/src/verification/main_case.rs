@@ -1,9 +1,9 @@
-//! The paper's main case and its parts, against an independent axisymmetric solution and a prototype in three
-//! dimensions.
+//! The main case of Okino et al. (2025), against an independent axisymmetric solution and a three-dimensional prototype.
 
-use super::found::{Findings, Trouble};
+use super::VerificationError;
+use super::report::Recorder;
 use super::row::Tolerance;
-use super::specimen::energy;
+use super::tube_model::energy;
 use plica::assembly::SplineTube;
 use plica::equilibrium::TubeProblem;
 use plica::measure::{Face, Meridians, Wall};
@@ -13,21 +13,20 @@ use plica::study::Plan;
 use plica::tube::{Load, Symmetry};
 use plica_view::draw::{Chart, Curve};
 
-/// Okino et al. (2025), Figs. 3C and 4; control points along and through the wall, and steps of Lmax/L, are to be
-/// filled in.
+/// Case of Figs. 3C and 4; mesh and steps are set by [`plan`].
 const MAIN: &str = include_str!("main_case.toml");
 
-/// An independent axisymmetric solution of 302 × 5 cubic elements on the exact circle.
+/// Independent axisymmetric solution on the exact circle.
 const SPLINES: &str = "302 × 5 axisymmetric cubic elements";
-/// Plica itself, on another discretisation.
-const QUARTICS: &str = "Plica's own quartics, 255 × 60 × 8";
-/// A prototype of the same discretisation.
+/// Plica with another discretisation.
+const QUARTICS: &str = "Plica, quartics, 255 × 60 × 8";
+/// Prototype of the same discretisation.
 const PROTOTYPE: &str = "three-dimensional prototype";
 
-/// The main case on a mesh, its second stage to a length ratio in so many steps.
-fn plan(mesh: [usize; 3], length: f64, steps: usize) -> Result<Plan, Trouble> {
-    let mut plan =
-        plica::case::read(MAIN, "main case").map_err(|e| Trouble::Solve(e.to_string()))?;
+/// Returns the main case on a mesh, with its second stage up to a length ratio in equal steps.
+fn plan(mesh: [usize; 3], length: f64, steps: usize) -> Result<Plan, VerificationError> {
+    let mut plan = plica::case::read(MAIN, "main case")
+        .map_err(|e| VerificationError::Solve(e.to_string()))?;
     [plan.mesh.axial, plan.mesh.around, plan.mesh.thickness] = mesh;
     plan.symmetry = Symmetry::Axisymmetric;
     plan.stages[1].load.muscles[1] = length;
@@ -35,12 +34,16 @@ fn plan(mesh: [usize; 3], length: f64, steps: usize) -> Result<Plan, Trouble> {
     Ok(plan)
 }
 
-/// Follows a plan from rest; every state of its last stage is shown.
+/// Follows a plan from rest and calls `visit` with every state of its last stage.
 fn follow(
-    found: &mut Findings<'_>,
+    recorder: &mut Recorder<'_>,
     plan: &Plan,
-    mut show: impl FnMut(&mut Findings<'_>, &TubeProblem, &State<Load>) -> Result<(), Trouble>,
-) -> Result<(), Trouble> {
+    mut visit: impl FnMut(
+        &mut Recorder<'_>,
+        &TubeProblem,
+        &State<Load>,
+    ) -> Result<(), VerificationError>,
+) -> Result<(), VerificationError> {
     let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
     let problem = TubeProblem::new(tube);
     let rest = vec![0.0; problem.tube.unknowns()];
@@ -49,29 +52,29 @@ fn follow(
         let last = at + 1 == plan.stages.len();
         path.begin_segment(stage.load.clone());
         if last {
-            show(found, &problem, path.state())?;
+            visit(recorder, &problem, path.state())?;
         }
         for step in 1..=stage.steps {
-            found.resume()?;
+            recorder.check_cancelled()?;
             path.advance(step as f64 / stage.steps as f64, &mut ())?;
             if last {
-                show(found, &problem, path.state())?;
+                visit(recorder, &problem, path.state())?;
             }
         }
     }
     Ok(())
 }
 
-/// Where the reference's radii were read, as far as can be told: fitted, to two of the digits, beside the narrowest
-/// place (a mirror of it on the other side would do). All three agree at one place; that is what the rows say.
+/// Axial position at which the reference radii were read. It is fitted: all three radii agree there, beside the
+/// narrowest point or at its mirror image.
 const READ_AT: f64 = 0.7535;
 
-/// Whether Lmax/L is this.
+/// Returns whether a state has the given Lmax/L.
 fn is_at(problem: &TubeProblem, state: &State<Load>, length: f64) -> bool {
     (problem.tube.tube.length_ratio(&state.load) - length).abs() < 1e-9
 }
 
-/// The outer wall, through many points.
+/// Returns the outer wall, sampled at 6001 points.
 fn outer_wall(problem: &TubeProblem, state: &State<Load>) -> Wall {
     let length = problem.tube.tube.length;
     let z: Vec<f64> = (0..=6000).map(|i| length * f64::from(i) / 6000.0).collect();
@@ -79,9 +82,9 @@ fn outer_wall(problem: &TubeProblem, state: &State<Load>) -> Wall {
     meridians.walls(Face::Outer, &[0.0], &z).remove(0)
 }
 
-/// Energies until the snap, where the wall is narrowest, and the steepest angles.
-pub fn main_case(found: &mut Findings<'_>) -> Result<(), Trouble> {
-    // The reference's angles have two digits.
+/// Records energies, radii and wall angles up to the snap, the minimum of the energy, and the first overhang.
+pub fn main_case(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
+    // The reference angles have two digits.
     let energies = [
         (1.00, 2.998736e-3),
         (1.10, 7.962128e-4),
@@ -89,18 +92,18 @@ pub fn main_case(found: &mut Findings<'_>) -> Result<(), Trouble> {
     ];
     let radii = [(1.00, 0.2125), (1.10, 0.1479), (1.13, 0.1451)];
     let angles = [(1.00, 59.0), (1.13, 73.0), (1.17, 82.0), (1.18, 86.0)];
-    let (mesh, tolerance) = match found.full {
+    let (mesh, tolerance) = match recorder.full {
         true => ([305, 60, 8], 1e-4),
         false => ([205, 60, 6], 1e-4),
     };
     let plan = plan(mesh, 1.25, 25)?;
     let mut lowest = (f64::INFINITY, 0.0);
     let mut overhang = f64::NAN;
-    found.case(format!(
+    recorder.case(format!(
         "main case, {} × {} × {} control points",
         mesh[0], mesh[1], mesh[2]
     ))?;
-    follow(found, &plan, |found, problem, state| {
+    follow(recorder, &plan, |recorder, problem, state| {
         let length = problem.tube.tube.length_ratio(&state.load);
         let W = energy(problem, state);
         if W < lowest.0 {
@@ -108,7 +111,7 @@ pub fn main_case(found: &mut Findings<'_>) -> Result<(), Trouble> {
         }
         for (at, reference) in energies {
             if is_at(problem, state, at) {
-                found.within(
+                recorder.relative(
                     tolerance,
                     format!("W at Lmax/L = {at:.2}"),
                     W,
@@ -119,10 +122,11 @@ pub fn main_case(found: &mut Findings<'_>) -> Result<(), Trouble> {
         let wall = outer_wall(problem, state);
         for (at, reference) in radii {
             if is_at(problem, state, at) {
-                let quantity = format!("outer radius at z = {READ_AT} (fitted), Lmax/L = {at:.2}");
+                let quantity =
+                    format!("outer radius at z = {READ_AT} (fitted position), Lmax/L = {at:.2}");
                 let meridians = Meridians::of(&problem.tube, &state.load, &state.u);
                 let radius = meridians.walls(Face::Outer, &[0.0], &[READ_AT])[0].points[0].1;
-                found.row(
+                recorder.row(
                     quantity,
                     radius,
                     (reference, SPLINES),
@@ -133,8 +137,8 @@ pub fn main_case(found: &mut Findings<'_>) -> Result<(), Trouble> {
         for (at, reference) in angles {
             if is_at(problem, state, at) {
                 let angle = wall.steepest_angle_deg();
-                let quantity = format!("steepest angle at {at:.2}, degrees");
-                found.row(
+                let quantity = format!("largest wall angle, Lmax/L = {at:.2}, in degrees");
+                recorder.row(
                     quantity,
                     angle,
                     (reference, SPLINES),
@@ -147,55 +151,60 @@ pub fn main_case(found: &mut Findings<'_>) -> Result<(), Trouble> {
         }
         Ok(())
     })?;
-    let of = "Lmax/L of the lowest W";
+    let quantity = "Lmax/L of the minimum of W";
     let paper = (1.13, "Okino et al. (2025), Fig. 4A");
-    found.row(of, lowest.1, paper, Tolerance::Absolute(1e-9));
-    // "Near 1.19": a step more or less.
-    let of = "first Lmax/L with an overhang, in steps of 0.01";
-    found.row(of, overhang, (1.19, SPLINES), Tolerance::Absolute(0.0101));
+    recorder.row(quantity, lowest.1, paper, Tolerance::Absolute(1e-9));
+    // The reference says "near 1.19": one step more or less.
+    let quantity = "first Lmax/L with an overhang, in steps of 0.01";
+    recorder.row(
+        quantity,
+        overhang,
+        (1.19, SPLINES),
+        Tolerance::Absolute(0.0101),
+    );
     Ok(())
 }
 
-/// Where the wall is narrowest, on two discretisations.
-pub fn narrowest(found: &mut Findings<'_>) -> Result<(), Trouble> {
-    let radii = |found: &mut Findings<'_>, degree: usize, mesh: [usize; 3]| {
+/// Records the smallest outer radii on two discretisations.
+pub fn radii(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
+    let radii = |recorder: &mut Recorder<'_>, degree: usize, mesh: [usize; 3]| {
         let mut plan = plan(mesh, 1.13, 13)?;
         plan.mesh.degree = degree;
         let mut radii = vec![];
-        follow(found, &plan, |_, problem, state| {
+        follow(recorder, &plan, |_, problem, state| {
             radii.push((
                 problem.tube.tube.length_ratio(&state.load),
                 outer_wall(problem, state).narrowest().1,
             ));
             Ok(())
         })?;
-        Ok::<_, Trouble>(radii)
+        Ok::<_, VerificationError>(radii)
     };
-    found.case("main case, 305 × 60 × 8")?;
-    let cubics = radii(found, 3, [305, 60, 8])?;
-    let quartics = radii(found, 4, [255, 60, 8])?;
+    recorder.case("main case, 305 × 60 × 8")?;
+    let cubics = radii(recorder, 3, [305, 60, 8])?;
+    let quartics = radii(recorder, 4, [255, 60, 8])?;
     for ((length, radius), (_, reference)) in cubics.into_iter().zip(quartics) {
         if [1.00, 1.10, 1.13]
             .iter()
             .any(|at| (length - at).abs() < 1e-9)
         {
-            let quantity = format!("smallest outer radius at {length:.2}");
-            found.within(1e-4, quantity, radius, (reference, QUARTICS));
+            let quantity = format!("smallest outer radius, Lmax/L = {length:.2}");
+            recorder.relative(1e-4, quantity, radius, (reference, QUARTICS));
         }
     }
     Ok(())
 }
 
-/// Where the main case loses harmonics and finds them again, and its lowest eigenvalues on two
+/// Records the states at which the main case loses and regains stability, and the lowest eigenvalues on two
 /// discretisations.
-pub fn stability(found: &mut Findings<'_>) -> Result<(), Trouble> {
+pub fn stability(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     const PLACES: [f64; 5] = [1.00, 1.13, 1.18, 1.19, 1.20];
-    // By harmonic: the lowest eigenvalue at each of the states from Lmax/L = 1 to 1.2.
-    let spectra = |found: &mut Findings<'_>, degree: usize, mesh: [usize; 3]| {
+    // Lowest eigenvalues against Lmax/L, one curve per circumferential mode.
+    let spectra = |recorder: &mut Recorder<'_>, degree: usize, mesh: [usize; 3]| {
         let mut plan = plan(mesh, 1.20, 20)?;
         plan.mesh.degree = degree;
         let mut curves = vec![vec![]; 5];
-        follow(found, &plan, |_, problem, state| {
+        follow(recorder, &plan, |_, problem, state| {
             let length = problem.tube.tube.length_ratio(&state.load);
             let harmonics = Harmonics::new(&problem.tube, 4);
             let tested = harmonics.test(&state.load, &state.u)?;
@@ -204,34 +213,34 @@ pub fn stability(found: &mut Findings<'_>) -> Result<(), Trouble> {
             }
             Ok(())
         })?;
-        Ok::<_, Trouble>(curves)
+        Ok::<_, VerificationError>(curves)
     };
-    found.case("main case, 305 × 60 × 8, stability")?;
-    let cubics = spectra(found, 3, [305, 60, 8])?;
-    let quartics = spectra(found, 4, [255, 60, 8])?;
+    recorder.case("main case, 305 × 60 × 8, stability")?;
+    let cubics = spectra(recorder, 3, [305, 60, 8])?;
+    let quartics = spectra(recorder, 4, [255, 60, 8])?;
     let lost = cubics[1].iter().find(|(_, lowest)| *lowest < 0.0);
     let lost = lost.map_or(f64::NAN, |(length, _)| *length);
-    let again = cubics[1]
+    let regained = cubics[1]
         .iter()
         .find(|(length, lowest)| *length > lost && *lowest > 0.0);
-    let again = again.map_or(f64::NAN, |(length, _)| *length);
+    let regained = regained.map_or(f64::NAN, |(length, _)| *length);
     let step = Tolerance::Absolute(1e-9);
-    found.row(
-        "first state that has lost harmonic 1",
+    recorder.row(
+        "Lmax/L of the first state unstable to mode n = 1",
         lost,
         (1.18, PROTOTYPE),
         step,
     );
-    found.row(
-        "first that has found it again",
-        again,
+    recorder.row(
+        "Lmax/L of the first state stable to it again",
+        regained,
         (1.20, PROTOTYPE),
         step,
     );
     let others = [0, 2, 3, 4].iter().flat_map(|&n| &cubics[n]);
     let others = others.filter(|(_, lowest)| *lowest < 0.0).count();
-    found.row(
-        "states that lost 0, 2, 3 or 4",
+    recorder.row(
+        "states unstable to modes n = 0, 2, 3 or 4",
         others as f64,
         (0.0, PROTOTYPE),
         step,
@@ -239,14 +248,14 @@ pub fn stability(found: &mut Findings<'_>) -> Result<(), Trouble> {
     for n in [1, 2] {
         for place in PLACES {
             let at = |curve: &[(f64, f64)]| {
-                let near = curve
+                let state = curve
                     .iter()
                     .find(|(length, _)| (length - place).abs() < 1e-9);
-                near.map_or(f64::NAN, |(_, lowest)| *lowest)
+                state.map_or(f64::NAN, |(_, lowest)| *lowest)
             };
-            let quantity = format!("lowest eigenvalue, harmonic {n}, at {place:.2}");
+            let quantity = format!("lowest eigenvalue, n = {n}, Lmax/L = {place:.2}");
             let reference = (at(&quartics[n]), QUARTICS);
-            found.row(
+            recorder.row(
                 quantity,
                 at(&cubics[n]),
                 reference,
@@ -254,7 +263,7 @@ pub fn stability(found: &mut Findings<'_>) -> Result<(), Trouble> {
             );
         }
     }
-    // Of those that come near to being lost.
+    // Modes 3 and 4 stay far from zero.
     let curves = cubics
         .into_iter()
         .take(3)
@@ -266,9 +275,9 @@ pub fn stability(found: &mut Findings<'_>) -> Result<(), Trouble> {
             dots: true,
             ..Curve::default()
         });
-    found.picture(
+    recorder.chart(
         "main-case-stability.png",
-        "Lowest eigenvalue of the tangent of the main case, harmonic by harmonic.",
+        "Lowest eigenvalues of the tangent of the main case for circumferential modes n.",
         Chart {
             x_label: "*L*_{max}/*L*".into(),
             y_label: "lowest eigenvalue (*E*/*D*^{2})".into(),
@@ -279,25 +288,26 @@ pub fn stability(found: &mut Findings<'_>) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Energies before and after the snap on finer and finer meshes, and in more and more steps.
-pub fn meshes(found: &mut Findings<'_>) -> Result<(), Trouble> {
+/// Records energies before and after the snap on ever finer meshes and with ever smaller steps.
+pub fn meshes(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     const FINEST: [usize; 3] = [1205, 60, 8];
     const PLACES: [f64; 3] = [1.13, 1.18, 1.25];
-    let energies = |found: &mut Findings<'_>, mesh, steps| -> Result<[f64; 3], Trouble> {
-        let mut at = [f64::NAN; 3];
-        let plan = plan(mesh, 1.25, steps)?;
-        follow(found, &plan, |_, problem, state| {
-            for (place, W) in PLACES.iter().zip(&mut at) {
-                if is_at(problem, state, *place) {
-                    *W = energy(problem, state);
+    let energies =
+        |recorder: &mut Recorder<'_>, mesh, steps| -> Result<[f64; 3], VerificationError> {
+            let mut at = [f64::NAN; 3];
+            let plan = plan(mesh, 1.25, steps)?;
+            follow(recorder, &plan, |_, problem, state| {
+                for (place, W) in PLACES.iter().zip(&mut at) {
+                    if is_at(problem, state, *place) {
+                        *W = energy(problem, state);
+                    }
                 }
-            }
-            Ok(())
-        })?;
-        Ok(at)
-    };
-    found.case("main case on meshes")?;
-    let finest = energies(found, FINEST, 25)?;
+                Ok(())
+            })?;
+            Ok(at)
+        };
+    recorder.case("main case, mesh convergence")?;
+    let finest = energies(recorder, FINEST, 25)?;
     let meshes = [
         [60, 60, 4],
         [105, 60, 5],
@@ -310,33 +320,33 @@ pub fn meshes(found: &mut Findings<'_>) -> Result<(), Trouble> {
     ];
     let mut errors = vec![vec![]; 3];
     for mesh in meshes {
-        let found_here = energies(found, mesh, 25)?;
-        found.case(format!(
+        let computed = energies(recorder, mesh, 25)?;
+        recorder.case(format!(
             "main case, {} × {} × {}",
             mesh[0], mesh[1], mesh[2]
         ))?;
         for (i, place) in PLACES.iter().enumerate() {
-            let off = (found_here[i] / finest[i] - 1.0).abs();
-            errors[i].push(((mesh[0] as f64).log10(), off.log10()));
-            // After the snap there is nothing to converge to: see docs/verification.md.
+            let error = (computed[i] / finest[i] - 1.0).abs();
+            errors[i].push(((mesh[0] as f64).log10(), error.log10()));
+            // Energies after the snap do not converge: see docs/verification.md.
             if mesh[0] >= 305 && *place < 1.2 {
-                let reference = (finest[i], "Plica itself, 1205 × 60 × 8");
-                found.within(
+                let reference = (finest[i], "Plica, 1205 × 60 × 8");
+                recorder.relative(
                     1e-4,
                     format!("W at Lmax/L = {place}"),
-                    found_here[i],
+                    computed[i],
                     reference,
                 );
             }
         }
     }
-    found.case("main case, 305 × 60 × 8, in other steps")?;
-    let usual = energies(found, [305, 60, 8], 25)?;
+    recorder.case("main case, 305 × 60 × 8, other step sizes")?;
+    let coarse = energies(recorder, [305, 60, 8], 25)?;
     for steps in [50, 100] {
-        let other = energies(found, [305, 60, 8], steps)?;
+        let fine = energies(recorder, [305, 60, 8], steps)?;
         for (i, place) in PLACES.iter().enumerate() {
             let quantity = format!("W at Lmax/L = {place}, {steps} steps");
-            found.within(1e-6, quantity, other[i], (usual[i], "25 steps"));
+            recorder.relative(1e-6, quantity, fine[i], (coarse[i], "25 steps"));
         }
     }
     let curves = PLACES
@@ -350,12 +360,12 @@ pub fn meshes(found: &mut Findings<'_>) -> Result<(), Trouble> {
             dots: true,
             ..Curve::default()
         });
-    found.picture(
+    recorder.chart(
         "main-case-meshes.png",
-        "Main case: relative error of W against control points along the tube, before the snap (1.13, 1.18) and after it (1.25); the \
-         reference is the same on 1205 × 60 × 8.",
+        "Main case: relative error of W against axial control points, before the snap (1.13, 1.18) and after it (1.25). The \
+         reference is the mesh 1205 × 60 × 8.",
         Chart {
-            x_label: "log_{10} control points along".into(),
+            x_label: "log_{10} axial control points".into(),
             y_label: "log_{10} error of *W*".into(),
             curves: curves.collect(),
             ..Chart::default()
@@ -364,43 +374,43 @@ pub fn meshes(found: &mut Findings<'_>) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Where the tube that relaxes without contracting loses harmonics 2, 3, 4 and 1.
-pub fn relaxation_alone(found: &mut Findings<'_>) -> Result<(), Trouble> {
+/// Records where a tube that relaxes without contracting loses stability to modes 2, 3, 4 and 1.
+pub fn relaxation_alone(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     let mut plan = plan([305, 60, 8], 1.12, 60)?;
-    // Nothing contracts: the first stage stays at rest.
+    // The first stage stays at rest.
     plan.stages[0].load.muscles[0] = 1.0;
     plan.stages[0].steps = 1;
     plan.stages[1].load.muscles[0] = 1.0;
-    found.case("relaxation alone, 305 × 60 × 8, steps of 0.002")?;
+    recorder.case("relaxation alone, 305 × 60 × 8, steps of 0.002")?;
     let mut lost = [f64::NAN; 5];
-    let mut before: Vec<(f64, f64)> = vec![];
-    follow(found, &plan, |_, problem, state| {
+    let mut previous: Vec<(f64, f64)> = vec![];
+    follow(recorder, &plan, |_, problem, state| {
         let length = problem.tube.tube.length_ratio(&state.load);
         if length < 1.05 {
             return Ok(());
         }
         let tested = Harmonics::new(&problem.tube, 4).test(&state.load, &state.u)?;
-        let now: Vec<(f64, f64)> = tested
+        let current: Vec<(f64, f64)> = tested
             .iter()
             .map(|tested| (length, tested.lowest))
             .collect();
-        for (n, (from, to)) in before.iter().zip(&now).enumerate() {
+        for (n, (from, to)) in previous.iter().zip(&current).enumerate() {
             if from.1 > 0.0 && to.1 <= 0.0 && lost[n].is_nan() {
                 lost[n] = from.0 + from.1 * (to.0 - from.0) / (from.1 - to.1);
             }
         }
-        before = now;
+        previous = current;
         Ok(())
     })?;
-    // Brackets of 0.01; the first is "near" three digits, and its eigenvalue falls slowly.
+    // The reference gives brackets of 0.01, and three digits for the first.
     for (n, reference, tolerance) in [
         (2, 1.066, 3e-3),
         (3, 1.075, 5e-3),
         (4, 1.095, 5e-3),
         (1, 1.095, 5e-3),
     ] {
-        let quantity = format!("Lmax/L at which harmonic {n} is lost");
-        found.row(
+        let quantity = format!("Lmax/L at which stability to mode n = {n} is lost");
+        recorder.row(
             quantity,
             lost[n],
             (reference, PROTOTYPE),

@@ -1,7 +1,6 @@
-//! Short tubes between sliding ends, which are rings in plane strain, and longer ones: Plica's side of
-//! the comparisons.
+//! Tubes between sliding ends, as short rings in plane strain and longer, that the checks solve with Plica.
 
-use super::found::Trouble;
+use super::VerificationError;
 use plica::activation::{Direction, Muscle, Profile};
 use plica::assembly::{Point, SplineTube};
 use plica::equilibrium::TubeProblem;
@@ -10,29 +9,29 @@ use plica::solve::{Path, Settings, State};
 use plica::stability::Harmonics;
 use plica::tube::{Integration, Load, Mesh, Pressure, Support, Tube};
 
-/// A tube, and the elements along, around and through it.
+/// A tube and its discretisation.
 #[derive(Clone, Debug)]
-pub struct Specimen {
+pub struct TubeModel {
     /// The tube.
     pub tube: Tube,
     /// Elements along, around and through the wall.
     pub elements: [usize; 3],
-    /// p.
+    /// Degree p of the splines.
     pub degree: usize,
-    /// How the resistance to a change of volume is integrated.
+    /// Integration of the volumetric energy.
     pub volumetric: Integration,
 }
 
-/// Newton as exact as rounding lets it be.
-pub fn tight() -> Settings {
+/// Returns solver settings with a tolerance near rounding.
+pub fn tight_settings() -> Settings {
     Settings {
         tolerance: 1e-10,
         ..Settings::default()
     }
 }
 
-impl Specimen {
-    /// A perfect tube of E = 1 between sliding ends, outer radius ½, of cubics.
+impl TubeModel {
+    /// Creates a perfect cubic tube with E = 1 between sliding ends.
     pub fn new(length: f64, thickness: f64, poisson_ratio: f64, elements: [usize; 3]) -> Self {
         let tube = Tube {
             length,
@@ -50,13 +49,13 @@ impl Specimen {
         }
     }
 
-    /// A ring in plane strain: a tenth of a diameter long, one element along.
+    /// Creates a ring in plane strain, 0.1 D long, with one element along.
     pub fn ring(thickness: f64, poisson_ratio: f64, through: usize) -> Self {
         Self::new(0.1, thickness, poisson_ratio, [1, 120, through])
     }
 
-    /// With a muscle over more than all of the tube, the same everywhere.
-    pub fn with_even_muscle(mut self, direction: Direction) -> Self {
+    /// Adds a muscle of uniform activation along the whole tube.
+    pub fn with_uniform_muscle(mut self, direction: Direction) -> Self {
         self.tube.muscles.push(Muscle {
             name: "even".into(),
             direction,
@@ -66,7 +65,7 @@ impl Specimen {
         self
     }
 
-    /// Laid out in splines, `rings` to solve for.
+    /// Returns the discretised tube with `rings` control rings.
     pub fn problem(&self, rings: usize) -> TubeProblem {
         let p = self.degree;
         let [along, around, through] = self.elements;
@@ -81,26 +80,30 @@ impl Specimen {
         TubeProblem::new(SplineTube::new(&self.tube, &mesh, rings))
     }
 
-    /// Rest with true pressure on the inner wall and the outer wall.
-    pub fn pressed(&self, [inner, outer]: [f64; 2]) -> Load {
-        let true_pressure = |follower| Pressure {
+    /// Returns the load of follower pressures on the inner and the outer wall.
+    pub fn under_pressure(&self, [inner, outer]: [f64; 2]) -> Load {
+        let pressure = |follower| Pressure {
             follower,
             dead: 0.0,
         };
         Load {
-            pressures: [true_pressure(inner), true_pressure(outer)],
+            pressures: [pressure(inner), pressure(outer)],
             ..self.tube.rest()
         }
     }
 }
 
-/// The state under a load, from rest in equal steps.
+/// Solves for the state under a load, which is applied from rest in equal steps.
 ///
 /// # Errors
-/// [`Trouble::Path`] where the path ends before.
-pub fn under(problem: &TubeProblem, load: &Load, steps: usize) -> Result<State<Load>, Trouble> {
+/// [`VerificationError::Path`] if a step fails.
+pub fn solve_from_rest(
+    problem: &TubeProblem,
+    load: &Load,
+    steps: usize,
+) -> Result<State<Load>, VerificationError> {
     let u = vec![0.0; problem.tube.unknowns()];
-    let mut path = Path::begin(problem, problem.tube.tube.rest(), u, tight())?;
+    let mut path = Path::begin(problem, problem.tube.tube.rest(), u, tight_settings())?;
     path.begin_segment(load.clone());
     for n in 1..=steps {
         path.advance(n as f64 / steps as f64, &mut ())?;
@@ -108,12 +111,12 @@ pub fn under(problem: &TubeProblem, load: &Load, steps: usize) -> Result<State<L
     Ok(path.state().clone())
 }
 
-/// Energy of the whole tube.
+/// Returns the energy of the whole tube.
 pub fn energy(problem: &TubeProblem, state: &State<Load>) -> f64 {
     state.energy * problem.tube.sector.repeats()
 }
 
-/// A point of the wall away from ends; angle 0 is the middle of an element, where outwards is outwards.
+/// Returns a point away from the ends. At angle 0, the middle of an element, the radial direction is exact.
 fn point(problem: &TubeProblem, radius: f64) -> Point {
     Point {
         z: 0.3 * problem.tube.tube.length,
@@ -122,19 +125,19 @@ fn point(problem: &TubeProblem, radius: f64) -> Point {
     }
 }
 
-/// How far the wall at a radius has moved away from the axis.
-pub fn swelling(problem: &TubeProblem, state: &State<Load>, radius: f64) -> f64 {
-    // Where the spline circle crosses the exact one.
+/// Returns the radial displacement of the wall at a reference radius.
+pub fn radial_displacement(problem: &TubeProblem, state: &State<Load>, radius: f64) -> f64 {
+    // The spline circle intersects the exact one near this angle.
     let at = Point {
         angle: 0.3,
         ..point(problem, radius)
     };
     let sample = problem.tube.sample(&state.load, &state.u, at);
-    let away = |[_, x, y]: [f64; 3]| x.hypot(y);
-    away(sample.position) - away(sample.reference)
+    let radius = |[_, x, y]: [f64; 3]| x.hypot(y);
+    radius(sample.position) - radius(sample.reference)
 }
 
-/// Cauchy stress along, outwards and around at a radius.
+/// Returns the Cauchy stresses along, outwards and around at a reference radius.
 pub fn stress(problem: &TubeProblem, state: &State<Load>, radius: f64) -> [f64; 3] {
     let at = point(problem, radius);
     let Fe = problem.tube.sample(&state.load, &state.u, at).elastic;
@@ -142,20 +145,20 @@ pub fn stress(problem: &TubeProblem, state: &State<Load>, radius: f64) -> [f64; 
     [0, 1, 2].map(|i| sigma.0[i][i] / Fe.determinant())
 }
 
-/// Where the lowest eigenvalue of a harmonic is zero on the way from rest to a load, as a fraction of
-/// it: by secants from two guesses.
+/// Returns the fraction of a load at which the lowest eigenvalue of a circumferential mode is zero, by the secant
+/// method from two guesses.
 ///
 /// # Errors
-/// [`Trouble`] where there is no state or no eigenvalue.
-pub fn lost(
+/// [`VerificationError`] if a state or an eigenvalue is not found, or the eigenvalue changes its sign earlier.
+pub fn critical_fraction(
     problem: &TubeProblem,
     load: &Load,
     harmonic: usize,
     [mut from, mut to]: [f64; 2],
-) -> Result<f64, Trouble> {
+) -> Result<f64, VerificationError> {
     let harmonics = Harmonics::new(&problem.tube, harmonic);
-    let lowest = |t: f64| -> Result<f64, Trouble> {
-        let state = under(problem, &problem.tube.tube.rest().towards(load, t), 1)?;
+    let lowest = |t: f64| -> Result<f64, VerificationError> {
+        let state = solve_from_rest(problem, &problem.tube.tube.rest().towards(load, t), 1)?;
         Ok(harmonics
             .lowest(harmonic, &state.load, &state.u, 1)?
             .first()
@@ -166,14 +169,14 @@ pub fn lost(
         let next = from - values[0] * (to - from) / (values[1] - values[0]);
         (from, to, values) = (to, next, [values[1], lowest(next)?]);
     }
-    // Found, and not lost long before.
+    // The method has converged, and the eigenvalue is positive halfway.
     let halfway = lowest(0.5 * to)?;
     if values[1].abs() > 1e-5 * halfway.abs() || halfway <= 0.0 {
-        let what = format!(
+        let message = format!(
             "lowest eigenvalue {:.1e} where it should be zero, {halfway:.1e} halfway",
             values[1]
         );
-        return Err(Trouble::Solve(what));
+        return Err(VerificationError::Solve(message));
     }
     Ok(to)
 }
