@@ -230,9 +230,15 @@ pub fn schemes(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
         );
     }
     let rest = vec![0.0; problem.tube.unknowns()];
-    let relaxed =
-        plica::solve::relaxation(&problem, &segments[1].0, rest, &tight_settings(), &mut ())
-            .map_err(|e| VerificationError::Solve(e.to_string()))?;
+    let relaxed = plica::solve::relaxation(
+        &problem,
+        &segments[1].0,
+        rest,
+        &tight_settings(),
+        &mut Effort::default(),
+        &mut (),
+    )
+    .map_err(|e| VerificationError::Solve(e.to_string()))?;
     let relaxed = relaxed.forces.energy * problem.tube.sector.repeats();
     let quantity = "W, relaxation from rest in one step";
     recorder.relative(
