@@ -1,8 +1,8 @@
 //! Inputs of the batch kernels, made from a tube and a state.
 
 use super::SplineTube;
-use super::axial::{self, AxialBatchInput};
-use super::circumferential::{self, CircumferentialBatchInput};
+use super::axial;
+use super::circumferential;
 use super::dispatch::with_degree;
 use super::stress_free::StressFreeStretch;
 use super::tables::{AxialBatch, CircumferentialPoint, Layer};
@@ -20,10 +20,10 @@ impl SplineTube {
         batch: &'a AxialBatch,
         (inverse_stretch, stress_free): (&'a [(Lanes, Lanes)], Option<&'a [StressFreeStretch]>),
         u: &'a [f64],
-    ) -> AxialBatchInput<'a> {
+    ) -> axial::Input<'a> {
         let m = self.row_size();
         let rows = batch.elements + self.degree();
-        AxialBatchInput {
+        axial::Input {
             batch,
             layers: &self.layers,
             around: &self.around,
@@ -62,10 +62,10 @@ impl SplineTube {
         (number, lane): (usize, usize),
         inverse_stretch: &'a [(Lanes, Lanes)],
         u: &'a [f64],
-    ) -> CircumferentialBatchInput<'a> {
+    ) -> circumferential::Input<'a> {
         let batch = &self.batches[number];
         let row = self.padded_row_size();
-        CircumferentialBatchInput {
+        circumferential::Input {
             batch,
             lane,
             layers: &self.layers,
@@ -153,7 +153,7 @@ impl SplineTube {
         displacement: &[f64],
     ) -> Vec<StressFreeStretch> {
         let row = self.padded_row_size();
-        let perfect = CircumferentialBatchInput {
+        let perfect = circumferential::Input {
             batch,
             lane,
             layers,

@@ -127,13 +127,7 @@ impl SplineTube {
         let batch = &self.batches[number];
         let row = self.padded_row_size();
         let mut residual = vec![0.0; (batch.elements + self.degree()) * row];
-        let mut sum = BatchForces {
-            smallest: SmallestJacobian {
-                jacobian: f64::INFINITY,
-                ..SmallestJacobian::default()
-            },
-            ..BatchForces::default()
-        };
+        let mut sum = BatchForces::default();
         for lane in 0..batch.elements {
             let stretch = self.inverse_stretch_around(batch, lane, &self.around, load);
             let input = self.circumferential_input((number, lane), &stretch, u);

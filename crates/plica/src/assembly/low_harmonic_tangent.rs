@@ -1,7 +1,7 @@
 //! Tangent on the low harmonics, assembled at a state that is not axisymmetric.
 
 use super::SplineTube;
-use super::circumferential::{self, AVERAGED, CircumferentialBatchInput};
+use super::circumferential::{self, AVERAGED};
 use super::dispatch::{with_degree, with_law_and_degree};
 use super::low_harmonics::{LowHarmonics, POINTS, THROUGH};
 use super::tables::AxialBatch;
@@ -98,7 +98,7 @@ impl SplineTube {
         let stretch = self.inverse_stretch_around(batch, lane, &low.middle, load);
         let shape =
             displacement.map(|u| self.stress_free_around(batch, lane, &low.points, &low.middle, u));
-        let input = CircumferentialBatchInput {
+        let input = circumferential::Input {
             batch,
             lane,
             layers: &low.points,

@@ -2,7 +2,7 @@
 
 use super::super::kinematics::{Vector, to_ring_frame};
 use super::super::tables::Layer;
-use super::{AxialBatchInput, contract_along, contract_through, gradients};
+use super::{Input, contract_along, contract_through, gradients};
 use crate::material::Law;
 use crate::tensor::{Lanes, Real};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f64x8};
@@ -23,7 +23,7 @@ pub struct BatchForces {
 }
 
 /// Smallest det Fe and its quadrature point.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct SmallestJacobian {
     /// The value; NaN if Fe is not a number.
     pub jacobian: f64,
@@ -31,6 +31,16 @@ pub struct SmallestJacobian {
     pub element: [usize; 3],
     /// Quadrature point through the wall.
     pub qr: usize,
+}
+
+impl Default for SmallestJacobian {
+    fn default() -> Self {
+        Self {
+            jacobian: f64::INFINITY,
+            element: [0; 3],
+            qr: 0,
+        }
+    }
 }
 
 impl SmallestJacobian {
@@ -63,17 +73,13 @@ impl SmallestJacobian {
 }
 
 /// Computes energy and residual of an axial batch. `N` is the degree plus one.
-pub fn forces<L: Law, const N: usize>(law: &L, input: &AxialBatchInput<'_>) -> BatchForces {
+pub fn forces<L: Law, const N: usize>(law: &L, input: &Input<'_>) -> BatchForces {
     dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input))
 }
 
 #[inline(always)]
-fn kernel<S: Simd, L: Law, const N: usize>(
-    simd: S,
-    law: &L,
-    input: &AxialBatchInput<'_>,
-) -> BatchForces {
-    let AxialBatchInput {
+fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &Input<'_>) -> BatchForces {
+    let Input {
         batch,
         layers,
         around,
@@ -83,10 +89,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(
     let nil = f64x8::splat(simd, 0.0);
     let zero = [nil; 3];
 
-    let mut smallest = SmallestJacobian {
-        jacobian: f64::INFINITY,
-        ..SmallestJacobian::default()
-    };
+    let mut smallest = SmallestJacobian::default();
     let mut residual = vec![0.0; input.u.len()];
     let (mut energy, mut energy_ungrown, mut squares) = (nil, nil, nil);
 
@@ -105,9 +108,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(
             input.gather::<S, N>(simd, layer, element, &mut u);
             force.fill(zero);
             for qz in 0..N {
-                let (inverse_along, inverse_around) = input.inverse_stretch[qz];
-                let inverse_along = inverse_along.load(simd);
-                let inverse_around = inverse_around.load(simd);
+                let [inverse_along, inverse_around] = input.stretch(simd, qz);
                 let along_point = (qz, [inverse_along, inverse_around]);
                 let growth = nil.like(1.0) / (inverse_along * inverse_around); // det Fp
                 let weight = batch.weight[qz].load(simd);
@@ -186,7 +187,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(
 /// Adds the forces of one element per lane to the rows of the batch, lane after lane.
 #[inline(always)]
 fn scatter<S: Simd, const N: usize>(
-    input: &AxialBatchInput<'_>,
+    input: &Input<'_>,
     layer: &Layer,
     element: usize,
     force: &[Vector<f64x8<S>>],

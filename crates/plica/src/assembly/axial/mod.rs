@@ -17,9 +17,9 @@ use super::tables::{AxialBatch, CircumferentialPoint, Layer};
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
 
-/// Input of a kernel.
+/// Input of an axial kernel.
 #[derive(Clone, Copy)]
-pub struct AxialBatchInput<'a> {
+pub struct Input<'a> {
     pub batch: &'a AxialBatch,
     pub layers: &'a [Layer],
     pub around: &'a [CircumferentialPoint],
@@ -37,7 +37,7 @@ pub struct AxialBatchInput<'a> {
     pub u: &'a [f64],
 }
 
-impl AxialBatchInput<'_> {
+impl Input<'_> {
     /// Returns the number of unknowns in a row of control points.
     pub fn row_size(&self) -> usize {
         self.points * 3 * self.rings
@@ -46,6 +46,13 @@ impl AxialBatchInput<'_> {
     /// Returns the number of distinct rings of an element.
     pub fn local_rings(&self) -> usize {
         self.around[0].ring_values.len()
+    }
+
+    /// Returns 1/θζ and 1/θη at a point along the batch.
+    #[inline(always)]
+    fn stretch<S: Simd>(&self, simd: S, qz: usize) -> [f64x8<S>; 2] {
+        let (along, around) = &self.inverse_stretch[qz];
+        [along.load(simd), around.load(simd)]
     }
 
     /// Returns the map from displacement gradients to Fe at a point along (with its 1/θζ and 1/θη),

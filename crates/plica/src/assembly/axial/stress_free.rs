@@ -2,17 +2,17 @@
 
 use super::super::kinematics::GradientMap;
 use super::super::stress_free::StressFreeStretch;
-use super::{AxialBatchInput, contract_along, contract_through, gradients};
+use super::{Input, contract_along, contract_through, gradients};
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 
 /// Returns the stretch of the stress-free shape whose control points are displaced by `input.u`, at
 /// (layer, element around, point along, point through, point around). `N` is the degree plus one.
-pub fn stress_free_stretch<const N: usize>(input: &AxialBatchInput<'_>) -> Vec<StressFreeStretch> {
+pub fn stress_free_stretch<const N: usize>(input: &Input<'_>) -> Vec<StressFreeStretch> {
     dispatch!(Level::new(), simd => kernel::<_, N>(simd, input))
 }
 
 #[inline(always)]
-fn kernel<S: Simd, const N: usize>(simd: S, input: &AxialBatchInput<'_>) -> Vec<StressFreeStretch> {
+fn kernel<S: Simd, const N: usize>(simd: S, input: &Input<'_>) -> Vec<StressFreeStretch> {
     let local_rings = input.local_rings();
     let one = f64x8::splat(simd, 1.0);
     let zero = [f64x8::splat(simd, 0.0); 3];

@@ -9,7 +9,7 @@
 
 use super::super::blocks::{Block, add_rotated, mirror};
 use super::super::tables::AxialBatch;
-use super::{AxialBatchInput, contract_along, contract_through, gradients};
+use super::{Input, contract_along, contract_through, gradients};
 use crate::material::Law;
 use crate::matrix::BlockBanded;
 use crate::rings::Rotation;
@@ -57,7 +57,7 @@ fn pairs(local_rings: usize) -> Vec<(usize, usize)> {
 /// harmonic has two of one ring each (see [`crate::rings::Sector::harmonic_at`]).
 pub fn tangent<L: Law, const N: usize>(
     law: &L,
-    input: &AxialBatchInput<'_>,
+    input: &Input<'_>,
     rotations: &[Vec<Vec<Rotation>>],
 ) -> BatchTangent {
     dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input, rotations))
@@ -67,10 +67,10 @@ pub fn tangent<L: Law, const N: usize>(
 fn kernel<S: Simd, L: Law, const N: usize>(
     simd: S,
     law: &L,
-    input: &AxialBatchInput<'_>,
+    input: &Input<'_>,
     rotations: &[Vec<Vec<Rotation>>],
 ) -> BatchTangent {
-    let AxialBatchInput {
+    let Input {
         batch,
         layers,
         around,
@@ -101,9 +101,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(
         for element in 0..input.rings {
             input.gather::<S, N>(simd, layer, element, &mut u);
             for qz in 0..N {
-                let (inverse_along, inverse_around) = input.inverse_stretch[qz];
-                let inverse_along = inverse_along.load(simd);
-                let inverse_around = inverse_around.load(simd);
+                let [inverse_along, inverse_around] = input.stretch(simd, qz);
                 let along_point = (qz, [inverse_along, inverse_around]);
                 let weight = batch.weight[qz].load(simd) / (inverse_along * inverse_around);
                 contract_along::<S, N>(simd, batch, qz, &u, &mut along);

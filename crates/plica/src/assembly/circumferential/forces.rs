@@ -1,34 +1,19 @@
 //! Energy and residual of a circumferential batch.
 
-use super::super::axial::SmallestJacobian;
+use super::super::axial::{BatchForces, SmallestJacobian};
 use super::super::kinematics::to_ring_frame;
-use super::{
-    CircumferentialBatchInput, gradients, load, ring_values, store, sum_along, sum_through,
-};
+use super::{Input, gradients, load, ring_values, store, sum_along, sum_through};
 use crate::material::Law;
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
-
-/// Contribution of a circumferential batch to the energy and the residual.
-#[derive(Clone, Debug, Default)]
-pub struct CircumferentialBatchForces {
-    /// ∫ w det Fp dV₀.
-    pub energy: f64,
-    /// ∫ w dV₀.
-    pub energy_ungrown: f64,
-    /// Smallest det Fe; the first index of its element is not set.
-    pub smallest: SmallestJacobian,
-    /// Sum of the squares of the element contributions to the entries of R.
-    pub squares: f64,
-}
 
 /// Computes energy and residual of a circumferential batch and adds R to `residual`, p + 1 rows of
 /// (point, component) times R rings. `N` is the degree plus one.
 pub fn forces<L: Law, const N: usize>(
     law: &L,
-    input: &CircumferentialBatchInput<'_>,
+    input: &Input<'_>,
     residual: &mut [f64],
-) -> CircumferentialBatchForces {
+) -> BatchForces {
     let level = Level::new();
     if input.stress_free.is_none() {
         dispatch!(level, simd => kernel::<_, L, N, true>(simd, law, input, residual))
@@ -41,16 +26,13 @@ pub fn forces<L: Law, const N: usize>(
 fn kernel<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     simd: S,
     law: &L,
-    input: &CircumferentialBatchInput<'_>,
+    input: &Input<'_>,
     residual: &mut [f64],
-) -> CircumferentialBatchForces {
+) -> BatchForces {
     let (row, R, W) = (input.row(), input.rings.padded, input.rings.wide());
     let nil = f64x8::splat(simd, 0.0);
     let ring_values = ring_values::<N>(input.around);
-    let mut smallest = SmallestJacobian {
-        jacobian: f64::INFINITY,
-        ..SmallestJacobian::default()
-    };
+    let mut smallest = SmallestJacobian::default();
     let (mut energy, mut energy_ungrown, mut squares) = (nil, nil, nil);
 
     let mut along = vec![0.0; N * 2 * row];
@@ -127,21 +109,17 @@ fn kernel<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
         }
         scatter::<N>(input, layer.first, &force, residual);
     }
-    CircumferentialBatchForces {
+    BatchForces {
         energy: Lanes::store(energy).sum(),
         energy_ungrown: Lanes::store(energy_ungrown).sum(),
         squares: Lanes::store(squares).sum(),
         smallest,
+        residual: vec![],
     }
 }
 
 /// Adds the forces of the elements to their rings.
-fn scatter<const N: usize>(
-    input: &CircumferentialBatchInput<'_>,
-    first: usize,
-    force: &[f64],
-    residual: &mut [f64],
-) {
+fn scatter<const N: usize>(input: &Input<'_>, first: usize, force: &[f64], residual: &mut [f64]) {
     let (row, R, k) = (input.row(), input.rings.padded, input.rings.rings);
     for a in 0..N {
         for c in 0..N {

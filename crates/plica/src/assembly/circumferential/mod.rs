@@ -36,9 +36,9 @@ use crate::rings::RingValues;
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Simd, SimdBase, f64x8};
 
-/// Input of a kernel.
+/// Input of a circumferential kernel.
 #[derive(Clone, Copy)]
-pub struct CircumferentialBatchInput<'a> {
+pub struct Input<'a> {
     /// Axial batch and lane of the element along the tube.
     pub batch: &'a AxialBatch,
     pub lane: usize,
@@ -58,7 +58,7 @@ pub struct CircumferentialBatchInput<'a> {
     pub u: &'a [f64],
 }
 
-impl CircumferentialBatchInput<'_> {
+impl Input<'_> {
     /// Returns the size of a row.
     pub fn row(&self) -> usize {
         self.points * 3 * self.rings.padded
@@ -198,12 +198,7 @@ fn store<S: Simd>(vector: f64x8<S>, to: &mut [f64], at: usize) {
 /// Sums along the tube: writes value and slope at a quadrature point for everything in a row, as
 /// two rows.
 #[inline(always)]
-fn sum_along<S: Simd, const N: usize>(
-    simd: S,
-    input: &CircumferentialBatchInput<'_>,
-    qz: usize,
-    out: &mut [f64],
-) {
+fn sum_along<S: Simd, const N: usize>(simd: S, input: &Input<'_>, qz: usize, out: &mut [f64]) {
     let row = input.row();
     let functions: [_; N] = std::array::from_fn(|a| input.along::<N>(qz, a));
     let (values, slopes) = out.split_at_mut(row);
@@ -225,7 +220,7 @@ fn sum_along<S: Simd, const N: usize>(
 #[inline(always)]
 fn sum_through<S: Simd, const N: usize>(
     simd: S,
-    input: &CircumferentialBatchInput<'_>,
+    input: &Input<'_>,
     layer: &Layer,
     qr: usize,
     along: &[f64],

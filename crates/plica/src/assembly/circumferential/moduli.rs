@@ -1,8 +1,6 @@
 //! Moduli at the elements of a circumferential batch.
 
-use super::{
-    AVERAGED, CircumferentialBatchInput, gradients, ring_values, store, sum_along, sum_through,
-};
+use super::{AVERAGED, Input, gradients, ring_values, store, sum_along, sum_through};
 use crate::material::Law;
 use crate::tensor::LANES;
 use fearless_simd::{Level, Simd, dispatch};
@@ -10,21 +8,12 @@ use fearless_simd::{Level, Simd, dispatch};
 /// Writes the weighted blocks of [`GradientMap::pull_back_moduli`](super::super::kinematics::GradientMap)
 /// of every element around: R values at (point along, layer, entry). Uses the first point through
 /// each layer and the first around.
-pub fn moduli<L: Law, const N: usize>(
-    law: &L,
-    input: &CircumferentialBatchInput<'_>,
-    out: &mut [f64],
-) {
+pub fn moduli<L: Law, const N: usize>(law: &L, input: &Input<'_>, out: &mut [f64]) {
     dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input, out));
 }
 
 #[inline(always)]
-fn kernel<S: Simd, L: Law, const N: usize>(
-    simd: S,
-    law: &L,
-    input: &CircumferentialBatchInput<'_>,
-    out: &mut [f64],
-) {
+fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &Input<'_>, out: &mut [f64]) {
     let (row, R, W) = (input.row(), input.rings.padded, input.rings.wide());
     let ring_values = ring_values::<N>(input.around);
     let mut along = vec![0.0; 2 * row];

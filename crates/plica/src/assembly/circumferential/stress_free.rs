@@ -2,23 +2,18 @@
 
 use super::super::kinematics::GradientMap;
 use super::super::stress_free::StressFreeStretch;
-use super::{CircumferentialBatchInput, gradients, ring_values, sum_along, sum_through};
+use super::{Input, gradients, ring_values, sum_along, sum_through};
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
 
 /// Returns the stretch of the stress-free shape of a circumferential batch whose control points are
 /// displaced by `input.u`, at (point along, layer, point through, vector of elements, point
 /// around). `N` is the degree plus one.
-pub fn stress_free_stretch<const N: usize>(
-    input: &CircumferentialBatchInput<'_>,
-) -> Vec<StressFreeStretch> {
+pub fn stress_free_stretch<const N: usize>(input: &Input<'_>) -> Vec<StressFreeStretch> {
     dispatch!(Level::new(), simd => kernel::<_, N>(simd, input))
 }
 
 #[inline(always)]
-fn kernel<S: Simd, const N: usize>(
-    simd: S,
-    input: &CircumferentialBatchInput<'_>,
-) -> Vec<StressFreeStretch> {
+fn kernel<S: Simd, const N: usize>(simd: S, input: &Input<'_>) -> Vec<StressFreeStretch> {
     let (row, W) = (input.row(), input.rings.wide());
     let one = f64x8::splat(simd, 1.0);
     let ring_values = ring_values::<N>(input.around);

@@ -1,10 +1,7 @@
 //! Matrix-free tangent of a circumferential batch: linearisation at a state, and tangent products.
 
 use super::super::kinematics::to_ring_frame;
-use super::{
-    AVERAGED, CircumferentialBatchInput, gradients, load, ring_values, store, sum_along,
-    sum_through,
-};
+use super::{AVERAGED, Input, gradients, load, ring_values, store, sum_along, sum_through};
 use crate::material::{Law, TangentData};
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Level, Simd, SimdBase, SimdFrom, dispatch, f32x16, f64x8};
@@ -28,7 +25,7 @@ const fn vectors_per_point<L: Law>() -> usize {
 /// elements around, for every (point along, layer, point through, point around).
 pub fn linearise<L: Law, const N: usize>(
     law: &L,
-    input: &CircumferentialBatchInput<'_>,
+    input: &Input<'_>,
     tangent_data: &mut [[f32; 16]],
     averaged: &mut [f64],
 ) {
@@ -44,7 +41,7 @@ pub fn linearise<L: Law, const N: usize>(
 fn kernel_linearise<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     simd: S,
     law: &L,
-    input: &CircumferentialBatchInput<'_>,
+    input: &Input<'_>,
     tangent_data: &mut [[f32; 16]],
     averaged: &mut [f64],
 ) {
@@ -108,7 +105,7 @@ pub fn tangent_data_len<L: Law, const N: usize>(_: &L, layers: usize, vectors: u
 /// component) times R rings.
 pub fn tangent_product<L: Law, const N: usize>(
     law: &L,
-    input: &CircumferentialBatchInput<'_>,
+    input: &Input<'_>,
     tangent_data: &[[f32; 16]],
     out: &mut [f64],
 ) {
@@ -124,7 +121,7 @@ pub fn tangent_product<L: Law, const N: usize>(
 fn kernel_product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     simd: S,
     law: &L,
-    input: &CircumferentialBatchInput<'_>,
+    input: &Input<'_>,
     tangent_data: &[[f32; 16]],
     out: &mut [f64],
 ) {
