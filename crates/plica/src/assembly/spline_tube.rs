@@ -106,7 +106,7 @@ impl SplineTube {
     /// Returns the tube with the volumetric part of the law integrated at fewer points through the
     /// wall.
     fn split_volumetric(self) -> Self {
-        let [shape, volume] = self
+        let [shear, volume] = self
             .law
             .parts()
             .expect("reduced integration needs a law with volumetric part");
@@ -121,7 +121,7 @@ impl SplineTube {
             None => volumetric,
         };
         Self {
-            law: shape,
+            law: shear,
             volumetric: Some(Box::new(volumetric)),
             ..self
         }
@@ -185,7 +185,7 @@ impl SplineTube {
 
     /// Returns for every unknown whether it is prescribed: at the ends, and for a sector of one
     /// ring by rigid-body constraints (for more rings see
-    /// [`SplineTube::project_out_constraints`]).
+    /// `SplineTube::project_out_constraints`).
     pub fn prescribed(&self) -> &[bool] {
         &self.boundary_conditions.prescribed
     }

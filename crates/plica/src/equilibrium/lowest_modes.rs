@@ -8,7 +8,7 @@ use crate::tube::Load;
 
 impl TubeProblem {
     /// Returns the lowest eigenpairs of K x = ν C x on the free unknowns, with the tangent K of a state that is not
-    /// inverted and the mass C of unit density ([`crate::assembly::RingDamping`]), ν in E/D².
+    /// inverted and the mass C of unit density (`RingDamping`), ν in E/D².
     ///
     /// Searches for `block` eigenpairs together, which should be more than wanted: the search slows down if the next
     /// eigenvalue is close, and nearly axisymmetric tubes have pairs of eigenvalues. It starts from smooth noise with a fixed

@@ -9,7 +9,7 @@ use crate::spline::{Basis, gauss_legendre};
 /// displacements (z cos nφ, r cos nφ, −θ sin nφ).
 ///
 /// Bilinear forms of mode n are N_C/2 times the sum over the two halves of [`Sector::harmonic_at`] on one element;
-/// those of mode 0 are N_C times one element. Like [`SplineTube::tangent_in_harmonic`] and [`SplineTube::tangent`] the
+/// those of mode 0 are N_C times one element. Like `SplineTube::tangent_in_harmonic` and [`SplineTube::tangent`] the
 /// matrix omits these factors, so the eigenvalues of the pair are those of the whole tube. The volume element
 /// dV₀ = (C × C′) dζ R dR ds factorises into the axial, the radial and the circumferential direction.
 pub fn harmonic_mass(tube: &SplineTube, n: usize) -> BlockBanded {

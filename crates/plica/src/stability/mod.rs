@@ -17,7 +17,7 @@
 //! | letter | meaning | unit | Rust |
 //! |---|---|---|---|
 //! | n | circumferential mode | – | [`Change::harmonic`] |
-//! | K_n | block of the tangent | E D | [`crate::assembly::SplineTube::tangent_in_harmonic`] |
+//! | K_n | block of the tangent | E D | `SplineTube::tangent_in_harmonic` |
 //! | M_n | mass of unit density | D³ | [`harmonic_mass`] |
 //! | λ | eigenvalue | E/D² | [`Tested::lowest`] |
 //! | x | mode: amplitudes (z, r, θ) of the control points | D | [`Mode::shape`] |
