@@ -1,9 +1,7 @@
 //! Every broken case in `broken/` and what is said about it. `PLICA_BLESS=1 cargo test` rewrites
 //! `broken.txt`.
 
-mod common;
-
-use common::{compare, plica, tests, text};
+use crate::common::{compare, plica, tests, text};
 
 #[test]
 fn broken_cases_are_explained() {

@@ -1,6 +1,6 @@
 //! The documents agree with the files, commands, tests and columns they name.
 
-use crate::common::{files, quoted, read, root, succeed};
+use crate::common::{SHORT, files, quoted, read, root, succeed};
 use plica::equilibrium::Stability;
 use plica::measure::{Shape, Side};
 use plica::solve::Method;
@@ -79,6 +79,35 @@ fn the_commands_of_the_pages_exist() {
 fn the_readme_shows_the_case_it_runs() {
     let case = read("cases/invagination.toml");
     assert!(read("README.md").contains(&format!("```toml\n{case}```")));
+}
+
+/// The code of README.md.
+fn readme(text: &str) -> Result<(), Box<dyn std::error::Error>> {
+    for state in plica::Study::new(&plica::case::read(text, "tube")?)? {
+        let state = state?; // typed, in D and E
+        println!(
+            "{} {:.4} {:.4e}",
+            state.stage,
+            state.length_ratio(),
+            state.energy
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn the_rust_code_of_the_readme_runs() {
+    readme(SHORT).unwrap();
+    let lines =
+        |text: &str| -> Vec<String> { text.lines().map(|line| line.trim().to_owned()).collect() };
+    let page = read("README.md");
+    let block = page.split("```rust\n").nth(1).unwrap();
+    let shown = lines(block.split("```").next().unwrap());
+    let tested = lines(include_str!("documents.rs"));
+    assert!(
+        tested.windows(shown.len()).any(|lines| lines == shown),
+        "the code of README.md differs from `readme` in this file"
+    );
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod common;
 
+mod broken;
 mod command_line;
 mod export;
 mod faults;

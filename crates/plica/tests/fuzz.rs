@@ -5,9 +5,7 @@
 //! --release -p plica --test fuzz` goes on for so long, with other seeds at every start, and leaves what fails in the directory of
 //! temporary files.
 
-mod common;
-
-use common::{Chance, files, root};
+use crate::common::{Chance, files, root};
 use plica::case;
 use plica::run_directory::Checkpoint;
 use plica::saved_state::SavedState;

@@ -1,8 +1,14 @@
 //! Tests of the library through its public interface.
 
+mod common;
+
+mod equilibrium;
+mod fuzz;
 mod imperfections;
 mod loads;
+mod lowest_modes;
 mod rigid_body_motions;
+mod stability;
 mod study;
 mod tangents;
 mod three_dimensions;

@@ -1,7 +1,6 @@
 //! Three-dimensional tubes whose ends permit rigid-body motions.
 
-use plica::assembly::SplineTube;
-use plica::equilibrium::TubeProblem;
+use crate::common::{main_case, problem};
 use plica::solve::{Effort, Integrator, Path, PseudoTime, Scheme, State};
 use plica::study::Plan;
 use plica::tube::{Axial, Imperfection, Load, Part, Shape, Support, Wave};
@@ -16,16 +15,10 @@ const ENDS: [[Support; 2]; 4] = [
 
 /// Returns the main case on a coarse mesh with the given ends and scheme.
 fn plan(ends: [Support; 2], scheme: Scheme) -> Plan {
-    let text = include_str!("../../../cases/invagination.toml");
-    let mut plan = plica::case::read(text, "invagination").unwrap();
-    [plan.mesh.axial, plan.mesh.around, plan.mesh.thickness] = [24, 12, 4];
+    let mut plan = main_case([24, 12, 4]);
     plan.tube.ends = ends;
     plan.solver.scheme = scheme;
     plan
-}
-
-fn problem(plan: &Plan, rings: usize) -> TubeProblem {
-    TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings))
 }
 
 /// Returns the load of Dmin/D = 0.85.

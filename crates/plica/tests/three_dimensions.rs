@@ -1,6 +1,6 @@
 //! Three-dimensional solutions of perfect tubes match the axisymmetric ones.
 
-use plica::assembly::SplineTube;
+use crate::common::{main_case, problem};
 use plica::equilibrium::{Stability, TubeProblem, UnstableMode};
 use plica::solve::{Path, Step};
 use plica::study::{Plan, Study};
@@ -20,21 +20,9 @@ fn contracted(plan: &Plan, problem: &TubeProblem) -> (Vec<(f64, Step)>, Vec<f64>
     (states, path.state().u.clone())
 }
 
-/// Returns the main case on a small mesh.
-fn small() -> Plan {
-    let text = include_str!("../../../cases/invagination.toml");
-    let mut plan = plica::case::read(text, "invagination").unwrap();
-    (plan.mesh.axial, plan.mesh.around, plan.mesh.thickness) = (40, 12, 4);
-    plan
-}
-
-fn problem(plan: &Plan, rings: usize) -> TubeProblem {
-    TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings))
-}
-
 #[test]
 fn a_perfect_tube_in_three_dimensions_matches_the_axisymmetric_one() {
-    let plan = small();
+    let plan = main_case([40, 12, 4]);
     let (axisymmetric, ring) = contracted(&plan, &problem(&plan, 1));
     for rings in [12, 4] {
         let (states, u) = contracted(&plan, &problem(&plan, rings));
@@ -58,7 +46,7 @@ fn a_perfect_tube_in_three_dimensions_matches_the_axisymmetric_one() {
 
 #[test]
 fn the_path_in_three_dimensions_does_not_depend_on_the_number_of_threads() {
-    let plan = small();
+    let plan = main_case([40, 12, 4]);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap()

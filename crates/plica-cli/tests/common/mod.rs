@@ -1,7 +1,5 @@
 //! Runs the program, compares its output with files, and reads files of the repository.
 
-#![allow(dead_code)] // tests/broken.rs uses only a part
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -108,7 +106,7 @@ pub fn compare(file: &str, text: &str) {
 }
 
 /// A tube that contracts slightly in three steps.
-const SHORT: &str = r#"
+pub const SHORT: &str = r#"
 title = "a short run"
 [tube]
 length = 2.0

@@ -1,47 +1,48 @@
-//! What the tests of pages, and those by chance, share.
+//! Problems and helpers that several tests use.
 
-#![allow(dead_code)] // every file of tests uses a part
-
+use plica::assembly::SplineTube;
+use plica::equilibrium::TubeProblem;
+use plica::study::Plan;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The root of the repository.
+/// Returns the main case on a mesh of the given control points along, around and through the wall.
+pub fn main_case([axial, around, thickness]: [usize; 3]) -> Plan {
+    let text = include_str!("../../../../cases/invagination.toml");
+    let mut plan = plica::case::read(text, "invagination").unwrap();
+    (plan.mesh.axial, plan.mesh.around, plan.mesh.thickness) = (axial, around, thickness);
+    plan
+}
+
+/// Returns the problem of a plan with the given number of independent rings.
+pub fn problem(plan: &Plan, rings: usize) -> TubeProblem {
+    TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings))
+}
+
+/// Returns the root of the repository.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The text of a file of the repository.
-pub fn text(path: impl AsRef<Path>) -> String {
-    let path = root().join(path);
-    let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    text.replace("\r\n", "\n")
-}
-
-/// The files with an ending in a directory and below it.
-pub fn files(directory: &Path, ending: &str) -> Vec<PathBuf> {
+/// Returns the files with an extension in a directory and its subdirectories.
+pub fn files(directory: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = vec![];
     for entry in fs::read_dir(directory).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            found.extend(files(&path, ending));
-        } else if path.extension().is_some_and(|e| e == ending) {
+            found.extend(files(&path, extension));
+        } else if path.extension().is_some_and(|e| e == extension) {
             found.push(path);
         }
     }
     found
 }
 
-/// What stands between backticks.
-pub fn quoted(text: &str) -> Vec<String> {
-    let quoted = text.split('`').skip(1).step_by(2);
-    quoted.map(str::to_owned).collect()
-}
-
-/// Numbers that look random, the same from the same seed (xorshift); the seed is not 0.
+/// Pseudo-random numbers from a seed that is not 0, by xorshift.
 pub struct Chance(pub u64);
 
 impl Chance {
-    /// One of 0 to n − 1; of none, 0.
+    /// Returns a number from 0 to n − 1; 0 if n is 0.
     pub fn below(&mut self, n: usize) -> usize {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
