@@ -3,6 +3,7 @@
 mod common;
 
 mod equilibrium;
+mod examples;
 mod fuzz;
 mod imperfections;
 mod loads;
