@@ -1,9 +1,7 @@
-//! Texts and files that are nearly a case, a saved state or a checkpoint: whatever is made of them, readers answer with a value
-//! or an error, soon, and never panic.
+//! Readers of cases, saved states and checkpoints return a value or an error for any input, in bounded time, and never panic.
 //!
-//! Mutations come from a seed, so that a failure comes again. Among the other tests they are few; `PLICA_FUZZ_SECONDS=3600 cargo test
-//! --release -p plica --test fuzz` goes on for so long, with other seeds at every start, and leaves what fails in the directory of
-//! temporary files.
+//! The inputs are mutations of valid ones from a seed. `PLICA_FUZZ_SECONDS=3600 cargo test --release -p plica fuzz` runs for an
+//! hour with new seeds and writes inputs that fail to the directory of temporary files.
 
 use crate::common::{Chance, files, root};
 use plica::case;
