@@ -1,8 +1,8 @@
-//! Reading a case from disk.
+//! Reads case files and the files that they name from disk.
 
 use crate::args::CaseArguments;
 use crate::failure::Failure;
-use plica::case::{self, Open, Wanted};
+use plica::case::{self, InputFile, OpenInput};
 use plica::run_directory::{RunDirectory, RunError};
 use plica::saved_state::{SavedState, SavedStateError};
 use plica::study::{ModeShape, Plan};
@@ -10,39 +10,39 @@ use plica_view::draw::missing_glyphs;
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
-/// Larger than any case; smaller than the memory of any machine.
+/// Largest size of a case file, in bytes.
 const LARGEST: u64 = 1 << 20;
 
-/// The text of a case file and what it means; files that it names are looked for from the folder of the file on. They lie in
-/// that folder, in the one that the program runs in, or in one that the user has given.
+/// Reads a case file, and returns its text and its plan. Paths in it are relative to its folder; the
+/// files lie in that folder, in the current one, or in the one that `--within` names.
 pub fn open(arguments: &CaseArguments) -> Result<(String, Plan), Failure> {
-    let reach = Reach::of(arguments)?;
-    open_with(&arguments.file, &|wanted| reach.read(wanted))
+    let folders = Folders::of(arguments)?;
+    open_with(&arguments.file, &|file| folders.read(file))
 }
 
-/// What whoever runs a case should know, a sentence each.
+/// Returns advice on a case that is allowed but perhaps not meant, a sentence each.
 pub fn advice(plan: &Plan) -> Vec<String> {
     let mut advice = case::advice(plan);
     let names = plan.stages.iter().map(|stage| &stage.name[..]);
     let drawn: String = std::iter::once(&plan.title[..]).chain(names).collect();
-    let boxes: String = missing_glyphs(&drawn).into_iter().collect();
-    if !boxes.is_empty() {
+    let missing: String = missing_glyphs(&drawn).into_iter().collect();
+    if !missing.is_empty() {
         advice.push(format!(
-            "there are no letters for {boxes} of titles and names in the fonts of pictures: PNGs show boxes (SVGs and reports are set in the fonts of whoever reads them)"
+            "the fonts of pictures have no glyphs for {missing} in the title or a name: PNGs show boxes (SVGs and reports use the reader's fonts)"
         ));
     }
     advice
 }
 
-/// Where files may lie that a case names.
-struct Reach<'a> {
-    folder: &'a Path,
+/// The folders from which files that a case names may be read.
+struct Folders<'a> {
+    case: &'a Path,
     within: Option<&'a Path>,
 }
 
-impl<'a> Reach<'a> {
+impl<'a> Folders<'a> {
     fn of(arguments: &'a CaseArguments) -> Result<Self, Failure> {
-        let folder = match arguments.file.parent() {
+        let case = match arguments.file.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
@@ -51,57 +51,50 @@ impl<'a> Reach<'a> {
             let what = format!("--within {}: there is no such folder", within.display());
             return Err(Failure::Usage(what));
         }
-        Ok(Self { folder, within })
+        Ok(Self { case, within })
     }
 
-    /// Reads a file, if it lies there.
-    fn read(&self, wanted: Wanted<'_>) -> Result<SavedState, SavedStateError> {
-        let file = self.folder.join(wanted.path());
-        let roots = [Some(self.folder), Some(Path::new(".")), self.within];
-        // Links followed, once.
-        let file = file.canonicalize()?;
-        if !lies_in(&file, roots.into_iter().flatten()) {
-            let why = "it lies neither in the folder of the case nor in the one that plica runs in, and a case does not reach further by \
-                itself; if it may, name a folder that holds it with --within DIR";
+    /// Reads a file in one of the folders. Symbolic links are resolved before.
+    fn read(&self, file: InputFile<'_>) -> Result<SavedState, SavedStateError> {
+        let file = self.case.join(file.path()).canonicalize()?;
+        let folders = [Some(self.case), Some(Path::new(".")), self.within];
+        let contains = |folder: &Path| {
+            let folder = folder.canonicalize();
+            folder.is_ok_and(|folder| file.starts_with(folder))
+        };
+        if !folders.into_iter().flatten().any(contains) {
+            let why = "the file is neither in the folder of the case nor in the current one; \
+                use --within DIR to allow another folder";
             return Err(Error::new(ErrorKind::PermissionDenied, why).into());
         }
         SavedState::read(&file)
     }
 }
 
-/// Whether a file lies in one of some folders, links of those followed.
-fn lies_in<'a>(file: &Path, mut folders: impl Iterator<Item = &'a Path>) -> bool {
-    folders.any(|folder| {
-        let folder = folder.canonicalize();
-        folder.is_ok_and(|folder| file.starts_with(folder))
-    })
-}
-
-/// The same, with another way to the files that it names.
-pub fn open_with(path: &Path, named: &Open<'_>) -> Result<(String, Plan), Failure> {
-    let trouble = |error| Failure::Files(format!("{}: {error}", path.display()));
-    let size = std::fs::metadata(path).map_err(trouble)?.len();
-    if size > LARGEST {
-        let what = format!("{} is too large for a case ({size} bytes)", path.display());
-        return Err(Failure::Usage(what));
+/// Reads a case file; `open` reads the files that it names.
+pub fn open_with(path: &Path, open: &OpenInput<'_>) -> Result<(String, Plan), Failure> {
+    let failure = |error| Failure::Files(format!("{}: {error}", path.display()));
+    let too_large = || {
+        let what = format!("{} is too large for a case", path.display());
+        Failure::Usage(what)
+    };
+    if std::fs::metadata(path).map_err(failure)?.len() > LARGEST {
+        return Err(too_large());
     }
-    // A device or a pipe has no size; no more than the largest case is read of it.
+    // A device or a pipe has no size.
     let mut bytes = vec![];
-    let file = std::fs::File::open(path).map_err(trouble)?;
+    let file = std::fs::File::open(path).map_err(failure)?;
     file.take(LARGEST + 1)
         .read_to_end(&mut bytes)
-        .map_err(trouble)?;
+        .map_err(failure)?;
     if bytes.len() as u64 > LARGEST {
-        return Err(Failure::Usage(format!(
-            "{} is too large for a case",
-            path.display()
-        )));
+        return Err(too_large());
     }
     let Ok(text) = String::from_utf8(bytes) else {
         let what = format!("{} is not text (a case is TOML, in UTF-8)", path.display());
         return Err(Failure::Usage(what));
     };
-    match case::read_with(&text, &stem(path), named) {
+    match case::read_with(&text, &stem(path), open) {
         Ok(plan) => Ok((text, plan)),
         Err(error) => Err(Failure::Case {
             path: path.to_owned(),
@@ -111,19 +104,18 @@ pub fn open_with(path: &Path, named: &Open<'_>) -> Result<(String, Plan), Failur
     }
 }
 
-/// The plan of a run that is there. The state it began from it has kept, and the modes of its imperfections.
+/// Returns the plan of a run directory, with the start state and the modes that it keeps.
 ///
 /// # Errors
-/// What it has kept, if that is damaged, and not the case that names it.
+/// If one of the files that it keeps is damaged, or its case is not valid.
 pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
     for path in directory.inputs() {
         let read = SavedState::read(&path);
         read.map_err(|source| Failure::Run(RunError::State { path, source }))?;
     }
-    let own = |wanted: Wanted<'_>| kept(directory, wanted);
     let case = directory.path().join("case.toml");
-    let (_, mut plan) = open_with(&case, &own)?;
-    // A case without a title had that of its file, which was called otherwise then.
+    let (_, mut plan) = open_with(&case, &|file| kept(directory, file))?;
+    // Without a title of its own, a case has the name of its file, which is another one here.
     let manifest = directory.manifest();
     let titled = manifest["title"].as_str().filter(|title| !title.is_empty());
     if let Some(title) = titled.filter(|_| plan.title == stem(&case)) {
@@ -132,43 +124,43 @@ pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
     Ok(plan)
 }
 
-/// [`open`] for a run that was begun by a case that meant `old`: a file that is still named as it was then is not asked for again.
+/// Reads the case file of a run that is resumed, whose plan was `old`. Files with the same paths as
+/// before are read from the run directory.
 pub fn open_again(
     arguments: &CaseArguments,
     directory: &RunDirectory,
     old: &Plan,
 ) -> Result<(String, Plan), Failure> {
-    let reach = Reach::of(arguments)?;
+    let folders = Folders::of(arguments)?;
     open_with(&arguments.file, &|wanted| {
-        let as_then = match wanted {
-            Wanted::State(file) => old.start.iter().any(|start| start.file == file),
-            Wanted::Mode(number, file) => {
-                let is_it = |mode: &ModeShape| mode.imperfection == number && mode.file == file;
-                old.modes.iter().any(is_it)
+        let is_same = match wanted {
+            InputFile::State(file) => old.start.iter().any(|start| start.file == file),
+            InputFile::Mode(number, file) => {
+                let is_same = |mode: &ModeShape| mode.imperfection == number && mode.file == file;
+                old.modes.iter().any(is_same)
             }
         };
-        if as_then {
-            kept(directory, wanted)
-        } else {
-            reach.read(wanted)
+        match is_same {
+            true => kept(directory, wanted),
+            false => folders.read(wanted),
         }
     })
 }
 
-/// What a run has kept of a file that its case names.
-fn kept(directory: &RunDirectory, wanted: Wanted<'_>) -> Result<SavedState, SavedStateError> {
-    match wanted {
-        Wanted::State(_) => {
+/// Reads the copy of a file that a run directory keeps.
+fn kept(directory: &RunDirectory, file: InputFile<'_>) -> Result<SavedState, SavedStateError> {
+    match file {
+        InputFile::State(_) => {
             let kept = directory.start();
-            // A run of before that was kept has its own first state.
+            // Older run directories have only their first state.
             let first = directory.path().join(RunDirectory::name_of_state(0));
             SavedState::read(if kept.exists() { &kept } else { &first })
         }
-        Wanted::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
+        InputFile::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
     }
 }
 
-/// The name of a case: that of its file, without the ending.
+/// Returns the name of a case: that of its file, without the extension.
 pub fn stem(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or(path.as_os_str());
     stem.to_string_lossy().into_owned()

@@ -19,8 +19,7 @@ pub fn render(path: &Path, text: &str, error: &CaseError) -> String {
     let starts: Vec<usize> = text.match_indices('\n').map(|(at, _)| at + 1).collect();
     let mut lines: Vec<String> = Vec::new();
     for problem in error.problems.iter().take(MOST) {
-        // A problem without a place is shown at the end of the file.
-        let span = problem.span.clone().unwrap_or(text.len()..text.len());
+        let span = problem.span.clone();
         // Show only the lines of the problem, with their numbers.
         let before = starts.partition_point(|start| *start <= span.start);
         let from = before.checked_sub(1).map_or(0, |line| starts[line]);
@@ -65,8 +64,8 @@ fn render_problem(
         .path(path)
         .annotation(AnnotationKind::Primary.span(excerpt.span));
     let mut group = Level::ERROR.primary_title(title).element(snippet);
-    if let Some(cure) = &problem.cure {
-        group = group.element(Level::HELP.message(cure.as_str()));
+    if let Some(help) = &problem.help {
+        group = group.element(Level::HELP.message(help.as_str()));
     }
     renderer.render(&[group])
 }

@@ -3,7 +3,7 @@
 use super::job::Job;
 use super::{Observer, Trouble};
 use plica::assembly::SplineTube;
-use plica::case::{self, Wanted};
+use plica::case::{self, InputFile};
 use plica::measure::{Face, Meridians, Wall};
 use plica::monitor::Monitor;
 use plica::run_directory::{self, RunDirectory, RunError, Verdict};
@@ -149,7 +149,7 @@ fn opened(job: &Job, folder: &Path) -> Option<Ran> {
 
 fn plan(job: &Job, text: &str, folder: &Path) -> Result<Plan, case::CaseError> {
     let folder = folder.join(&job.name);
-    let open = |wanted: Wanted<'_>| SavedState::read(&folder.join(wanted.path()));
+    let open = |wanted: InputFile<'_>| SavedState::read(&folder.join(wanted.path()));
     case::read_with(text, &job.name, &open)
 }
 

@@ -1,16 +1,16 @@
-//! What is allowed in a case, and yet may not be what was wanted.
+//! Advice on plans that are valid but perhaps not meant.
 
 use crate::activation::Profile;
 use crate::spline::{Circle, graded_breakpoints};
 use crate::study::Plan;
 use crate::tube::{Support, Symmetry};
 
-/// Elements across a zone below which its folds are drawn coarsely.
+/// Number of elements along a zone that resolves a fold.
 const FINE: usize = 30;
-/// Deviation from the circle that begins to show in energies.
+/// Deviation from the circle, in D, that affects energies.
 const ROUND: f64 = 1e-5;
 
-/// Warnings about a plan, a sentence each.
+/// Returns advice on a plan, a sentence each.
 pub fn advice(plan: &Plan) -> Vec<String> {
     let mut advice = Vec::new();
     let (tube, mesh) = (&plan.tube, &plan.mesh);
@@ -23,7 +23,7 @@ pub fn advice(plan: &Plan) -> Vec<String> {
         let name = &muscle.name;
         if across < FINE {
             advice.push(format!(
-                "the zone of muscles.{name} is only {across} elements long; {FINE} or more draw a fold well"
+                "the zone of muscles.{name} is only {across} elements long; a fold needs {FINE} or more"
             ));
         }
         if muscle.profile == Profile::HalfSine {
@@ -35,7 +35,7 @@ pub fn advice(plan: &Plan) -> Vec<String> {
     let error = Circle::new(mesh.degree, mesh.around).error;
     if error > ROUND {
         advice.push(format!(
-            "{} splines of degree {} around draw the circle to {error:.1e} only",
+            "{} splines of degree {} around approximate the circle to {error:.1e} only",
             mesh.around, mesh.degree
         ));
     }

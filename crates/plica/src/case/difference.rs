@@ -1,4 +1,4 @@
-//! What two case files say differently.
+//! The keys that two case files give different values.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,9 +8,9 @@ use std::fmt;
 pub struct Difference {
     /// The key with all its tables, such as `stages[2].steps`.
     pub key: String,
-    /// Its value in the one; none if it is not there.
+    /// Its value in the first text; none if it is not given.
     pub old: Option<String>,
-    /// And in the other.
+    /// Its value in the second text.
     pub new: Option<String>,
 }
 
@@ -27,7 +27,8 @@ impl fmt::Display for Difference {
     }
 }
 
-/// The differences between two texts, key by key; spaces, comments and order aside. Nothing of a text that is no TOML.
+/// Returns the keys with different values in two texts, whatever their spaces, comments and order. A text
+/// that is not TOML has no keys.
 pub fn differences(old: &str, new: &str) -> Vec<Difference> {
     let [old, new] = [old, new].map(|text| {
         let mut values = BTreeMap::new();
@@ -75,15 +76,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_means_something_else_differs() {
+    fn only_values_are_compared() {
         let old = "title = 'a'\n[tube]\nlength = 3.0 # long\n[[stages]]\nsteps = 4\n[[stages]]\nsteps = 5\n";
         let new = "title='a'\n[tube]\nlength = 4.0\nthickness = 0.1\n[[stages]]\nsteps = 4\n[[stages]]\nsteps = 6\n";
-        let told: Vec<String> = differences(old, new)
+        let found: Vec<String> = differences(old, new)
             .iter()
             .map(ToString::to_string)
             .collect();
         assert_eq!(
-            told,
+            found,
             [
                 "stages[2].steps: 5 -> 6",
                 "tube.length: 3.0 -> 4.0",

@@ -1,36 +1,33 @@
-//! A case with some of its keys changed.
+//! Changes keys in the text of a case.
 
-use toml_edit::{DocumentMut, Item, TableLike, Value};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
-/// Why a key cannot be changed.
+/// A key that cannot be changed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
-    /// The case is not TOML.
-    #[error("the case is not TOML: {0}")]
-    Case(String),
-    /// The value is not TOML.
-    #[error("{key} = {value}: the value is not TOML ({error})")]
-    Value {
+    /// The case, or the case with the key changed, is not TOML.
+    #[error("{key}: {error}")]
+    Syntax {
         /// The dotted key.
         key: String,
-        /// The value.
-        value: String,
-        /// What is wrong with it.
+        /// The syntax error.
         error: String,
     },
-    /// There is something on the way to the key that holds no keys.
-    #[error("{key}: {step} is not a table, or no member of a list")]
-    Way {
+    /// The path of the key passes through something that is not a table.
+    #[error("{key}: {step} is not a table or a member of a list")]
+    NotATable {
         /// The dotted key.
         key: String,
-        /// Where it goes wrong.
+        /// The part of the path that is not a table.
         step: String,
     },
 }
 
-/// The text of a case with keys changed or added; comments and everything else stay. A key is dotted, with members of
-/// lists counted from one, as in messages (`stages[2].steps`); a value is written as in TOML (`0.25`, `"newmark"`).
-/// Whether the outcome is a case is for [`super::read`] to say.
+/// Returns the text of a case with keys changed or added; comments and everything else stay. A key is
+/// dotted, with members of lists counted from one, as in messages (`stages[2].steps`). A value is
+/// written as in TOML (`0.25`, `"newmark"`). The result is not checked as a case.
 ///
 /// ```
 /// let case = "[tube]\nlength = 3.0 # in diameters\n\n[[stages]]\nsteps = 5\n";
@@ -41,137 +38,174 @@ pub enum EditError {
 /// ```
 ///
 /// # Errors
-/// [`EditError`] for what is not TOML, and for a key that leads through something else than tables.
+/// [`EditError`] if the text or a value is not TOML, or a key passes through something that is not a
+/// table.
 pub fn edited<K: AsRef<str>, V: AsRef<str>>(
     text: &str,
     changes: &[(K, V)],
 ) -> Result<String, EditError> {
-    let document = text.parse::<DocumentMut>();
-    let mut document = document.map_err(|error| EditError::Case(error.to_string()))?;
+    let mut text = text.to_owned();
     for (key, value) in changes {
         let (key, value) = (key.as_ref(), value.as_ref());
-        let parsed = value.parse::<Value>().map_err(|error| EditError::Value {
+        let syntax = |error: toml::de::Error| EditError::Syntax {
             key: key.into(),
-            value: value.into(),
             error: error.to_string(),
-        })?;
-        let steps: Vec<&str> = key.split('.').collect();
-        set(document.as_table_mut(), &steps, parsed).map_err(|step| EditError::Way {
-            key: key.into(),
-            step,
-        })?;
+        };
+        DeValue::parse(value).map_err(syntax)?;
+        let root = DeTable::parse(&text).map_err(syntax)?;
+        let (place, written) =
+            find(&text, &root, key, value).map_err(|step| EditError::NotATable {
+                key: key.into(),
+                step,
+            })?;
+        let mut changed = text.clone();
+        changed.replace_range(place, &written);
+        DeTable::parse(&changed).map_err(syntax)?;
+        text = changed;
     }
-    Ok(document.to_string())
+    Ok(text)
 }
 
+/// Returns the place where the value of a key belongs, and the text to write there.
+///
 /// # Errors
-/// The step at which the way ends.
-fn set(table: &mut dyn TableLike, steps: &[&str], value: Value) -> Result<(), String> {
-    let Some((&step, rest)) = steps.split_first() else {
-        return Ok(());
-    };
-    let (name, member) = match step.split_once('[') {
-        Some((name, rest)) => {
-            let number = rest.strip_suffix(']').and_then(|n| n.parse().ok());
-            (name, Some(number.filter(|n| *n > 0).ok_or(step)?))
-        }
-        None => (step, None::<usize>),
-    };
-    if rest.is_empty() && member.is_none() {
-        match table.get_mut(name) {
-            // What is written around the value stays.
-            Some(Item::Value(old)) => {
-                let decor = old.decor().clone();
-                *old = value;
-                *old.decor_mut() = decor;
+/// The step of the path that is not a table.
+fn find(
+    text: &str,
+    root: &Spanned<DeTable>,
+    key: &str,
+    value: &str,
+) -> Result<(Range<usize>, String), String> {
+    let steps: Vec<&str> = key.split('.').collect();
+    let mut table = root.get_ref();
+    // The innermost table with braces or a header: where a key is inserted, the text before and after
+    // it, and its path in that table.
+    let mut insertion = None;
+    let mut path: Vec<&str> = vec![];
+    for (i, &step) in steps.iter().enumerate() {
+        let (name, member) = match step.strip_suffix(']').and_then(|step| step.split_once('[')) {
+            Some((name, number)) => (name, Some(number.parse::<usize>().map_err(|_| step)?)),
+            None => (step, None),
+        };
+        let found = match (table.get(name), member) {
+            (None, None) => {
+                path.extend(&steps[i..]);
+                break;
             }
-            _ => {
-                table.insert(name, Item::Value(value));
+            (found, None) => found,
+            (found, Some(n)) => {
+                let list = found.and_then(|list| list.get_ref().as_array());
+                list.and_then(|list| list.get(n.checked_sub(1)?))
             }
+        };
+        let found = found.ok_or(step)?;
+        let (span, is_last) = (found.span(), i + 1 == steps.len());
+        let is_inline = text[span.clone()].starts_with('{');
+        if is_last && (is_inline || !found.get_ref().is_table()) {
+            return Ok((span, value.to_owned()));
         }
-        return Ok(());
+        table = found.get_ref().as_table().ok_or(step)?;
+        path.push(step);
+        if is_inline {
+            let after = if table.is_empty() { " " } else { "," };
+            insertion = Some((span.start + 1, " ", after));
+            path.clear();
+        } else if text[span.clone()].starts_with('[') {
+            insertion = Some(match text[span.end..].find('\n') {
+                Some(end) => (span.end + end + 1, "", "\n"),
+                None => (text.len(), "\n", ""),
+            });
+            path.clear();
+        }
     }
-    if member.is_none() && !table.contains_key(name) {
-        table.insert(name, toml_edit::table());
-    }
-    let item = table.get_mut(name).ok_or(step)?;
-    let inner = match member {
-        None => item.as_table_like_mut(),
-        Some(n) => match item {
-            Item::ArrayOfTables(list) => list.get_mut(n - 1).map(|t| t as &mut dyn TableLike),
-            Item::Value(Value::Array(list)) => list
-                .get_mut(n - 1)
-                .and_then(Value::as_inline_table_mut)
-                .map(|t| t as &mut dyn TableLike),
-            _ => None,
-        },
-    };
-    set(inner.ok_or(step)?, rest, value)
+    let end = text.len()..text.len();
+    Ok(match (insertion, steps.split_last()) {
+        (Some((at, before, after)), _) => {
+            let path = path.join(".");
+            (at..at, format!("{before}{path} = {value}{after}"))
+        }
+        (None, Some((name, tables))) if !tables.is_empty() => {
+            let table = tables.join(".");
+            (end, format!("\n[{table}]\n{name} = {value}\n"))
+        }
+        _ => (0..0, format!("{key} = {value}\n")),
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const CASE: &str = "title = \"x\" # what it is
+    const CASE: &str = "title = \"x\" # a title
 
 [mesh]
 control_points = { axial = 60, around = 16, thickness = 4 }
 
+[material.neo-hookean]
+
 [[stages]]
 name = \"contract\"
-drive.circular.diameter_ratio = 0.25 # narrow
-";
+drive.circular.diameter_ratio = 0.25 # narrow";
 
     #[test]
-    fn every_kind_of_table_is_gone_through() {
+    fn keys_of_every_kind_of_table_are_changed_and_added() {
         let changes = [
             ("title", "\"y\""),
             ("mesh.control_points.axial", "90"),
+            ("mesh.refine", "[]"),
             ("stages[1].drive.circular.diameter_ratio", "0.3"),
             ("stages[1].drive.colon.displacement", "0.1"),
+            ("stages[1].drive.colon.twist_degrees", "1"),
             ("solver.pseudo_time.damping", "5.0"),
+            ("solver.pseudo_time.ramp", "3"),
+            ("solver.scheme", "'newmark'"),
+            ("material.neo-hookean.poisson_ratio", "0.3"),
         ];
         let text = edited(CASE, &changes).unwrap();
-        let table: toml::Table = text.parse().unwrap();
-        assert_eq!(table["title"].as_str(), Some("y"));
-        assert_eq!(
-            table["mesh"]["control_points"]["axial"].as_integer(),
-            Some(90)
-        );
-        assert_eq!(
-            table["mesh"]["control_points"]["around"].as_integer(),
-            Some(16)
-        );
-        let drive = &table["stages"][0]["drive"];
-        assert_eq!(drive["circular"]["diameter_ratio"].as_float(), Some(0.3));
-        assert_eq!(drive["colon"]["displacement"].as_float(), Some(0.1));
-        assert_eq!(
-            table["solver"]["pseudo_time"]["damping"].as_float(),
-            Some(5.0)
-        );
-        assert!(text.contains("# what it is") && text.contains("# narrow"));
+        let expected: toml::Table = "title = 'y'
+            mesh = { control_points = { axial = 90, around = 16, thickness = 4 }, refine = [] }
+            material.neo-hookean.poisson_ratio = 0.3
+            solver = { scheme = 'newmark', pseudo_time = { damping = 5.0, ramp = 3 } }
+            [[stages]]
+            name = 'contract'
+            drive.circular.diameter_ratio = 0.3
+            drive.colon = { displacement = 0.1, twist_degrees = 1 }"
+            .parse()
+            .unwrap();
+        assert_eq!(text.parse::<toml::Table>().unwrap(), expected, "{text}");
+        assert!(text.contains("# a title") && text.contains("# narrow"));
         assert_eq!(edited(CASE, &[("", ""); 0]).unwrap(), CASE);
     }
 
     #[test]
-    fn what_cannot_be_changed_says_why() {
-        let way = |key| edited(CASE, &[(key, "1")]).unwrap_err().to_string();
-        assert_eq!(
-            way("stages[2].steps"),
-            "stages[2].steps: stages[2] is not a table, or no member of a list"
+    fn a_key_that_is_added_to_braces_needs_no_header() {
+        let text = edited(
+            "a = { b = 1 }\nc = {}\n",
+            &[("a.x", "2"), ("c.d.e", "3"), ("t", "1")],
         );
         assert_eq!(
-            way("title.more"),
-            "title.more: title is not a table, or no member of a list"
+            text.unwrap(),
+            "t = 1\na = { x = 2, b = 1 }\nc = { d.e = 3 }\n"
         );
-        assert!(matches!(
-            edited(CASE, &[("title", "y z")]),
-            Err(EditError::Value { .. })
-        ));
+        // A value replaces all of a table in braces.
+        let points = edited(CASE, &[("mesh.control_points", "{ axial = 8 }")]).unwrap();
+        assert!(
+            points.contains("control_points = { axial = 8 }\n"),
+            "{points}"
+        );
+    }
+
+    #[test]
+    fn keys_that_cannot_be_changed_are_errors() {
+        let error = |key, value| edited(CASE, &[(key, value)]).unwrap_err().to_string();
+        for (key, step) in [("stages[2].steps", "stages[2]"), ("title.more", "title")] {
+            let rule = format!("{key}: {step} is not a table or a member of a list");
+            assert_eq!(error(key, "1"), rule);
+        }
+        assert!(error("title", "y z").starts_with("title: "));
         assert!(matches!(
             edited("=", &[("a", "1")]),
-            Err(EditError::Case(_))
+            Err(EditError::Syntax { .. })
         ));
     }
 }

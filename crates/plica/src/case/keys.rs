@@ -1,175 +1,439 @@
-//! What a key of the case file is: its type, its default, its range, its meaning.
+//! All keys of the case file. A key is declared here, and nowhere else: its doc comment, default, unit
+//! and range are what the reference page, the schema and the checks are made of.
 
-use super::table::KEYS;
-use std::borrow::Cow;
+use super::key::{Key, Kind, LENGTH, STRESS, default, described, required};
+use super::problem::Problems;
+use super::read::{Fields, Read, Table, Value, choice, choose, table};
+use crate::activation::{Direction, Profile};
+use crate::material::Volumetric;
+use crate::study::{LengthUnit, StressUnit};
+use crate::tube::{Axial, Integration, Push, Support, Symmetry};
+use std::collections::BTreeMap;
 
-/// One key of the case file.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Key {
-    /// Dotted path; `<name>` stands for a name of the user's, `[]` for any member of a list.
-    pub path: &'static str,
-    /// What may be written.
-    pub kind: Kind,
-    /// Its unit; empty if it has none.
-    pub unit: &'static str,
-    /// What holds if it is not given.
-    pub given: Given,
-    /// The range of a number.
-    pub range: Range,
-    /// What it means, as a sentence.
-    pub meaning: &'static str,
-}
-
-/// What may be written.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// One line of text.
-    Text,
-    /// `true` or `false`.
-    Switch,
-    /// A whole number.
-    Count,
-    /// A number.
-    Number,
-    /// One of some words, in quotes.
-    Word(&'static [&'static str]),
-    /// `[from, to]`.
-    Zone,
-    /// `[[x, s], …]`.
-    Points,
-    /// A list of tables.
-    Tables,
-    /// A table that stands for one of several choices.
-    Choice,
-}
-
-/// What holds if a key is not given.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Given {
-    /// It must be given, wherever the table around it is; with an example.
-    Always(&'static str),
-    /// It need not be given; this value is the default, as it would be written.
-    Or(&'static str),
-    /// It need not be given; the default in words, and an example.
-    OrElse(&'static str, &'static str),
-}
-
-/// The range of a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// Its lower end.
-    pub low: Limit,
-    /// Its upper end.
-    pub high: Limit,
-    /// Why it ends there; may be empty.
-    pub reason: &'static str,
-}
-
-/// One end of a range.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Limit {
-    /// It is open.
-    None,
-    /// The number itself is allowed.
-    At(f64),
-    /// The number itself is not allowed.
-    Beyond(f64),
-}
-
-impl Range {
-    /// Whether a number is in the range; if not, the rule it breaks.
-    pub fn broken_by(&self, x: f64) -> Option<String> {
-        let rule = match (self.low, self.high) {
-            (Limit::At(low), _) if x < low => format!("must be at least {}", plain(low)),
-            (Limit::Beyond(low), _) if x <= low => format!("must be above {}", plain(low)),
-            (_, Limit::At(high)) if x > high => format!("must be at most {}", plain(high)),
-            (_, Limit::Beyond(high)) if x >= high => format!("must be below {}", plain(high)),
-            _ => return None,
-        };
-        Some(match self.reason {
-            "" => rule,
-            reason => format!("{rule} ({reason})"),
-        })
-    }
-
-    /// The range in words; empty if it has no ends.
-    pub fn words(&self) -> String {
-        let low = match self.low {
-            Limit::None => None,
-            Limit::At(x) => Some(format!("at least {}", plain(x))),
-            Limit::Beyond(x) => Some(format!("above {}", plain(x))),
-        };
-        let high = match self.high {
-            Limit::None => None,
-            Limit::At(x) => Some(format!("at most {}", plain(x))),
-            Limit::Beyond(x) => Some(format!("below {}", plain(x))),
-        };
-        let ends: Vec<String> = [low, high].into_iter().flatten().collect();
-        match self.reason {
-            "" => ends.join(", "),
-            reason => format!("{} ({reason})", ends.join(", ")),
-        }
+table! {
+    /// A case as written, in its own units.
+    Case {
+        /// One line that describes the case, for the titles of tables and pictures.
+        title: Option<String> = described("the name of the file", "case");
+        /// The symmetry of the solution. With `"axisymmetric"` every cross-section stays a circle, which
+        /// may twist. `"none"` is the full three-dimensional tube.
+        symmetry: Symmetry = default("axisymmetric");
+        /// The units of the file and of the results. Without this table lengths are in the unit of
+        /// `tube.diameter`, and results in diameters D and Young's moduli E.
+        units: Option<Units> = described("none", "{ length = \"mm\", stress = \"kPa\" }");
+        /// The size of the tube at rest.
+        tube: Tube = default("{}");
+        /// The constitutive law of the wall, one of the tables below.
+        material: Material = default("{ neo-hookean = {} }");
+        /// The muscles of the wall, each with a name that you choose. `colon`, `ileum`, `inner-wall` and
+        /// `outer-wall` are taken. A name has at most 40 letters, digits, - and _.
+        muscles: BTreeMap<String, Muscle> = default("{}");
+        /// The supports of the two ends. A stage can move an end that is held, under the name `colon` or
+        /// `ileum`.
+        ends: Ends = default("{}");
+        /// The control points of the splines, and their degree.
+        mesh: Mesh = default("{}");
+        /// A saved state to begin from, instead of the tube at rest. The state may have another mesh, and
+        /// a higher symmetry: it is interpolated and brought to equilibrium first.
+        start: Option<Start> = described("at rest", "{ state = \"states/state-0015.safetensors\" }");
+        /// The load stages, one after the other. Each begins where the one before ends, the first at rest
+        /// or at `start`. Targets that a stage does not name stay as they are.
+        stages: Vec<Stage> = required("[{ drive.circular.diameter_ratio = 0.5 }]");
+        /// Small deviations from the perfect tube, which select the branch that it follows at a
+        /// bifurcation. They are present from rest on, and add up. A shape lies between −1 and 1; the
+        /// amplitude multiplies it.
+        imperfections: Vec<Imperfection> = default("[]");
+        /// The settings of the nonlinear solver.
+        solver: Solver = default("{}");
+        /// The files that a run writes, besides its history.
+        output: Output = default("{}");
     }
 }
 
-impl Key {
-    /// A value that may be written: the default if it is one.
-    pub fn example(&self) -> &'static str {
-        match self.given {
-            Given::Always(example) | Given::Or(example) | Given::OrElse(_, example) => example,
-        }
-    }
+choice! { Symmetry {
+    "axisymmetric" => Symmetry::Axisymmetric,
+    "none" => Symmetry::None,
+    /// `symmetry = { fold = m }`: the tube repeats m times around its axis; m divides
+    /// `mesh.control_points.around`.
+    "fold": usize = described("", "2").from(2.0).to(4096.0) => Symmetry::Fold,
+} }
 
-    /// The name of the key without the tables around it.
-    pub fn name(&self) -> &'static str {
-        self.path.rsplit('.').next().unwrap_or(self.path)
-    }
-}
-
-/// A number as a person would write it.
-fn plain(x: f64) -> String {
-    match x.abs() {
-        0.0 => "0".to_owned(),
-        size if (1e-3..1e6).contains(&size) => format!("{x}"),
-        _ => format!("{x:e}"),
+table! {
+    Units {
+        /// The unit of every length in the file and in the results.
+        length: LengthUnit = required("mm");
+        /// The unit of every stress in the file and in the results.
+        stress: StressUnit = required("kPa");
     }
 }
 
-/// The key with a path.
-pub(super) fn key(path: &str) -> Option<&'static Key> {
-    KEYS.iter().find(|key| key.path == path)
-}
+choice! { LengthUnit {
+    "m" => LengthUnit::Metre,
+    "cm" => LengthUnit::Centimetre,
+    "mm" => LengthUnit::Millimetre,
+    "um" => LengthUnit::Micrometre,
+} }
 
-/// The names that may follow a path, each once; `<name>` where the user chooses.
-pub(super) fn children(path: &str) -> Vec<&'static str> {
-    let mut names = Vec::new();
-    for key in KEYS {
-        let rest = match path {
-            "" => Some(key.path),
-            _ => key
-                .path
-                .strip_prefix(path)
-                .and_then(|r| r.strip_prefix('.')),
-        };
-        let name = rest.and_then(|r| r.split('.').next());
-        if let Some(name) = name.map(|n| n.trim_end_matches("[]"))
-            && !names.contains(&name)
-        {
-            names.push(name);
-        }
+choice! { StressUnit {
+    "Pa" => StressUnit::Pascal,
+    "kPa" => StressUnit::Kilopascal,
+    "MPa" => StressUnit::Megapascal,
+} }
+
+table! {
+    Tube {
+        /// Outer diameter D at rest.
+        diameter: f64 = default("1.0").unit(LENGTH).from(1e-9).to(1e9);
+        /// Length L at rest. The colon end is at 0, the ileum end at L.
+        length: Option<f64> = described("3 diameters", "3.0").unit(LENGTH).above(0.0);
+        /// Thickness H of the wall at rest, below half the diameter.
+        thickness: Option<f64> = described("0.06 diameters", "0.06").unit(LENGTH).above(0.0);
     }
-    names
 }
 
-/// The path of a key below another. A name stands in quotes where it must in TOML.
-pub(super) fn join(path: &str, name: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_<>".contains(c);
-    let name = match !name.is_empty() && name.chars().all(plain) {
-        true => Cow::from(name),
-        false => Cow::from(format!("\"{name}\"")),
-    };
-    match path {
-        "" => name.into_owned(),
-        _ => format!("{path}.{name}"),
+/// The constitutive law of the wall.
+#[derive(Clone, Debug)]
+pub(super) enum Material {
+    NeoHookean(NeoHookean),
+    MooneyRivlin(MooneyRivlin),
+}
+
+choice! { Material {
+    /// The compressible neo-Hookean law.
+    "neo-hookean": NeoHookean = described("", "{}") => Material::NeoHookean,
+    /// The compressible Mooney–Rivlin law.
+    "mooney-rivlin": MooneyRivlin = described("", "{}") => Material::MooneyRivlin,
+} }
+
+table! {
+    NeoHookean {
+        /// Young's modulus E at small strains.
+        youngs_modulus: f64 = default("1.0").unit(STRESS).from(1e-12).to(1e15);
+        /// Poisson's ratio ν at small strains.
+        poisson_ratio: f64 = default("0.495").above(-1.0).below(0.5).because("the law is compressible");
+        /// The volumetric energy: λ/2 (ln J)², as in the paper, or λ/4 (J² − 1 − 2 ln J), which stays
+        /// elliptic where the wall expands strongly and needs ν ≥ 0.
+        volumetric: Volumetric = default("logarithmic");
+    }
+}
+
+table! {
+    MooneyRivlin {
+        /// Young's modulus E at small strains.
+        youngs_modulus: f64 = default("1.0").unit(STRESS).from(1e-12).to(1e15);
+        /// Poisson's ratio ν at small strains.
+        poisson_ratio: f64 = default("0.495").from(0.0).below(0.5).because("the law is compressible");
+        /// The share s of the second invariant I₂ in the shear modulus, at most ν/(1 − 2ν). The
+        /// neo-Hookean law has s = 0.
+        i2_share: f64 = default("0.5").from(0.0).to(1.0);
+    }
+}
+
+choice! { Volumetric {
+    "logarithmic" => Volumetric::Logarithmic,
+    "quadratic" => Volumetric::Quadratic,
+} }
+
+table! {
+    Muscle {
+        /// The direction of its fibres: around the tube or along it.
+        direction: Direction = required("circular");
+        /// The part of the tube that it acts on, from the colon end. Zones of muscles of the same
+        /// direction do not overlap.
+        zone: [f64; 2] = required("[0.5, 1.0]").unit(LENGTH);
+        /// The distribution of its activity over the zone: ½(1 − cos 2πx), or sin πx, which has kinks at
+        /// the edges of the zone.
+        profile: Profile = default("raised-cosine");
+    }
+}
+
+choice! { Direction {
+    "circular" => Direction::Circular,
+    "longitudinal" => Direction::Longitudinal,
+} }
+
+choice! { Profile {
+    "raised-cosine" => Profile::RaisedCosine,
+    "half-sine" => Profile::HalfSine,
+    /// `profile = { smooth-box = { edge = 0.25 } }`: 1, with a smooth rise and fall at the edges.
+    "smooth-box": SmoothBox = described("", "{ edge = 0.25 }")
+        => |smooth: SmoothBox| Profile::SmoothBox { edge: smooth.edge },
+    /// `profile = { table = [[0.0, 0.0], …] }`: linear interpolation between points (position in the
+    /// zone, activity). Positions rise from 0 to 1; activities lie between 0 and 1.
+    "table": Vec<[f64; 2]> = described("", "[[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]")
+        => |points: Vec<[f64; 2]>| Profile::Table(points.iter().map(|&[x, s]| (x, s)).collect()),
+} }
+
+table! {
+    SmoothBox {
+        /// The fraction of the zone over which the activity rises, and again falls.
+        edge: f64 = required("0.25").above(0.0).to(0.5);
+    }
+}
+
+table! {
+    Ends {
+        /// The support of the end at 0. With `"fixed"` no point of the end face moves; with `"sliding"`
+        /// the face slides in its plane; with `"free"` it is not held.
+        colon: Support = default("fixed");
+        /// The support of the end at L.
+        ileum: Support = default("fixed");
+    }
+}
+
+choice! { Support {
+    "fixed" => Support::Fixed,
+    "sliding" => Support::Sliding,
+    "free" => Support::Free,
+} }
+
+table! {
+    Mesh {
+        /// The number of control points in each direction.
+        control_points: ControlPoints = default("{}");
+        /// The degree of the splines, in every direction.
+        degree: usize = default("3").from(1.0).to(5.0);
+        /// The quadrature of the volumetric energy: at all points, as in the paper, or at about one point
+        /// per element through the wall, which prevents locking of a nearly incompressible wall with few
+        /// elements through it. `"reduced"` needs degree 3 or 5.
+        volumetric_integration: Integration = default("full");
+        /// Zones with smaller elements along the tube; `refine = []` is a uniform mesh. Where zones
+        /// overlap, the largest factor holds.
+        refine: Option<Vec<Refine>> =
+            described("the zones of the muscles, factor 3", "[{ zone = [0.5, 1.0], factor = 3.0 }]");
+    }
+}
+
+table! {
+    ControlPoints {
+        /// Control points along the tube, more than the degree.
+        axial: usize = default("305").from(2.0).to(20000.0);
+        /// Control points around the whole tube, whatever the symmetry; at least twice the degree plus
+        /// two.
+        around: usize = default("60").from(4.0).to(4096.0);
+        /// Control points through the wall, more than the degree.
+        thickness: usize = default("8").from(2.0).to(64.0);
+    }
+}
+
+choice! { Integration {
+    "full" => Integration::Full,
+    "reduced" => Integration::Reduced,
+} }
+
+table! {
+    Refine {
+        /// The part of the tube that is refined.
+        zone: [f64; 2] = required("[0.5, 1.0]").unit(LENGTH);
+        /// The density of elements, relative to the rest of the tube.
+        factor: f64 = default("3.0").from(1.0).to(100.0);
+    }
+}
+
+table! {
+    Start {
+        /// Path of the saved state, relative to the folder of the case file. The file lies in that
+        /// folder, in the one that plica runs in, or in one that `--within DIR` names.
+        state: String = required("runs/tube/states/state-0015.safetensors");
+    }
+}
+
+const BEFORE_1: &str = "as in the stage before, or at the start; 1 at rest";
+const BEFORE_0: &str = "as in the stage before, or at the start; 0 at rest";
+
+table! {
+    Stage {
+        /// Its name in tables.
+        name: Option<String> = described("stage-1, stage-2, …", "stage-1");
+        /// The number of equal load steps. Each ends in a state of the history.
+        steps: usize = default("20").from(1.0).to(100_000.0);
+        /// The targets at its end: of muscles, by their names, of the ends `colon` and `ileum`, and of
+        /// the surfaces `inner-wall` and `outer-wall`.
+        drive: BTreeMap<String, Drive> = default("{}");
+    }
+}
+
+table! {
+    Drive {
+        /// Target of a circular muscle: the smallest (or largest) stress-free diameter over the diameter
+        /// at rest, Dmin/D.
+        diameter_ratio: Option<f64> = described(BEFORE_1, "1.0").above(0.0).to(10.0);
+        /// Target of a longitudinal muscle: the stress-free length of the whole tube over its length at
+        /// rest, Lmax/L.
+        length_ratio: Option<f64> = described(BEFORE_1, "1.0").above(0.0).to(10.0);
+        /// Target of a fixed or sliding end: its axial displacement from rest.
+        displacement: Option<f64> = described(BEFORE_0, "0.0").unit(LENGTH);
+        /// Target of a fixed end: its rotation about the axis.
+        twist_degrees: Option<f64> =
+            described(BEFORE_0, "0.0").unit("degrees").from(-3600.0).to(3600.0);
+        /// Target of a surface: follower pressure, per deformed area and normal to the deformed surface.
+        /// It pushes the inner wall outwards and the outer wall inwards. Both ends must be held (fixed or
+        /// sliding).
+        pressure: Option<f64> = described(BEFORE_0, "0.0").unit(STRESS);
+        /// Target of a surface: a dead load, per area at rest and normal to the surface at rest.
+        dead_load: Option<f64> = described(BEFORE_0, "0.0").unit(STRESS);
+    }
+}
+
+table! {
+    Imperfection {
+        /// The part that is imperfect: the position of an end face, the stress-free shape of the wall, or
+        /// a muscle, as below.
+        of: Part = required("colon-end");
+        /// The displacement where the shape is 1, or where a mode is largest. Of a muscle, not a length
+        /// but a fraction of its activity.
+        amplitude: f64 = required("1e-4").unit(LENGTH);
+        /// The direction of the displacement of an end. `"across"` is in its plane, normal to the wall
+        /// and around it so that no ring changes its length; mode 1 shifts the end sideways. `"axial"` is
+        /// along the axis; mode 1 tilts the end.
+        direction: Option<Push> = described("across", "across");
+        /// The shape: `shape = { wave = { mode = 2 } }`, `shape = { random = { seed = 7 } }` or, of the
+        /// geometry, `shape = { mode = "…" }`.
+        shape: Shape = required("{ wave = { mode = 1 } }");
+    }
+}
+
+/// The part that an imperfection is of.
+#[derive(Clone, Debug)]
+pub(super) enum Part {
+    ColonEnd,
+    IleumEnd,
+    Geometry,
+    Muscle(String),
+}
+
+choice! { Part {
+    "colon-end" => Part::ColonEnd,
+    "ileum-end" => Part::IleumEnd,
+    "geometry" => Part::Geometry,
+    /// `of = { muscle = "circular" }`: the strength of a muscle. Its stress-free stretch θ becomes
+    /// 1 + (θ − 1)(1 + amplitude · shape).
+    "muscle": String = described("", "circular") => Part::Muscle,
+} }
+
+choice! { Push {
+    "across" => Push::Across,
+    "axial" => Push::Axial,
+} }
+
+/// The shape of an imperfection.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    Wave(Wave),
+    Random(Random),
+    Mode(String),
+}
+
+choice! { Shape {
+    /// A single wave around the tube.
+    "wave": Wave = described("", "{ mode = 1 }") => Shape::Wave,
+    /// A random sum of waves.
+    "random": Random = described("", "{ seed = 7 }") => Shape::Random,
+    /// Path of a mode that `plica stability` found in an axisymmetric run; its place as for
+    /// `start.state`. For the geometry only. A mode n has a crest at angle zero.
+    "mode": String = described("", "runs/tube/modes/mode-01-harmonic-2.safetensors") => Shape::Mode,
+} }
+
+table! {
+    Wave {
+        /// Circumferential mode n, the number of waves in cos n(φ − φ₀). Mode 0 is axisymmetric, 1 is a
+        /// sideways shift, 2 is oval.
+        mode: usize = required("1").from(0.0).to(1024.0);
+        /// φ₀, the angle of a crest.
+        phase_degrees: f64 = default("0.0").unit("degrees").from(-360.0).to(360.0);
+        /// The factor along the zone of the muscle, or along the tube: 1, or sin πx. Not for an end.
+        axial: Option<Axial> = described("uniform; of the geometry half-sine", "uniform");
+    }
+}
+
+choice! { Axial {
+    "uniform" => Axial::Uniform,
+    "half-sine" => Axial::HalfWaves(1),
+    /// `axial = { zone = [0.5, 1.0] }`: ½(1 − cos 2πx) in a zone, and 0 elsewhere.
+    "zone": [f64; 2] = described("", "[0.5, 1.0]").unit(LENGTH) => Axial::Zone,
+} }
+
+table! {
+    Random {
+        /// The seed of the generator. The same seed gives the same shape in every version of plica.
+        seed: usize = required("7").from(0.0).to(1e9);
+        /// The largest circumferential mode, of those that the symmetry allows. All modes have the same
+        /// variance.
+        modes: Option<usize> = described("4, or as many as the mesh resolves", "4").from(0.0).to(50.0);
+        /// The largest number of half-waves along the zone of the muscle, or along the tube. Not for an
+        /// end.
+        half_waves: Option<usize> = default("4").from(1.0).to(50.0);
+    }
+}
+
+/// The method by which the tube moves along its path.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Scheme {
+    Static,
+    Newmark,
+    BackwardEuler,
+}
+
+table! {
+    Solver {
+        /// `"static"` solves for one equilibrium after the other, with relaxation where the path is
+        /// interrupted. `"newmark"` is the pseudo-time of Okino et al. (2025), `"backward-euler"`
+        /// pseudo-time with another integrator.
+        scheme: Scheme = default("static");
+        /// A state is accepted when its residual without damping, relative to the residual scale, is at
+        /// most this (or at most 1e-6 where rounding allows no better).
+        tolerance: f64 = default("1e-8").above(0.0).to(1e-6)
+            .because("a looser state is not an equilibrium");
+        /// Newton iterations before a step is passed on to relaxation.
+        newton_iterations: usize = default("12").from(1.0).to(1000.0);
+        /// Relaxation steps before a load step is halved.
+        relaxation_steps: usize = default("200").from(1.0).to(1e6);
+        /// Initial damping of the relaxation, per unit volume.
+        relaxation_damping: f64 = default("1.0").unit("E/D²").above(0.0).to(1e6);
+        /// The number of times that a load step may be halved before the run stops.
+        max_step_halvings: usize = default("8").from(0.0).to(20.0);
+        /// For the schemes `"newmark"` and `"backward-euler"` only.
+        pseudo_time: Option<PseudoTime> = described("–", "{}");
+    }
+}
+
+choice! { Scheme {
+    "static" => Scheme::Static,
+    "newmark" => Scheme::Newmark,
+    "backward-euler" => Scheme::BackwardEuler,
+} }
+
+table! {
+    PseudoTime {
+        /// ηD/(EΔτ), the damping per pseudo-time step. The direction of a fold can depend on it, and on
+        /// `ramp`.
+        damping: Option<f64> = described("100 for newmark, 5 for backward-euler", "100.0").above(0.0).to(1e9);
+        /// Pseudo-time steps over which each load step is ramped.
+        ramp: usize = default("10").from(1.0).to(100_000.0);
+        /// After the ramp, pseudo-time continues until no control point moves farther than this in a
+        /// step.
+        tolerance: f64 = default("1e-5").unit("D").above(0.0).to(0.01);
+        /// Pseudo-time steps after the ramp before the run stops.
+        max_steps: usize = default("2000").from(1.0).to(1e7);
+        /// Whether each state is then brought to equilibrium without damping. If not, states are accepted
+        /// as in the paper, and their residual is reported.
+        equilibrate: bool = default("true");
+    }
+}
+
+table! {
+    Output {
+        /// Whether pictures are drawn.
+        pictures: bool = default("true");
+        /// Wall profiles are written for every n-th state and for the last of a stage; 0 for none.
+        profiles_every: usize = default("1").from(0.0).to(100_000.0);
+        /// Every n-th state and the last of a stage are saved in full; 0 for none. `plica stability` and
+        /// cases that start from a state need them.
+        states_every: usize = default("1").from(0.0).to(100_000.0);
+        /// The largest circumferential mode that the stability of axisymmetric states is tested against,
+        /// beginning at 0. Mode 1 tilts or shifts sideways, mode 2 is oval.
+        stability_modes: usize = default("4").from(0.0).to(100.0);
+        /// Points along the tube at which the wall is sampled for profiles and pictures.
+        wall_points: usize = default("601").from(51.0).to(20001.0);
     }
 }

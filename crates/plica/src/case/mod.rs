@@ -1,15 +1,14 @@
-//! The case file: from what a person wrote to a checked [`Plan`], or to everything that is wrong
-//! with it.
+//! The case file: reads and checks its text, and returns a [`Plan`] or every problem that was found.
 //!
-//! A case passes four doors, each in its own file:
+//! A text passes three steps:
 //!
-//! 1. `toml` reads the text, as it is meant where that leaves no doubt (`mended`); what it cannot
-//!    read is told once each (`unreadable`);
-//! 2. `shape` holds every key, type and range against the table [`KEYS`], and has something sound stand
-//!    in for what is wrong, so that one mistake does not hide another;
-//! 3. `spec` is the case as written, in plain structs;
-//! 4. `check` looks at what several keys must fulfil together and makes everything
-//!    dimensionless (lengths in D, stresses in E).
+//! 1. `syntax` parses the TOML, and reports every syntax error;
+//! 2. `read` reads the tables that `keys` declares: it finds unknown and missing keys, and values of
+//!    the wrong type or out of range;
+//! 3. `check` checks the rules between keys, and makes everything dimensionless (lengths in D,
+//!    stresses in E).
+//!
+//! Steps 2 and 3 report all their problems at once.
 //!
 //! ```
 //! let text = "
@@ -33,107 +32,67 @@ mod advice;
 mod check;
 mod difference;
 mod edit;
+mod files;
+mod key;
 mod keys;
-mod leaf;
-mod lines;
-mod locate;
-mod meant;
-mod mended;
 mod problem;
+mod read;
 mod reference;
 mod schema;
-mod shape;
-mod spec;
 mod spelling;
-mod stand_in;
-mod starter;
-mod table;
-mod unreadable;
+mod syntax;
+#[cfg(test)]
+mod tests;
 
 pub use advice::advice;
 pub use difference::{Difference, differences};
 pub use edit::{EditError, edited};
-pub use keys::{Given, Key, Kind, Limit, Range};
+pub use files::{InputFile, OpenInput};
 pub use problem::{CaseError, Problem};
 pub use reference::reference;
 pub use schema::schema;
-pub use starter::STARTER;
-pub use table::KEYS;
 
-use crate::saved_state::{SavedState, SavedStateError};
 use crate::study::Plan;
+use key::{Key, Kind, default};
+use keys::Case;
 use problem::Problems;
-use serde::Deserialize;
-use toml::de::{DeTable, Deserializer};
+use read::{Read, Table};
+use toml::Spanned;
+use toml::de::DeValue;
 
-/// Opens a file that a case names.
-pub type Open<'a> = dyn Fn(Wanted<'_>) -> Result<SavedState, SavedStateError> + 'a;
-
-/// A file that a case names: its path as it stands there, which is meant from the folder of the case
-/// file on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted<'a> {
-    /// The state that it starts from.
-    State(&'a str),
-    /// The mode that an imperfection has the shape of, with its number from 1.
-    Mode(usize, &'a str),
-}
-
-impl<'a> Wanted<'a> {
-    /// The path.
-    pub fn path(self) -> &'a str {
-        match self {
-            Self::State(path) | Self::Mode(_, path) => path,
-        }
-    }
-}
+/// A commented case file to start from: the tube of Okino et al. (2025), which invaginates.
+pub const STARTER: &str = include_str!("starter.toml");
 
 /// Reads and checks the text of a case file that names no other files. `name` is its title if it gives
-/// none: the name of the file without its ending.
+/// none: the name of the file without the extension.
 ///
 /// # Errors
-/// All problems that were found, in the order of the text. Of a text that is not TOML, where keys cannot be told, what can be read is
-/// held against the table of keys, and no further.
+/// All problems that were found, in the order of the text. If the text is not TOML, these are the
+/// syntax errors only.
 pub fn read(text: &str, name: &str) -> Result<Plan, CaseError> {
-    let none = |_: Wanted<'_>| Err(std::io::Error::from(std::io::ErrorKind::NotFound).into());
+    let none = |_: InputFile<'_>| Err(std::io::Error::from(std::io::ErrorKind::NotFound).into());
     read_with(text, name, &none)
 }
 
-/// The same of a case that may start from a saved state, or have the shape of modes, which `open`
-/// gives.
+/// Reads and checks the text of a case file that may name saved states and modes, which `open` reads.
 ///
 /// # Errors
-/// As [`read`]; a file that cannot be opened, or is not one of the case's tube, is a problem too.
-pub fn read_with(text: &str, name: &str, open: &Open<'_>) -> Result<Plan, CaseError> {
-    let mut problems = Problems::default();
-    let (mut root, mut errors) = DeTable::parse_recoverable(text);
-    let mended = mended::mended(text, &errors, &mut problems);
-    if let Some(mended) = &mended {
-        (root, errors) = DeTable::parse_recoverable(mended);
-    }
-    let unreadable = unreadable::tell(text, root.get_ref(), &errors, &mut problems);
-    // From here on the tree has the shape of a case, whatever is written.
-    let mut shaped = root.clone();
-    shape::check(shaped.get_mut(), &unreadable, &mut problems);
-    if unreadable.keys_lost {
-        return Err(problems.located(text, &root));
-    }
-    let plan = match spec::Spec::deserialize(Deserializer::from(shaped)) {
-        Ok(spec) => check::plan(&spec, name, open, &mut problems),
-        Err(error) => {
-            let place = error.span().unwrap_or(0..0);
-            problems.not_toml(error.message(), None, place);
-            return Err(problems.located(text, &root));
-        }
+/// As [`read`]. A file that cannot be read, or does not belong to the case's tube, is a problem too.
+pub fn read_with(text: &str, name: &str, open: &OpenInput<'_>) -> Result<Plan, CaseError> {
+    let mut problems = Problems::of(text, Case::KEYS);
+    let Some(table) = syntax::parse(text, &mut problems) else {
+        problems.into_result()?;
+        unreachable!("a text that is not TOML has syntax errors")
     };
-    if problems.is_empty() {
-        Ok(plan)
-    } else {
-        Err(problems.located(text, &root))
-    }
+    let root = Key {
+        name: "",
+        doc: "",
+        kind: Kind::Table(Case::KEYS),
+        rule: default("{}"),
+    };
+    let value = Spanned::new(0..0, DeValue::Table(table));
+    let case =
+        Case::read(&mut problems, &root, "", &value).unwrap_or_else(|| Case::fallback(&root));
+    let plan = check::plan(&case, name, open, &mut problems);
+    problems.into_result().map(|()| plan)
 }
-
-#[cfg(test)]
-mod slips;
-#[cfg(test)]
-mod tests;

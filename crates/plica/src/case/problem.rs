@@ -1,35 +1,31 @@
-//! What can be wrong with a case.
+//! Problems of a case, each with its place in the text.
 
-use super::locate::locate;
-use std::collections::BTreeSet;
+use super::key::Key;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Range;
-use toml::Spanned;
-use toml::de::DeTable;
 
-/// A case that cannot be run, and why: every problem that was found.
+/// A case that cannot be run, with every problem that was found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct CaseError {
     /// At least one problem, in the order of the text.
     pub problems: Vec<Problem>,
 }
 
-/// One thing that is wrong.
+/// One problem of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// The key as a dotted path, members of lists counted from one (`stages[2].steps`); empty
-    /// where the text is not TOML.
+    /// The key as a dotted path, members of lists counted from one (`stages[2].steps`); empty for an
+    /// error of TOML syntax.
     pub key: String,
-    /// The value as written, if it is short.
+    /// The value as written, if it is the value that is wrong, and short.
     pub value: Option<String>,
-    /// The rule it breaks, with the reason if there is one to give.
+    /// The rule that is broken, with the reason where there is one to give.
     pub rule: String,
-    /// What may be written instead.
-    pub cure: Option<String>,
-    /// The bytes of the text it is about.
-    pub span: Option<Range<usize>>,
-    /// Whether it is the key that is wrong, and not its value.
-    on_key: bool,
+    /// A suggestion of what to write instead.
+    pub help: Option<String>,
+    /// The bytes of the text that the problem is about.
+    pub span: Range<usize>,
 }
 
 impl fmt::Display for Problem {
@@ -42,8 +38,8 @@ impl fmt::Display for Problem {
             write!(f, ": ")?;
         }
         write!(f, "{}", self.rule)?;
-        match &self.cure {
-            Some(cure) => write!(f, "; {cure}"),
+        match &self.help {
+            Some(help) => write!(f, "; {help}"),
             None => Ok(()),
         }
     }
@@ -59,111 +55,137 @@ impl fmt::Display for CaseError {
     }
 }
 
-/// Problems as they are found.
+/// Collects the problems of one text.
 #[derive(Debug, Default)]
-pub(super) struct Problems {
+pub(super) struct Problems<'t> {
+    text: &'t str,
+    /// All keys of a case, for suggestions.
+    pub keys: &'static [Key],
     found: Vec<Problem>,
-    /// The keys of those.
-    keys: BTreeSet<String>,
-    /// Keys whose values are not used.
+    /// The places of the keys that were read: of the key itself, and of its value.
+    places: BTreeMap<String, [Range<usize>; 2]>,
+    /// The keys that problems were found with.
+    wrong: BTreeSet<String>,
+    /// The keys whose values a default or an example replaces.
     replaced: BTreeSet<String>,
 }
 
-impl Problems {
-    /// A place in the text is not TOML.
-    pub fn not_toml(&mut self, why: &str, cure: Option<String>, place: Range<usize>) {
-        self.add("", why.to_owned(), cure).span = Some(place);
+impl<'t> Problems<'t> {
+    pub fn of(text: &'t str, keys: &'static [Key]) -> Self {
+        Self {
+            text,
+            keys,
+            ..Self::default()
+        }
     }
 
-    /// A value breaks a rule.
-    pub fn value(&mut self, key: &str, rule: impl Into<String>, cure: Option<String>) {
-        self.add(key, rule.into(), cure).on_key = false;
+    /// Records the place of a key and of its value (of a table with a header: the header).
+    pub fn place(&mut self, key: &str, place: [Range<usize>; 2]) {
+        self.places.insert(key.to_owned(), place);
     }
 
-    /// A key should not be there, or should be.
-    pub fn key(&mut self, key: &str, rule: impl Into<String>, cure: Option<String>) {
-        self.add(key, rule.into(), cure);
+    /// Adds an error of TOML syntax. Empty help is none.
+    pub fn syntax(&mut self, span: Range<usize>, rule: &str, help: impl Into<String>) {
+        self.add("", None, span, rule.to_owned(), help.into());
     }
 
-    /// The value of a key, or what is meant to be one, is not used. Something stands in for it, and rules that hold it against
-    /// others would say nothing.
-    pub fn replaced(&mut self, key: String) {
-        self.replaced.insert(key);
+    /// Adds a value that breaks a rule. Empty help is none.
+    pub fn value(&mut self, key: &str, rule: impl Into<String>, help: impl Into<String>) {
+        let Some([_, span]) = self.places.get(key) else {
+            return self.key(key, rule, help);
+        };
+        let span = span.clone();
+        let value = self.text.get(span.clone()).filter(|value| is_short(value));
+        self.add(key, value, span, rule.into(), help.into());
     }
 
-    fn add(&mut self, key: &str, rule: String, cure: Option<String>) -> &mut Problem {
-        self.keys.insert(key.to_owned());
+    /// Adds a key that should not be there, or should be. Empty help is none.
+    pub fn key(&mut self, key: &str, rule: impl Into<String>, help: impl Into<String>) {
+        // A key that is not there has the place of the table that it is missing from.
+        let mut path = key;
+        let span = loop {
+            if let Some([span, _]) = self.places.get(path) {
+                break span.clone();
+            }
+            match path.rfind(['.', '[']) {
+                Some(end) => path = &path[..end],
+                None => break 0..0,
+            }
+        };
+        self.add(key, None, span, rule.into(), help.into());
+    }
+
+    /// Marks a key whose value is not used: a default or an example replaces it, and rules that
+    /// compare it with others do not apply.
+    pub fn replaced(&mut self, key: impl Into<String>) {
+        self.replaced.insert(key.into());
+    }
+
+    fn add(
+        &mut self,
+        key: &str,
+        value: Option<&str>,
+        span: Range<usize>,
+        rule: String,
+        help: String,
+    ) {
+        self.wrong.insert(key.to_owned());
         self.found.push(Problem {
             key: key.to_owned(),
-            value: None,
+            value: value.map(Into::into),
             rule,
-            cure,
-            span: None,
-            on_key: true,
+            help: Some(help).filter(|help| !help.is_empty()),
+            span,
         });
-        let last = self.found.len() - 1;
-        &mut self.found[last]
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.found.is_empty()
     }
 
     pub fn len(&self) -> usize {
         self.found.len()
     }
 
-    /// Whether nothing was found so far about these keys, or what is below them, and nothing stands in for a table around them; a
-    /// rule about several keys is worth looking at only then.
-    pub fn none_about(&self, keys: &[&str]) -> bool {
-        let about = |key: &&str| any_within(&self.keys, key) || !self.is_as_written(key);
-        !keys.iter().any(about)
+    pub fn is_empty(&self) -> bool {
+        self.found.is_empty()
     }
 
-    /// Whether nothing stands in for a key, for what is below it, or for a table around it.
+    /// Returns whether no problem was found with these keys, or below them, and none of them is
+    /// replaced. A rule that compares several keys is checked only then.
+    pub fn are_sound(&self, keys: &[&str]) -> bool {
+        let is_wrong = |key: &&str| any_within(&self.wrong, key) || !self.is_as_written(key);
+        !keys.iter().any(is_wrong)
+    }
+
+    /// Returns whether neither a key, nor one below it, nor a table around it is replaced.
     pub fn is_as_written(&self, key: &str) -> bool {
-        !any_within(&self.replaced, key) && !within_any(key, &self.replaced)
+        let mut tables = key.match_indices(['.', '[']).map(|(end, _)| &key[..end]);
+        !any_within(&self.replaced, key) && !tables.any(|table| self.replaced.contains(table))
     }
 
-    /// All of them, with their places in the text.
-    pub fn located(self, text: &str, root: &Spanned<DeTable>) -> CaseError {
+    /// Returns all problems in the order of the text.
+    ///
+    /// # Errors
+    /// If there are any.
+    pub fn into_result(self) -> Result<(), CaseError> {
         let mut problems = self.found;
-        for problem in problems.iter_mut().filter(|problem| problem.span.is_none()) {
-            let place = locate(root, &problem.key);
-            if place.exact && !problem.on_key {
-                problem.value = text
-                    .get(place.value.clone())
-                    .filter(|v| short(v))
-                    .map(Into::into);
-                problem.span = Some(place.value);
-            } else {
-                problem.span = Some(place.key);
-            }
+        problems.sort_by_key(|problem| problem.span.start);
+        match problems.is_empty() {
+            true => Ok(()),
+            false => Err(CaseError { problems }),
         }
-        problems.sort_by_key(|p| p.span.as_ref().map_or(0, |s| s.start));
-        CaseError { problems }
     }
 }
 
-/// Whether some key is this one or below it. Nothing is below the case as a whole: a key that nobody knows, and that stands in no
-/// table, is about nothing else.
+/// Returns whether one of some keys is this one, or below it.
 fn any_within(keys: &BTreeSet<String>, table: &str) -> bool {
     let below = |mark: char| {
         let start = format!("{table}{mark}");
         let next = keys.range(start.clone()..).next();
         next.is_some_and(|key| key.starts_with(&start))
     };
-    keys.contains(table) || !table.is_empty() && (below('.') || below('['))
+    keys.contains(table) || below('.') || below('[')
 }
 
-/// Whether a key is one of these, or below one.
-fn within_any(key: &str, tables: &BTreeSet<String>) -> bool {
-    let mut marks = key.match_indices(['.', '[']);
-    tables.contains(key) || marks.any(|(end, _)| end > 0 && tables.contains(&key[..end]))
-}
-
-/// Whether a value is worth repeating: one line, and not the header of a table.
-fn short(value: &str) -> bool {
+/// Returns whether a value fits into a message: one line, and not the header of a table.
+fn is_short(value: &str) -> bool {
     value.chars().count() <= 60 && !value.contains('\n') && !value.starts_with("[[")
 }
 
@@ -172,19 +194,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_problem_is_about() {
+    fn a_problem_affects_the_tables_around_it_and_a_replaced_table_what_is_below() {
         let mut problems = Problems::default();
-        problems.value("muscles.a.zone", "", None);
-        problems.key("stages[2].drive.b", "", None);
-        problems.replaced("mesh".to_owned());
-        problems.replaced("imperfections[1].of".to_owned());
-        for (key, none) in [
+        problems.value("muscles.a.zone", "", "");
+        problems.key("stages[2].drive.b", "", "");
+        problems.replaced("mesh");
+        problems.replaced("imperfections[1].of");
+        for (key, sound) in [
             ("muscles.a.zone", false),
             ("muscles.a", false),
             ("muscles", false),
             ("muscles.b", true),
             ("muscles.a.zones", true),
-            // Found, not replaced: what is below is as written.
+            // Wrong, but not replaced: what is below is as written.
             ("muscles.a.zone.below", true),
             ("stages", false),
             ("stages[1]", true),
@@ -196,9 +218,8 @@ mod tests {
             ("imperfections[1].amplitude", true),
             ("imperfections[1]", false),
             ("imperfections[10].of", true),
-            ("", true),
         ] {
-            assert_eq!(problems.none_about(&[key]), none, "{key}");
+            assert_eq!(problems.are_sound(&[key]), sound, "{key}");
         }
     }
 }

@@ -1,6 +1,6 @@
-//! The word that was probably meant.
+//! Finds the word that a misspelt one probably stands for.
 
-/// The nearest of some words, if one is near.
+/// Returns the nearest of some words, if one is near.
 pub(super) fn nearest<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = |w: &str| {
         w.to_lowercase()
@@ -9,12 +9,12 @@ pub(super) fn nearest<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) 
     };
     let written = plain(word);
     let letters = written.chars().count();
-    let slips = (letters / 3).max(1);
+    let allowed = (letters / 3).max(1);
     let distance = |candidate: &str| {
         let candidate = plain(candidate);
-        // Names may be long, and many.
-        let longer = candidate.chars().count().abs_diff(letters) > slips;
-        if longer && !candidate.starts_with(&written) {
+        // The names of muscles may be long, and many.
+        let is_far = candidate.chars().count().abs_diff(letters) > allowed;
+        if is_far && !candidate.starts_with(&written) {
             return usize::MAX;
         }
         if candidate == written {
@@ -29,11 +29,11 @@ pub(super) fn nearest<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) 
     let near: Vec<(usize, &str)> = words
         .into_iter()
         .map(|candidate| (distance(candidate), candidate))
-        .filter(|&(d, _)| d <= slips)
+        .filter(|&(d, _)| d <= allowed)
         .collect();
     let &(least, nearest) = near.iter().min_by_key(|(d, _)| *d)?;
     let as_near = near.iter().filter(|(d, _)| *d == least).count();
-    // A few letters are as near to one unit as to another.
+    // A short word that is as near to two words is near to none.
     (least == 0 || letters > 3 || as_near == 1).then_some(nearest)
 }
 
@@ -42,7 +42,7 @@ mod tests {
     use super::nearest;
 
     #[test]
-    fn slips_are_forgiven_and_other_words_are_not() {
+    fn a_misspelt_word_is_found_and_another_word_is_not() {
         let words = ["diameter", "length", "thickness", "poisson_ratio"];
         assert_eq!(nearest("diametre", words), Some("diameter"));
         assert_eq!(nearest("Length", words), Some("length"));

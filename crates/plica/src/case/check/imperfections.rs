@@ -1,52 +1,59 @@
-//! The imperfections: of what, how large, and in harmonics that the run has.
+//! The imperfections: their parts, amplitudes and shapes.
 
-use super::super::keys::join;
+use super::super::files::{InputFile, OpenInput};
+use super::super::key::join;
+use super::super::keys::{self, Case};
 use super::super::problem::Problems;
-use super::super::spec::{self, Spec};
 use super::super::spelling::nearest;
-use super::super::{Open, Wanted};
 use super::stages::SMALLEST_STRETCH;
 use super::start::check_size;
-use super::tube::tidy;
-use super::zone;
+use super::zone::{tidy, zone};
 use crate::study::{ModeShape, Stage, inverted_by_imperfections};
 use crate::tube::{
     Axial, End, Imperfection, Mesh, Part, Push, Random, Shape, Support, Symmetry, Tube, Wave,
 };
 
-/// Largest displacement, over the thickness of the wall.
+/// Largest displacement over the thickness of the wall.
 const LARGEST_DISPLACEMENT: f64 = 0.25;
-/// So many control points are a large mesh.
-const LARGE: usize = 1_000_000;
 /// Largest change of a muscle's activity.
 const LARGEST_CHANGE: f64 = 0.5;
+/// Number of control points from which on it takes long to examine a wall.
+const LARGE: usize = 1_000_000;
+/// Largest and usual number of modes and of half-waves of a random shape.
+const LARGEST_COUNT: usize = 50;
+const USUAL_COUNT: usize = 4;
+const AROUND: &str = "mesh.control_points.around";
+const NO_SYMMETRY: &str = "use symmetry = \"none\"";
 
-/// The imperfections of a tube, and the modes that they have the shape of.
+/// The mesh and the symmetry.
+type Run<'a> = (&'a Mesh, Symmetry);
+
+/// Returns the imperfections of a tube, and the modes that are their shapes.
 pub(super) fn imperfections(
-    spec: &Spec,
+    case: &Case,
     tube: &Tube,
-    run: (&Mesh, Symmetry),
-    open: &Open<'_>,
+    run: Run<'_>,
+    open: &OpenInput<'_>,
     problems: &mut Problems,
 ) -> (Vec<Imperfection>, Vec<ModeShape>) {
     let (mut imperfections, mut modes) = (vec![], vec![]);
-    for (i, written) in spec.imperfections.iter().enumerate() {
+    for (i, written) in case.imperfections.iter().enumerate() {
         let path = format!("imperfections[{}]", i + 1);
-        let (of, is_there) = part(&path, written, tube, problems);
-        let amplitude = amplitude(&path, written, of, spec, tube, problems);
+        let (of, exists) = part(&path, written, tube, problems);
+        let amplitude = amplitude(&path, written.amplitude, of, case, tube, problems);
         let shape = match &written.shape {
-            spec::Shape::Wave(written) => wave(&path, *written, of, spec, tube, run, problems),
-            spec::Shape::Random(written) => random(&path, *written, of, run, problems),
-            spec::Shape::Mode(file) => {
-                let wanted = Wanted::Mode(i + 1, file);
-                let Some((shape, mode)) = mode(&path, wanted, of, tube, run, open, problems) else {
+            keys::Shape::Wave(written) => wave(&path, written, of, case, tube, run, problems),
+            keys::Shape::Random(written) => random(&path, written, of, run, problems),
+            keys::Shape::Mode(file) => {
+                let file = InputFile::Mode(i + 1, file);
+                let Some((shape, mode)) = mode(&path, file, of, tube, run, open, problems) else {
                     continue;
                 };
                 modes.push(mode);
                 shape
             }
         };
-        if is_there {
+        if exists {
             imperfections.push(Imperfection {
                 of,
                 amplitude,
@@ -57,231 +64,214 @@ pub(super) fn imperfections(
     (imperfections, modes)
 }
 
-/// What is imperfect, and whether the tube has it; if not, one of its kind.
+/// Returns the part that is imperfect, and whether the tube has it.
 fn part(
     path: &str,
-    written: &spec::Imperfection,
+    written: &keys::Imperfection,
     tube: &Tube,
     problems: &mut Problems,
 ) -> (Part, bool) {
     let key = format!("{path}.of");
-    if !matches!(written.of, spec::Part::ColonEnd | spec::Part::IleumEnd)
-        && written.direction.is_some()
-        && problems.is_as_written(&key)
-    {
+    let is_end = matches!(written.of, keys::Part::ColonEnd | keys::Part::IleumEnd);
+    if !is_end && written.direction.is_some() && problems.is_as_written(&key) {
         let rule = "only an imperfect end has a direction";
-        let cure = Some("leave it out".into());
-        problems.key(&format!("{path}.direction"), rule, cure);
+        problems.key(&format!("{path}.direction"), rule, "leave it out");
     }
     match &written.of {
-        spec::Part::ColonEnd => {
-            let end = end(&key, written, End::Colon, tube.ends[0], problems);
-            (end, true)
-        }
-        spec::Part::IleumEnd => {
-            let end = end(&key, written, End::Ileum, tube.ends[1], problems);
-            (end, true)
-        }
-        spec::Part::Geometry => (Part::Geometry, true),
-        spec::Part::Muscle(name) => {
+        keys::Part::ColonEnd => (end(path, written, End::Colon, tube, problems), true),
+        keys::Part::IleumEnd => (end(path, written, End::Ileum, tube, problems), true),
+        keys::Part::Geometry => (Part::Geometry, true),
+        keys::Part::Muscle(name) => {
             let found = tube.muscles.iter().position(|muscle| muscle.name == *name);
-            if found.is_none() && problems.none_about(&[&join("muscles", name)]) {
-                let names = || tube.muscles.iter().map(|muscle| muscle.name.as_str());
-                let cure = match nearest(name, names()) {
+            if found.is_none() && problems.are_sound(&[&join("muscles", name)]) {
+                let names = tube.muscles.iter().map(|muscle| muscle.name.as_str());
+                let help = match nearest(name, names) {
                     Some(near) => format!("did you mean \"{near}\"?"),
                     None => format!("add [{}]", join("muscles", name)),
                 };
                 let rule = "there is no muscle of this name";
-                problems.value(&format!("{key}.muscle"), rule, Some(cure));
+                problems.value(&format!("{key}.muscle"), rule, help);
             }
             (Part::Muscle(found.unwrap_or_default()), found.is_some())
         }
     }
 }
 
-/// An imperfect end, if it is held as that needs.
+/// Checks that an imperfect end is held in the direction of its displacement.
 fn end(
-    key: &str,
-    written: &spec::Imperfection,
+    path: &str,
+    written: &keys::Imperfection,
     end: End,
-    support: Support,
+    tube: &Tube,
     problems: &mut Problems,
 ) -> Part {
-    let push = match written.direction {
-        Some(spec::Push::Axial) => Push::Axial,
-        Some(spec::Push::Across) | None => Push::Across,
-    };
-    let problem = match (support, push) {
+    let push = written.direction.unwrap_or(Push::Across);
+    let problem = match (tube.ends[end as usize], push) {
         (Support::Fixed, _) | (Support::Sliding, Push::Axial) => None,
         (Support::Sliding, Push::Across) => Some((
             "a sliding end is held along the axis only",
-            "write direction = \"axial\", or hold it with \"fixed\" in [ends]",
+            "write direction = \"axial\", or \"fixed\" in [ends]",
         )),
         (Support::Free, _) => Some((
-            "only where an end is held can be imperfect, and this one is free",
-            "hold it, with \"fixed\" in [ends]",
+            "a free end cannot be imperfect",
+            "write \"fixed\" in [ends]",
         )),
     };
-    let direction = key.replace(".of", ".direction");
-    if let Some((rule, cure)) = problem
-        && problems.is_as_written(key)
-        && problems.is_as_written(&direction)
+    let key = format!("{path}.of");
+    if let Some((rule, help)) = problem
+        && problems.is_as_written(&key)
+        && problems.is_as_written(&format!("{path}.direction"))
     {
-        problems.value(key, rule, Some(cure.into()));
+        problems.value(&key, rule, help);
     }
     Part::End(end, push)
 }
 
-/// The amplitude, in D if it is a length.
+/// Checks an amplitude, and returns it in D if it is a length.
 fn amplitude(
     path: &str,
-    written: &spec::Imperfection,
+    written: f64,
     of: Part,
-    spec: &Spec,
+    case: &Case,
     tube: &Tube,
     problems: &mut Problems,
 ) -> f64 {
     let key = format!("{path}.amplitude");
-    let of_key = format!("{path}.of");
+    if !problems.is_as_written(&format!("{path}.of")) || !problems.are_sound(&[&key]) {
+        return written;
+    }
     if matches!(of, Part::Muscle(_)) {
-        if written.amplitude.abs() > LARGEST_CHANGE
-            && problems.none_about(&[&key])
-            && problems.is_as_written(&of_key)
-        {
+        if written.abs() > LARGEST_CHANGE {
             let rule = format!(
                 "must be from -{LARGEST_CHANGE} to {LARGEST_CHANGE} (a fraction of the muscle's activity)"
             );
-            problems.value(&key, rule, Some("try 0.01".into()));
+            problems.value(&key, rule, "try 0.01");
         }
-        return written.amplitude;
+        return written;
     }
-    let diameter = spec.tube.diameter;
+    let diameter = case.tube.diameter;
     let largest = LARGEST_DISPLACEMENT * tube.thickness;
-    let amplitude = written.amplitude / diameter;
-    if amplitude.abs() > largest
-        && problems.none_about(&[&key, "tube.thickness", "tube.diameter"])
-        && problems.is_as_written(&of_key)
-    {
+    let amplitude = written / diameter;
+    if amplitude.abs() > largest && problems.are_sound(&["tube.thickness", "tube.diameter"]) {
         let rule = format!(
             "must be at most a quarter of the wall's thickness, {}",
             tidy(largest * diameter)
         );
-        let cure = format!("try {}", tidy(1e-4 * diameter));
-        problems.value(&key, rule, Some(cure));
+        problems.value(&key, rule, format!("try {}", tidy(1e-4 * diameter)));
     }
     amplitude
 }
 
-/// One wave, of a harmonic that the run has.
+/// Returns a single wave.
 fn wave(
     path: &str,
-    wave: spec::Wave,
+    wave: &keys::Wave,
     of: Part,
-    spec: &Spec,
+    case: &Case,
     tube: &Tube,
-    run: (&Mesh, Symmetry),
+    run: Run<'_>,
     problems: &mut Problems,
 ) -> Shape {
-    let of_key = format!("{path}.of");
-    let path = format!("{path}.shape.wave");
-    check_harmonic(&format!("{path}.mode"), wave.mode, run, problems);
-    let key = format!("{path}.axial");
-    if matches!(of, Part::End(..)) && wave.axial.is_some() && problems.is_as_written(&of_key) {
-        nothing_along(&key, problems);
-    }
-    let axial = match wave.axial {
-        None if of == Part::Geometry => Axial::HalfWaves(1),
-        None | Some(spec::Axial::Uniform) => Axial::Uniform,
-        Some(spec::Axial::HalfSine) => Axial::HalfWaves(1),
-        Some(spec::Axial::Zone(written)) => {
-            let key = format!("{key}.zone");
-            Axial::Zone(zone(&key, spec, written, tube.length, problems))
+    let key = format!("{path}.shape.wave");
+    let (mode, axial) = (format!("{key}.mode"), format!("{key}.axial"));
+    match run.1 {
+        Symmetry::Fold(m) if m > 0 && !wave.mode.is_multiple_of(m) => {
+            if problems.are_sound(&[&mode, "symmetry"]) {
+                let rule =
+                    format!("must be a multiple of {m}, since the tube repeats {m} times around");
+                problems.value(&mode, rule, format!("try {m}, or use another symmetry"));
+            }
         }
+        _ => check_largest_mode(&mode, wave.mode, run, problems),
+    }
+    if wave.axial.is_some() {
+        check_axial_shape(path, &axial, of, problems);
+    }
+    let along = match wave.axial {
+        None if of == Part::Geometry => Axial::HalfWaves(1),
+        None => Axial::Uniform,
+        Some(Axial::Zone(written)) => {
+            let key = format!("{axial}.zone");
+            Axial::Zone(zone(&key, case, written, tube.length, problems))
+        }
+        Some(axial) => axial,
     };
-    let phase = wave.phase_degrees.to_radians();
-    Shape::Wave(Wave::new(wave.mode, phase, axial))
+    Shape::Wave(Wave::new(wave.mode, wave.phase_degrees.to_radians(), along))
 }
 
-/// A random shape, in harmonics that the run has.
+/// Returns a random shape.
 fn random(
     path: &str,
-    random: spec::Random,
+    random: &keys::Random,
     of: Part,
-    run: (&Mesh, Symmetry),
+    run: Run<'_>,
     problems: &mut Problems,
 ) -> Shape {
-    let of_key = format!("{path}.of");
-    let path = format!("{path}.shape.random");
+    let key = format!("{path}.shape.random");
     let (mesh, symmetry) = run;
-    let key = format!("{path}.modes");
-    let told_apart = match symmetry {
+    let resolved = mesh.around / 4;
+    let usual = match symmetry {
         Symmetry::Axisymmetric => 0,
-        Symmetry::Fold(_) | Symmetry::None => mesh.around / 4,
+        Symmetry::Fold(_) | Symmetry::None => USUAL_COUNT.min(resolved),
     };
-    let usual = spec::Random::usual_count();
-    let harmonics = random.modes.unwrap_or(usual.min(told_apart));
-    check_highest(&key, harmonics, run, problems);
-    let end = matches!(of, Part::End(..));
-    if end && random.half_waves.is_some() && problems.is_as_written(&of_key) {
-        nothing_along(&format!("{path}.half_waves"), problems);
+    let modes = random.modes.unwrap_or(usual);
+    check_largest_mode(&format!("{key}.modes"), modes, run, problems);
+    if random.half_waves.is_some() {
+        check_axial_shape(path, &format!("{key}.half_waves"), of, problems);
     }
-    let half_waves = random.half_waves.unwrap_or(usual);
-    let half_waves = if end {
-        0
-    } else {
-        half_waves.min(LARGEST_COUNT)
+    let half_waves = match of {
+        Part::End(..) => 0,
+        _ => random.half_waves.unwrap_or(USUAL_COUNT).min(LARGEST_COUNT),
     };
-    // Any number does where something was found wrong.
-    let harmonics = harmonics.min(mesh.around / 4).min(LARGEST_COUNT);
     let fold = match symmetry {
         Symmetry::Fold(m) => m.max(1),
         Symmetry::Axisymmetric | Symmetry::None => 1,
     };
-    Shape::Random(Random::new(random.seed, harmonics, half_waves, fold))
+    // The limits matter only if a problem was found.
+    let modes = modes.min(resolved).min(LARGEST_COUNT);
+    Shape::Random(Random::new(random.seed as u64, modes, half_waves, fold))
 }
 
-/// A mode, if it is one of this tube and of a harmonic that the run has.
+/// Reads a mode, and checks that it belongs to the tube and has the symmetry of the run.
 fn mode(
     path: &str,
-    wanted: Wanted<'_>,
+    input: InputFile<'_>,
     of: Part,
     tube: &Tube,
-    (mesh, symmetry): (&Mesh, Symmetry),
-    open: &Open<'_>,
+    (mesh, symmetry): Run<'_>,
+    open: &OpenInput<'_>,
     problems: &mut Problems,
 ) -> Option<(Shape, ModeShape)> {
     let key = format!("{path}.shape.mode");
-    let Wanted::Mode(imperfection, file) = wanted else {
+    let InputFile::Mode(imperfection, file) = input else {
         return None;
     };
     if !problems.is_as_written(&key) {
         return None;
     }
-    let read = open(wanted).and_then(|state| Ok((state.mode()?, state)));
+    let read = open(input).and_then(|state| Ok((state.mode()?, state)));
     let (mode, state) = match read {
         Ok(read) => read,
         Err(error) => {
-            let cure = "give the path of a mode that plica stability has left in a run, \
-                 modes/mode-NN-harmonic-N.safetensors, from the case file on";
-            problems.value(&key, error.to_string(), Some(cure.into()));
+            let help = "give the path of modes/mode-NN-harmonic-N.safetensors, which plica stability \
+                 writes to a run, relative to the case file";
+            problems.value(&key, error.to_string(), help);
             return None;
         }
     };
     if of != Part::Geometry {
         if problems.is_as_written(&format!("{path}.of")) {
             let rule = "only an imperfect geometry can have the shape of a mode";
-            problems.key(&key, rule, Some("write of = \"geometry\"".into()));
+            problems.key(&key, rule, "write of = \"geometry\"");
         }
         return None;
     }
     let n = mode.harmonic;
-    let about_others = ["symmetry", "tube.length", "tube.thickness", "tube.diameter"];
-    if problems.none_about(&about_others) {
+    if problems.are_sound(&["symmetry", "tube.length", "tube.thickness", "tube.diameter"]) {
         check_size(&key, &state, tube, problems);
-        let most = mesh.around / 4;
         let wrong = match symmetry {
             Symmetry::Axisymmetric if n > 0 => {
-                Some("an axisymmetric run has harmonic 0 only".to_owned())
+                Some("an axisymmetric run has mode 0 only".to_owned())
             }
             Symmetry::Fold(m) if m > 0 && !n.is_multiple_of(m) => {
                 Some(format!("the tube repeats {m} times around"))
@@ -289,18 +279,19 @@ fn mode(
             _ => None,
         };
         if let Some(wrong) = wrong {
-            let rule = format!("is of harmonic {n}, and {wrong}");
-            let cure = match n {
+            let rule = format!("is of circumferential mode {n}, and {wrong}");
+            let help = match n {
                 0 | 1 => NO_SYMMETRY.to_owned(),
                 n => format!("use symmetry = {{ fold = {n} }}, or \"none\""),
             };
-            problems.value(&key, rule, Some(cure));
-        } else if n > most && problems.none_about(&["mesh.control_points.around"]) {
-            let around = mesh.around;
+            problems.value(&key, rule, help);
+        } else if n > mesh.around / 4 && problems.are_sound(&[AROUND]) {
             let rule = format!(
-                "is of harmonic {n}, and {around} control points around the tube draw at most {most}"
+                "is of circumferential mode {n}, and {} control points around the tube resolve at most {}",
+                mesh.around,
+                mesh.around / 4
             );
-            problems.value(&key, rule, Some(format!("try {} points around", 4 * n)));
+            problems.value(&key, rule, format!("try {} points around", 4 * n));
         }
     }
     let named = ModeShape {
@@ -311,107 +302,80 @@ fn mode(
     Some((Shape::Mode(mode), named))
 }
 
-/// As in the table of keys.
-const LARGEST_COUNT: usize = 50;
-const NO_SYMMETRY: &str = "use symmetry = \"none\"";
-
-fn nothing_along(key: &str, problems: &mut Problems) {
-    let rule = "an end is one cross-section, and nothing is spread along it";
-    problems.key(key, rule, Some("leave it out".into()));
-}
-
-/// Whether a harmonic keeps the symmetry of the run, and the mesh draws it.
-fn check_harmonic(key: &str, n: usize, run: (&Mesh, Symmetry), problems: &mut Problems) {
-    if let Symmetry::Fold(m) = run.1
-        && m > 0
-        && !n.is_multiple_of(m)
-    {
-        if problems.none_about(&[key, "symmetry"]) {
-            let rule =
-                format!("must be a multiple of {m}, since the tube repeats {m} times around");
-            let cure = format!("try {m}, or use another symmetry");
-            problems.value(key, rule, Some(cure));
-        }
-        return;
+/// Checks that an imperfection with a shape along the tube is not of an end.
+fn check_axial_shape(path: &str, key: &str, of: Part, problems: &mut Problems) {
+    if matches!(of, Part::End(..)) && problems.is_as_written(&format!("{path}.of")) {
+        let rule = "an end is a single cross-section, and has no shape along the tube";
+        problems.key(key, rule, "leave it out");
     }
-    check_highest(key, n, run, problems);
 }
 
-/// Whether a highest harmonic is one that the run has, and the mesh draws it.
-fn check_highest(
-    key: &str,
-    n: usize,
-    (mesh, symmetry): (&Mesh, Symmetry),
-    problems: &mut Problems,
-) {
-    const AROUND: &str = "mesh.control_points.around";
-    if !problems.none_about(&[key, "symmetry", AROUND]) {
+/// Checks that the symmetry allows a largest circumferential mode, and that the mesh resolves it.
+fn check_largest_mode(key: &str, n: usize, (mesh, symmetry): Run<'_>, problems: &mut Problems) {
+    let (around, most) = (mesh.around, mesh.around / 4);
+    if !problems.are_sound(&[key, "symmetry", AROUND]) {
         return;
     }
     if symmetry == Symmetry::Axisymmetric && n > 0 {
-        let rule = "an axisymmetric run has harmonic 0 only";
-        problems.value(key, rule, Some(NO_SYMMETRY.into()));
-    } else if n > mesh.around / 4 {
+        problems.value(key, "an axisymmetric run has mode 0 only", NO_SYMMETRY);
+    } else if n > most {
         let rule = format!(
-            "must be at most {}, a quarter of the {} control points around the tube",
-            mesh.around / 4,
-            mesh.around
+            "must be at most {most}, a quarter of the {around} control points around the tube"
         );
-        let cure = format!("try {} points around", 4 * n);
-        problems.value(key, rule, Some(cure));
+        problems.value(key, rule, format!("try {} points around", 4 * n));
     }
 }
 
-/// Whether the imperfections of the geometry, all together, leave a wall.
+/// Checks that all imperfections of the geometry together leave a wall that is not folded over.
 pub(super) fn check_wall(
-    spec: &Spec,
+    case: &Case,
     tube: &Tube,
-    (mesh, symmetry): (&Mesh, Symmetry),
+    (mesh, symmetry): Run<'_>,
     problems: &mut Problems,
 ) {
     let of_geometry = |imperfection: &Imperfection| imperfection.of == Part::Geometry;
     let Some(last) = tube.imperfections.iter().rposition(of_geometry) else {
         return;
     };
-    // Elements are denser in the zones of the muscles.
-    if !problems.none_about(&["imperfections", "tube", "mesh", "symmetry", "muscles"]) {
+    // The zones of the muscles refine the mesh.
+    if !problems.are_sound(&["imperfections", "tube", "mesh", "symmetry", "muscles"]) {
         return;
     }
-    // On a large mesh it takes long: first what is told at once.
-    let large = mesh.axial * mesh.thickness * mesh.rings(symmetry) > LARGE;
-    if large && !problems.is_empty() {
+    // This takes long on a large mesh; other problems are reported first.
+    let is_large = mesh.axial * mesh.thickness * mesh.rings(symmetry) > LARGE;
+    if is_large && !problems.is_empty() {
         return;
     }
     if let Some(at) = inverted_by_imperfections(tube, mesh, symmetry) {
-        let z = tidy(at.place.z * spec.tube.diameter);
-        let near = at.place.angle_and_depth();
-        let rule = format!("with it the stress-free wall is folded over, near z = {z}, {near}");
+        let z = tidy(at.place.z * case.tube.diameter);
+        let rule = format!(
+            "with it the stress-free wall is folded over, near z = {z}, {}",
+            at.place.angle_and_depth()
+        );
         let key = format!("imperfections[{}].amplitude", last + 1);
-        problems.value(&key, rule, Some("make it smaller".into()));
+        problems.value(&key, rule, "make it smaller");
     }
 }
 
-/// Whether the wall can take the targets of the stages where an imperfect muscle is strongest.
+/// Checks the smallest stress-free stretch where an imperfect muscle is strongest.
 pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
-    if !problems.none_about(&["imperfections", "start", "tube.length", "tube.diameter"]) {
+    if !problems.are_sound(&["imperfections", "start", "tube.length", "tube.diameter"]) {
         return;
     }
     for (m, muscle) in tube.muscles.iter().enumerate() {
-        let own = |i: &&Imperfection| i.of == Part::Muscle(m);
-        let strongest = 1.0
-            + tube
-                .imperfections
-                .iter()
-                .filter(own)
-                .map(|i| i.amplitude.abs())
-                .sum::<f64>();
-        if strongest == 1.0 {
+        let own = |imperfection: &&Imperfection| imperfection.of == Part::Muscle(m);
+        let amplitudes = tube
+            .imperfections
+            .iter()
+            .filter(own)
+            .map(|i| i.amplitude.abs());
+        let strongest = 1.0 + amplitudes.sum::<f64>();
+        let Some(last) = tube.imperfections.iter().rposition(|i| own(&i)) else {
             continue;
-        }
+        };
         let drives = (1..=stages.len()).map(|i| format!("stages[{i}].drive.{}", muscle.name));
-        let mut about: Vec<String> = drives.collect();
-        about.push(format!("muscles.{}", muscle.name));
-        if about.iter().any(|key| !problems.none_about(&[key])) {
+        let mut keys = drives.chain([format!("muscles.{}", muscle.name)]);
+        if !keys.all(|key| problems.are_sound(&[&key])) {
             continue;
         }
         let smallest = stages
@@ -420,21 +384,12 @@ pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Prob
             .fold(1.0, f64::min);
         let smallest = 1.0 - strongest * (1.0 - smallest);
         if smallest < SMALLEST_STRETCH {
-            let last = tube
-                .imperfections
-                .iter()
-                .rposition(|i| own(&i))
-                .unwrap_or_default();
             let rule = format!(
                 "where it is strongest, {} shrinks the wall to {} of its size, {SMALLEST_STRETCH} at least",
                 muscle.name,
                 tidy(smallest)
             );
-            problems.value(
-                &format!("imperfections[{}].amplitude", last + 1),
-                rule,
-                None,
-            );
+            problems.value(&format!("imperfections[{}].amplitude", last + 1), rule, "");
         }
     }
 }

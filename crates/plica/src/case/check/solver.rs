@@ -1,41 +1,48 @@
-//! The solver's settings.
+//! The settings of the solver.
 
+use super::super::keys::{self, Scheme};
 use super::super::problem::Problems;
-use super::super::spec;
-use crate::solve::{Integrator, PseudoTime, Scheme, Settings};
+use crate::solve::{self, Integrator, PseudoTime, Settings};
 
-/// The settings that a case chooses.
-pub(super) fn settings(solver: &spec::Solver, problems: &mut Problems) -> Settings {
-    let scheme = match solver.scheme {
-        spec::Scheme::Static => {
-            if solver.pseudo_time.is_some() && problems.none_about(&["solver.scheme"]) {
-                let rule = "has no meaning for the static scheme";
-                let cure = "choose solver.scheme = \"newmark\" or \"dragged\", or leave it out";
-                problems.key("solver.pseudo_time", rule, Some(cure.into()));
-            }
-            Scheme::Static
-        }
-        spec::Scheme::Newmark => pseudo_time(solver, Integrator::Newmark, 100.0),
-        spec::Scheme::BackwardEuler => pseudo_time(solver, Integrator::BackwardEuler, 5.0),
+/// Returns the settings of the solver.
+pub(super) fn settings(solver: &keys::Solver, problems: &mut Problems) -> Settings {
+    let pseudo_time = |integrator, damping: f64| {
+        let usual = PseudoTime::default();
+        let written = solver.pseudo_time.as_ref();
+        solve::Scheme::PseudoTime(written.map_or(
+            PseudoTime {
+                integrator,
+                damping,
+                ..usual
+            },
+            |written| PseudoTime {
+                integrator,
+                damping: written.damping.unwrap_or(damping),
+                ramp: written.ramp,
+                tolerance: written.tolerance,
+                max_steps: written.max_steps,
+                equilibrate: written.equilibrate,
+            },
+        ))
     };
+    if matches!(solver.scheme, Scheme::Static)
+        && solver.pseudo_time.is_some()
+        && problems.are_sound(&["solver.scheme"])
+    {
+        let rule = "has no meaning for the static scheme";
+        let help = "set solver.scheme = \"newmark\" or \"backward-euler\", or leave it out";
+        problems.key("solver.pseudo_time", rule, help);
+    }
     Settings {
-        scheme,
+        scheme: match solver.scheme {
+            Scheme::Static => solve::Scheme::Static,
+            Scheme::Newmark => pseudo_time(Integrator::Newmark, 100.0),
+            Scheme::BackwardEuler => pseudo_time(Integrator::BackwardEuler, 5.0),
+        },
         tolerance: solver.tolerance,
         newton_iterations: solver.newton_iterations,
         relaxation_steps: solver.relaxation_steps,
         relaxation_damping: solver.relaxation_damping,
         max_step_halvings: solver.max_step_halvings,
     }
-}
-
-fn pseudo_time(solver: &spec::Solver, integrator: Integrator, usual_drag: f64) -> Scheme {
-    let written = solver.pseudo_time.clone().unwrap_or_default();
-    Scheme::PseudoTime(PseudoTime {
-        integrator,
-        damping: written.damping.unwrap_or(usual_drag),
-        ramp: written.ramp,
-        tolerance: written.tolerance,
-        max_steps: written.max_steps,
-        equilibrate: written.equilibrate,
-    })
 }

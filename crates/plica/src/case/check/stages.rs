@@ -1,33 +1,32 @@
-//! The stages: what they drive, and whether a tube can follow.
+//! The stages: their targets, and whether the wall can be loaded so.
 
-use super::super::keys::join;
+use super::super::key::join;
+use super::super::keys::{Case, Drive};
 use super::super::problem::Problems;
-use super::super::spec::{self, Drive, Spec};
 use super::super::spelling::nearest;
-use super::tube::tidy;
+use super::muscles::{ENDS, WALLS};
+use super::tube::youngs_modulus;
+use super::zone::tidy;
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
 use crate::tube::{Load, Part, Push, Support, Tube};
 use std::collections::HashMap;
 
-/// The names of the ends, in the order of the load.
-pub(super) const ENDS: [&str; 2] = ["colon", "ileum"];
-/// The names of the walls, in the order of the load.
-pub(super) const WALLS: [&str; 2] = ["inner-wall", "outer-wall"];
-/// So many names are told where one of them may be meant.
-const SOME: usize = 12;
-/// So many problems are many.
+/// Number of names that a message lists.
+const NAMES: usize = 12;
+/// Number of problems from which on no similar names are searched for.
 const MANY: usize = 200;
 /// Largest pressure, in E.
 const LARGEST_PRESSURE: f64 = 10.0;
-/// Smallest stress-free stretch that a wall is asked to take.
+/// Smallest and largest stress-free stretch.
 pub(super) const SMALLEST_STRETCH: f64 = 0.02;
-/// Shortest and longest distance of the ends, over the length at rest.
-const ENDS_APART: std::ops::RangeInclusive<f64> = 0.05..=10.0;
+const LARGEST_STRETCH: f64 = 100.0;
+/// Smallest and largest distance of the ends over that at rest.
+const DISTANCES: std::ops::RangeInclusive<f64> = 0.05..=10.0;
 
-/// The stages with their loads, the first from `begin` on.
+/// Returns the stages with the loads at their ends; the first begins at `begin`.
 pub(super) fn stages(
-    spec: &Spec,
+    case: &Case,
     tube: &Tube,
     begin: &Load,
     problems: &mut Problems,
@@ -35,13 +34,9 @@ pub(super) fn stages(
     let mut stages: Vec<Stage> = Vec::new();
     let mut load = begin.clone();
     let mut names: HashMap<String, usize> = HashMap::new();
-    let muscles: HashMap<&str, usize> = tube
-        .muscles
-        .iter()
-        .map(|m| m.name.as_str())
-        .zip(0..)
-        .collect();
-    for (i, stage) in spec.stages.iter().enumerate() {
+    let muscles = tube.muscles.iter().map(|muscle| muscle.name.as_str());
+    let muscles: HashMap<&str, usize> = muscles.zip(0..).collect();
+    for (i, stage) in case.stages.iter().enumerate() {
         let path = format!("stages[{}]", i + 1);
         let name = stage.name.clone();
         let name = name.unwrap_or_else(|| format!("stage-{}", i + 1));
@@ -51,19 +46,14 @@ pub(super) fn stages(
             && problems.is_as_written(&key)
             && problems.is_as_written(&format!("stages[{}].name", other + 1))
         {
-            problems.value(&key, "another stage has this name already", None);
+            problems.value(&key, "another stage has this name", "");
         }
         for (target, drive) in &stage.drive {
             let key = join(&format!("{path}.drive"), target);
-            let driven = Driven::find(target, tube, &muscles);
-            apply(
-                (&key, target, driven),
-                drive,
-                spec,
-                tube,
-                &mut load,
-                problems,
-            );
+            match Driven::find(target, tube, &muscles) {
+                Some(driven) => apply(&key, target, driven, drive, case, tube, &mut load, problems),
+                None => unknown_name(&key, target, tube, problems),
+            }
         }
         stages.push(Stage {
             name,
@@ -74,57 +64,51 @@ pub(super) fn stages(
     stages
 }
 
-/// What must hold for all stages together.
-pub(super) fn check_whole(tube: &Tube, begin: &Load, stages: &[Stage], problems: &mut Problems) {
-    let of_all = |what: &str| {
-        (1..=stages.len())
-            .map(|i| format!("stages[{i}].drive{what}"))
-            .collect()
-    };
-    let none_about = |keys: Vec<String>, problems: &Problems| {
-        keys.iter().all(|key| problems.none_about(&[key])) && problems.is_as_written("start")
-    };
-    let nothing = stages.iter().all(|stage| stage.load == *begin);
-    if nothing && problems.is_as_written("stages") && none_about(of_all(""), problems) {
-        let cure = "write drive.NAME.diameter_ratio = 0.25 in a stage, NAME being a muscle's";
-        problems.key(
-            "stages",
-            "nothing is driven in any stage to anything but where it begins",
-            Some(cure.into()),
-        );
+/// Checks the rules that concern all stages: something is driven, and the ends keep a distance.
+pub(super) fn check_all(tube: &Tube, begin: &Load, stages: &[Stage], problems: &mut Problems) {
+    if !problems.is_as_written("start") {
+        return;
     }
-    let moved: Vec<String> = ENDS
-        .iter()
-        .flat_map(|end| -> Vec<String> { of_all(&format!(".{end}")) })
-        .chain(["tube.length", "tube.diameter"].map(String::from))
+    let drives: Vec<String> = (1..=stages.len())
+        .map(|i| format!("stages[{i}].drive"))
         .collect();
-    if !none_about(moved, problems) {
+    let nothing = stages.iter().all(|stage| stage.load == *begin);
+    if nothing
+        && problems.is_as_written("stages")
+        && drives.iter().all(|drive| problems.are_sound(&[drive]))
+    {
+        let rule = "no stage changes the load";
+        let help = "write drive.NAME.diameter_ratio = 0.25 in a stage, with the name of a muscle";
+        problems.key("stages", rule, help);
+    }
+    let ends = |drive: &String| {
+        ENDS.iter()
+            .all(|end| problems.are_sound(&[&format!("{drive}.{end}")]))
+    };
+    if !problems.are_sound(&["tube.length", "tube.diameter"]) || !drives.iter().all(ends) {
         return;
     }
     for (i, stage) in stages.iter().enumerate() {
         let [colon, ileum] = stage.load.ends;
-        let apart = 1.0 + (ileum.displacement - colon.displacement) / tube.length;
+        let distance = 1.0 + (ileum.displacement - colon.displacement) / tube.length;
         let before = i.checked_sub(1).map_or(begin, |j| &stages[j].load);
-        let [was, will] = [before, &stage.load].map(|load| load.ends.map(|end| end.displacement));
-        if !ENDS_APART.contains(&apart) && (i == 0 || was != will) {
-            let rule = format!(
-                "leaves the ends at {} times their distance at rest",
-                tidy(apart)
-            );
-            let (low, high) = (ENDS_APART.start(), ENDS_APART.end());
-            let cure = format!("stay between {low} and {high}");
-            let moved = [0, 1].map(|end| (will[end] - was[end]).abs());
-            let end = usize::from(moved[1] >= moved[0]);
-            let key = format!("stages[{}].drive.{}.displacement", i + 1, ENDS[end]);
-            problems.value(&key, rule, Some(cure));
+        let [was, is] = [before, &stage.load].map(|load| load.ends.map(|end| end.displacement));
+        if !DISTANCES.contains(&distance) && (i == 0 || was != is) {
+            let distance = tidy(distance);
+            let rule = format!("the distance of the ends becomes {distance} times that at rest");
+            let help = format!("stay between {} and {}", DISTANCES.start(), DISTANCES.end());
+            let moved = [0, 1].map(|end| (is[end] - was[end]).abs());
+            let end = ENDS[usize::from(moved[1] >= moved[0])];
+            let key = format!("stages[{}].drive.{end}.displacement", i + 1);
+            problems.value(&key, rule, help);
         }
     }
 }
 
-/// What a stage drives.
+/// What a name in a stage stands for.
 #[derive(Clone, Copy)]
 enum Driven {
-    /// A muscle, by its place in the tube.
+    /// A muscle, by its index in the tube.
     Muscle(usize, Direction),
     /// The colon end or the ileum end.
     End(usize),
@@ -158,45 +142,51 @@ impl Driven {
             Self::Muscle(_, Direction::Circular) => "a circular muscle",
             Self::Muscle(_, Direction::Longitudinal) => "a longitudinal muscle",
             Self::End(_) => "an end of the tube",
-            Self::Wall(_) => "a wall of the tube",
+            Self::Wall(_) => "a surface of the tube",
         }
     }
 }
 
-/// Puts what a stage says about one muscle or end into the load.
+/// Reports a name that is neither a muscle, nor an end, nor a surface.
+fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
+    let muscle = join("muscles", name);
+    if !problems.are_sound(&[&muscle]) {
+        return problems.replaced(path);
+    }
+    let names = || {
+        let muscles = tube.muscles.iter().map(|muscle| muscle.name.as_str());
+        muscles.chain(ENDS).chain(WALLS)
+    };
+    let near = match problems.len() < MANY {
+        true => nearest(name, names()),
+        false => None,
+    };
+    let help = match near {
+        Some(near) => format!("did you mean {near}?"),
+        None => {
+            let some: Vec<&str> = names().take(NAMES).collect();
+            let more = if names().count() > NAMES { ", …" } else { "" };
+            format!("add [{muscle}], or drive {}{more}", some.join(", "))
+        }
+    };
+    problems.key(path, "there is no muscle of this name", help);
+}
+
+/// Applies the targets of one muscle, end or surface to the load.
+#[expect(clippy::too_many_arguments, reason = "all of it is context of one key")]
 fn apply(
-    (path, name, driven): (&str, &str, Option<Driven>),
+    path: &str,
+    name: &str,
+    driven: Driven,
     drive: &Drive,
-    spec: &Spec,
+    case: &Case,
     tube: &Tube,
     load: &mut Load,
     problems: &mut Problems,
 ) {
-    let muscle = join("muscles", name);
-    let Some(driven) = driven else {
-        if !problems.none_about(&[&muscle]) {
-            return problems.replaced(path.to_owned());
-        }
-        let muscles = || tube.muscles.iter().map(|m| m.name.as_str());
-        let names = || muscles().chain(ENDS).chain(WALLS);
-        // Nobody reads on among so many.
-        let near = match problems.len() < MANY {
-            true => nearest(name, names()),
-            false => None,
-        };
-        let cure = match near {
-            Some(near) => format!("did you mean {near}?"),
-            None => {
-                let some: Vec<&str> = names().take(SOME).collect();
-                let more = if names().count() > SOME { ", …" } else { "" };
-                format!("add [{muscle}], or drive {}{more}", some.join(", "))
-            }
-        };
-        return problems.key(path, "there is no muscle of this name", Some(cure));
-    };
-    if !matches!(driven, Driven::Muscle(..)) && spec.muscles.contains_key(name) {
-        // A muscle of a name that it cannot have.
-        return problems.replaced(path.to_owned());
+    if !matches!(driven, Driven::Muscle(..)) && case.muscles.contains_key(name) {
+        // A muscle of a name that is taken, which has been reported.
+        return problems.replaced(path);
     }
     let targets = driven.targets();
     let written = [
@@ -207,21 +197,24 @@ fn apply(
         ("pressure", drive.pressure),
         ("dead_load", drive.dead_load),
     ];
-    if written.iter().all(|(_, value)| value.is_none()) && problems.none_about(&[path]) {
-        let cure = format!("give {}", targets.join(" or "));
-        problems.key(path, "drives nothing", Some(cure));
+    if written.iter().all(|(_, value)| value.is_none()) && problems.are_sound(&[path]) {
+        let help = format!("add {}", targets.join(" or "));
+        problems.key(path, "has no target", help);
     }
     for (target, value) in written {
         let Some(value) = value else { continue };
         let key = format!("{path}.{target}");
         if !targets.contains(&target) {
-            if !problems.is_as_written(&format!("{muscle}.direction")) {
+            if !problems.is_as_written(&format!("{}.direction", join("muscles", name))) {
                 problems.replaced(key);
                 continue;
             }
             let rule = format!("not a target of {}", driven.words());
-            let cure = format!("did you mean {}?", targets.join(" or "));
-            problems.key(&key, rule, Some(cure));
+            problems.key(
+                &key,
+                rule,
+                format!("did you mean {}?", targets.join(" or ")),
+            );
             continue;
         }
         match driven {
@@ -232,19 +225,19 @@ fn apply(
             Driven::End(e) => {
                 let end = &mut load.ends[e];
                 match target {
-                    "displacement" => end.displacement = value / spec.tube.diameter,
+                    "displacement" => end.displacement = value / case.tube.diameter,
                     _ => end.twist = value.to_radians(),
                 }
                 check_held(&key, target, tube.ends[e], problems);
             }
             Driven::Wall(w) => {
-                let spec::Material::NeoHookean(law) = &spec.material;
-                let (wall, value) = (&mut load.pressures[w], value / law.youngs_modulus);
+                let modulus = youngs_modulus(case);
+                let (wall, value) = (&mut load.pressures[w], value / modulus);
                 match target {
                     "pressure" => wall.follower = value,
                     _ => wall.dead = value,
                 }
-                check_pressure(&key, value, law.youngs_modulus, problems);
+                check_pressure(&key, value, modulus, problems);
                 if target == "pressure" && value != 0.0 {
                     check_closed(&key, tube, problems);
                 }
@@ -253,33 +246,31 @@ fn apply(
     }
 }
 
-/// Whether a pressure, in E, is one that a wall may be put under.
+/// Checks the size of a pressure in E.
 fn check_pressure(key: &str, pressure: f64, youngs_modulus: f64, problems: &mut Problems) {
-    let material = "material.neo-hookean.youngs_modulus";
-    if pressure.abs() > LARGEST_PRESSURE && problems.none_about(&[key, material]) {
+    if pressure.abs() > LARGEST_PRESSURE && problems.are_sound(&[key, "material"]) {
         let largest = tidy(LARGEST_PRESSURE * youngs_modulus);
         let rule = format!("must be from -{largest} to {largest}, ten times Young's modulus");
-        problems.value(key, rule, None);
+        problems.value(key, rule, "");
     }
 }
 
-/// Whether the work of a true pressure depends on the state alone.
+/// Checks that both ends are held under a follower pressure, so that its work depends on the state
+/// alone.
 pub(super) fn check_closed(key: &str, tube: &Tube, problems: &mut Problems) {
     let free = tube.ends.iter().position(|end| *end == Support::Free);
     if let Some(name) = free.map(|end| ENDS[end]) {
-        let rule = format!(
-            "the work of a true pressure depends on what closes an end that moves, and the {name} end is free"
-        );
-        let cure = "hold it, with \"sliding\" or \"fixed\" in [ends], or give dead_load";
-        problems.value(key, rule, Some(cure.into()));
+        let rule = format!("a follower pressure needs both ends held, and the {name} end is free");
+        let help = "write \"sliding\" or \"fixed\" in [ends], or use dead_load";
+        problems.value(key, rule, help);
     }
 }
 
-/// Whether ends that slide under a true pressure stay in their planes.
-pub(super) fn check_planes(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
+/// Checks that ends which slide under a follower pressure stay in their planes.
+pub(super) fn check_end_planes(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
     let pressed = |stage: &Stage| stage.load.pressures.iter().any(|p| p.follower != 0.0);
-    let none = problems.none_about(&["imperfections", "ends", "stages", "start"]);
-    if !none || !stages.iter().any(pressed) {
+    let sound = problems.are_sound(&["imperfections", "ends", "stages", "start"]);
+    if !sound || !stages.iter().any(pressed) {
         return;
     }
     for (i, imperfection) in tube.imperfections.iter().enumerate() {
@@ -289,30 +280,24 @@ pub(super) fn check_planes(tube: &Tube, stages: &[Stage], problems: &mut Problem
         let slides = tube.ends[end as usize] == Support::Sliding;
         let waves = imperfection.shape.waves();
         if slides && waves.iter().any(|wave| wave.harmonic > 0) {
-            let rule =
-                "an end that slides out of its plane does not close a tube under true pressure";
-            let cure = "fix the end, or give dead_load in the stages";
-            problems.key(
-                &format!("imperfections[{}]", i + 1),
-                rule,
-                Some(cure.into()),
-            );
+            let rule = "under a follower pressure a sliding end must stay in its plane";
+            let help = "fix the end, or use dead_load in the stages";
+            problems.key(&format!("imperfections[{}]", i + 1), rule, help);
         }
     }
 }
 
-/// Whether an end is held as its motion needs.
+/// Checks that an end is held as its motion needs.
 pub(super) fn check_held(key: &str, target: &str, support: Support, problems: &mut Problems) {
     let rule = match (target, support) {
         (_, Support::Fixed) | ("displacement", Support::Sliding) => return,
         ("displacement", _) => "only a fixed or sliding end can be moved, and this one is free",
         _ => "only a fixed end can be turned",
     };
-    let cure = "hold it, with \"fixed\" in [ends]";
-    problems.value(key, rule, Some(cure.into()));
+    problems.value(key, rule, "write \"fixed\" in [ends]");
 }
 
-/// Whether the wall can take a target.
+/// Checks the stress-free stretches that a muscle gives the wall.
 pub(super) fn check_stretch(
     key: &str,
     muscle: &Muscle,
@@ -321,7 +306,7 @@ pub(super) fn check_stretch(
     problems: &mut Problems,
 ) {
     let own = join("muscles", &muscle.name);
-    if !problems.none_about(&[key, &own, "tube.length", "tube.diameter"]) {
+    if !problems.are_sound(&[key, &own, "tube.length", "tube.diameter"]) {
         return;
     }
     let smallest = muscle.smallest_stretch(ratio, tube.length);
@@ -330,15 +315,16 @@ pub(super) fn check_stretch(
             "shrinks the wall to {} of its size in the middle of the zone, {SMALLEST_STRETCH} at least",
             tidy(smallest)
         );
-        // The stretch is linear in the ratio, and one at one.
+        // The stretch is linear in the ratio, and 1 at 1.
         let least = 1.0 - (1.0 - ratio) * (1.0 - SMALLEST_STRETCH) / (1.0 - smallest);
-        let cure = format!("try {:.3}", (least * 1000.0).ceil() / 1000.0);
-        problems.value(key, rule, Some(cure));
+        let help = format!("try {:.3}", (least * 1000.0).ceil() / 1000.0);
+        problems.value(key, rule, help);
     }
-    // Mirrored at one, growth is shrinkage.
+    // The largest stretch minus 1 is the shrinkage at the ratio mirrored at 1.
     let largest = 2.0 - muscle.smallest_stretch(2.0 - ratio, tube.length);
-    if largest > 100.0 {
-        let rule = format!("stretches the wall {largest:.0}-fold in the zone, 100 at most");
-        problems.value(key, rule, None);
+    if largest > LARGEST_STRETCH {
+        let rule =
+            format!("stretches the wall {largest:.0}-fold in the zone, {LARGEST_STRETCH} at most");
+        problems.value(key, rule, "");
     }
 }

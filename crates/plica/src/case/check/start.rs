@@ -1,115 +1,103 @@
-//! The state that a case starts from, and the load it brings.
+//! The saved state that a case starts from, and its load.
 
-use super::super::keys::join;
+use super::super::files::{InputFile, OpenInput};
+use super::super::key::join;
+use super::super::keys::Case;
 use super::super::problem::Problems;
-use super::super::spec::Spec;
-use super::super::{Open, Wanted};
 use super::stages::{check_closed, check_held, check_stretch};
-use crate::activation::Direction;
+use super::zone::ROUNDING;
+use crate::activation::{Direction, Muscle};
 use crate::saved_state::{Layout, SavedState};
 use crate::study::Start;
 use crate::tube::{Load, Mesh, Symmetry, Tube};
 
 const KEY: &str = "start.state";
-/// What writing a length down and reading it may do to it.
-const ROUNDING: f64 = 1e-12;
 
-/// The state that a case names, if it can be one of the case's tube and symmetry.
+/// Reads the state that a case names, if it fits the tube and the symmetry of the case.
 pub(super) fn start(
-    spec: &Spec,
+    case: &Case,
     tube: &Tube,
     mesh: &Mesh,
     symmetry: Symmetry,
-    open: &Open<'_>,
+    open: &OpenInput<'_>,
     problems: &mut Problems,
 ) -> Option<Start> {
-    if !problems.none_about(&[KEY]) {
+    let file = case.start.as_ref()?.state.clone();
+    if !problems.are_sound(&["start"]) {
         return None;
     }
-    let file = spec.start.as_ref()?.state.clone();
-    let state = match open(Wanted::State(&file)) {
+    let state = match open(InputFile::State(&file)) {
         Ok(state) => state,
         Err(error) => {
-            let cure =
-                "give the path of a run's states/state-NNNN.safetensors, from the case file on";
-            problems.value(KEY, error.to_string(), Some(cure.into()));
+            let help = "give the path of states/state-NNNN.safetensors of a run, relative to the case file";
+            problems.value(KEY, error.to_string(), help);
             return None;
         }
     };
-    // What is wrong with the tube itself comes first.
-    if !problems.none_about(&["tube", "muscles", "ends", "mesh", "symmetry"]) {
+    if !problems.are_sound(&["tube", "muscles", "ends", "mesh", "symmetry"]) {
         return None;
     }
     let before = problems.len();
     check_size(KEY, &state, tube, problems);
     check_symmetry(&state.layout, mesh, symmetry, problems);
-    let load = load(&state, tube, problems)?;
+    let load = load(&state, tube, problems);
     (problems.len() == before).then_some(Start { file, load, state })
 }
 
-/// Whether a state, or a mode, is of a tube of this size.
+/// Checks that a state, or a mode, belongs to a tube of the same length and thickness.
 pub(super) fn check_size(key: &str, state: &SavedState, tube: &Tube, problems: &mut Problems) {
-    let Layout {
-        length, thickness, ..
-    } = state.layout;
+    let layout = &state.layout;
     let sizes = [
-        ("long", length, tube.length),
-        ("thick", thickness, tube.thickness),
+        ("long", layout.length, tube.length),
+        ("thick", layout.thickness, tube.thickness),
     ];
     for (what, found, expected) in sizes {
         if (found - expected).abs() > ROUNDING * expected {
-            let rule =
-                format!("is of a tube {found} D {what}, and this one is {expected} D {what}");
-            problems.value(key, rule, None);
+            let rule = format!("its tube is {found} D {what}, and this one is {expected} D {what}");
+            problems.value(key, rule, "");
         }
     }
 }
 
-/// The state repeats around the tube; the case may ask for as often, or less often.
+/// Checks that a state repeats around the tube as often as the case demands, or a multiple of it.
 fn check_symmetry(from: &Layout, mesh: &Mesh, symmetry: Symmetry, problems: &mut Problems) {
-    let (had, wanted) = (
+    let (has, needs) = (
         from.mesh.around / from.rings,
         mesh.around / mesh.rings(symmetry),
     );
-    if from.rings > 1 && (symmetry == Symmetry::Axisymmetric || !had.is_multiple_of(wanted)) {
-        let has = match had {
-            1 => "repeats nowhere around its tube".to_owned(),
+    if from.rings > 1 && (symmetry == Symmetry::Axisymmetric || !has.is_multiple_of(needs)) {
+        let has = match has {
+            1 => "has no symmetry".to_owned(),
             m => format!("repeats {m} times around its tube"),
         };
-        let rule = format!("{has}, and cannot take the symmetry of this case");
-        let cure =
-            "symmetry = \"none\" takes any state, fold = m one that repeats a multiple of m times";
-        problems.value(KEY, rule, Some(cure.into()));
+        let rule = format!("{has}, which does not fit the symmetry of this case");
+        let help = "use symmetry = \"none\", or a fold that divides that of the state";
+        problems.value(KEY, rule, help);
     }
 }
 
-/// The load of a state on the muscles and ends of a tube.
-fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Option<Load> {
-    let before = problems.len();
+/// Returns the load of a state on the muscles, ends and surfaces of the tube.
+fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Load {
     let mut load = tube.rest();
     for ((name, direction), &ratio) in state.muscles.iter().zip(&state.load.muscles) {
-        let same = |m: &&crate::activation::Muscle| m.name == *name && m.direction == *direction;
-        match tube.muscles.iter().find(same) {
-            Some(muscle) => check_stretch(KEY, muscle, ratio, tube, problems),
-            None if ratio == 1.0 => {}
-            None => {
-                let kind = match direction {
-                    Direction::Circular => "circular",
-                    Direction::Longitudinal => "longitudinal",
-                };
-                let rule = format!(
-                    "is under a {kind} muscle {name} driven to {ratio}, and this case has none of \
-                     that name and direction"
-                );
-                let cure = match tube.muscles.iter().any(|m| m.name == *name) {
-                    true => format!("write direction = \"{kind}\" in [muscles.{name}]"),
-                    false => format!("add [{}]", join("muscles", name)),
-                };
-                problems.value(KEY, rule, Some(cure));
-            }
-        }
-        if let Some(m) = tube.muscles.iter().position(|m| same(&m)) {
+        let same = |m: &Muscle| m.name == *name && m.direction == *direction;
+        if let Some(m) = tube.muscles.iter().position(same) {
+            check_stretch(KEY, &tube.muscles[m], ratio, tube, problems);
             load.muscles[m] = ratio;
+        } else if ratio != 1.0 {
+            let kind = match direction {
+                Direction::Circular => "circular",
+                Direction::Longitudinal => "longitudinal",
+            };
+            let rule = format!(
+                "its {kind} muscle {name} is driven to {ratio}, and this case has no muscle of \
+                 that name and direction"
+            );
+            let help = match tube.muscles.iter().any(|m| m.name == *name) {
+                true => format!("write direction = \"{kind}\" in [muscles.{name}]"),
+                false => format!("add [{}]", join("muscles", name)),
+            };
+            problems.value(KEY, rule, help);
         }
     }
     load.ends = state.load.ends;
@@ -122,8 +110,12 @@ fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Option<Load
         }
     }
     load.pressures = state.load.pressures;
-    if load.pressures.iter().any(|p| p.follower != 0.0) {
+    if load
+        .pressures
+        .iter()
+        .any(|pressure| pressure.follower != 0.0)
+    {
         check_closed(KEY, tube, problems);
     }
-    (problems.len() == before).then_some(load)
+    load
 }

@@ -1,0 +1,353 @@
+//! Every declared key is read, with its default, its range and its unit.
+
+use super::*;
+use crate::case::read::Table as _;
+use crate::case::key::{Default, LENGTH, Limit, STRESS, join};
+use crate::solve::{PseudoTime, Scheme, Settings};
+use crate::study::Output;
+use std::collections::BTreeSet;
+use toml::{Table, Value};
+
+/// All declared keys with their patterns.
+fn keys() -> Vec<(String, &'static Key)> {
+    let mut keys = vec![];
+    visit(Case::KEYS, &mut |pattern, key| {
+        keys.push((pattern.to_owned(), key))
+    });
+    keys
+}
+
+/// A case in which a key of this pattern may be written.
+fn base(pattern: &str) -> String {
+    let mut text = "[muscles.circular]\ndirection = 'circular'\nzone = [0.5, 1.0]\n\
+        [[stages]]\n[[stages]]\ndrive.colon.displacement = 0.1\n"
+        .to_owned();
+    if pattern.starts_with("solver.pseudo_time") {
+        text += "[solver]\nscheme = 'newmark'\n";
+    }
+    if pattern.starts_with("units.") {
+        text += "[units]\nlength = 'mm'\nstress = 'kPa'\n";
+    }
+    if pattern.starts_with("mesh.refine[]") {
+        text += "[[mesh.refine]]\nzone = [0.5, 1.0]\n";
+    }
+    if pattern.starts_with("imperfections[]") {
+        let shape = match pattern {
+            "imperfections[].shape.mode" => "mode = 'mode'",
+            _ if pattern.contains(".random") => "random = { seed = 1 }",
+            _ => "wave = { mode = 2 }",
+        };
+        let of = match pattern {
+            "imperfections[].direction" => "'colon-end'",
+            "imperfections[].shape.mode" => "'geometry'",
+            _ => "{ muscle = 'circular' }",
+        };
+        text = format!("symmetry = 'none'\n{text}");
+        text += &format!("[[imperfections]]\nof = {of}\namplitude = 1e-4\nshape = {{ {shape} }}\n");
+    }
+    if pattern.ends_with(".length_ratio") {
+        text = text.replace("'circular'", "'longitudinal'");
+    }
+    text
+}
+
+/// The path of a key in its base case: the first member of each list, and a name that fits.
+fn path(pattern: &str) -> String {
+    let last = pattern.rsplit('.').next().unwrap();
+    let name = match last {
+        "displacement" | "twist_degrees" => "colon",
+        "pressure" | "dead_load" => "inner-wall",
+        _ => "circular",
+    };
+    pattern.replace("[]", "[1]").replace("<name>", name)
+}
+
+/// Returns the base case of a key with a value written, or none if TOML cannot express that.
+fn written(pattern: &str, literal: &str) -> Option<String> {
+    edited(&base(pattern), &[(path(pattern), literal)]).ok()
+}
+
+fn read_case(text: &str) -> Result<Plan, CaseError> {
+    read_with(text, "case", &|_| Ok(state()))
+}
+
+#[test]
+fn the_example_of_every_key_is_valid() {
+    for (pattern, key) in keys() {
+        let Some(text) = written(&pattern, &key.example()) else {
+            let in_base = ["muscles", "stages"];
+            assert!(in_base.contains(&pattern.as_str()), "{pattern}");
+            continue;
+        };
+        if let Err(error) = read_case(&text) {
+            panic!("{error}\n{text}");
+        }
+    }
+}
+
+#[test]
+fn a_key_that_is_left_out_has_its_default() {
+    for (pattern, key) in keys() {
+        if matches!(key.rule.default, Default::Value(_))
+            && let Some(text) = written(&pattern, &key.example())
+        {
+            let (with, without) = (read_case(&text), read_case(&base(&pattern)));
+            assert_eq!(with, without, "{pattern}");
+        }
+    }
+    let plan = |scheme: &str| read(&format!("{}\n[solver]\n{scheme}", base("")), "case").unwrap();
+    assert_eq!(plan("").solver, Settings::default());
+    assert_eq!(plan("").output, Output::default());
+    let pseudo_time = Scheme::PseudoTime(PseudoTime::default());
+    assert_eq!(plan("scheme = 'newmark'").solver.scheme, pseudo_time);
+    assert_eq!(
+        plan("scheme = 'newmark'\npseudo_time = {}").solver.scheme,
+        pseudo_time
+    );
+}
+
+#[test]
+fn every_range_ends_at_its_declared_limits() {
+    let mut count = 0;
+    for (pattern, key) in keys() {
+        let is_integer = matches!(key.kind, Kind::Integer);
+        let limits = [(key.rule.range.low, -1.0), (key.rule.range.high, 1.0)];
+        for (limit, outwards) in limits {
+            let next = |x: f64, way: f64| match is_integer {
+                true => x + way,
+                false if way < 0.0 => x.next_down(),
+                false => x.next_up(),
+            };
+            let (inside, outside) = match limit {
+                Limit::None => continue,
+                Limit::Inclusive(x) => (x, next(x, outwards)),
+                Limit::Exclusive(x) => (next(x, -outwards), x),
+            };
+            let rule = key.rule.range.broken_by(outside).unwrap();
+            let is_broken = |x: f64| {
+                let literal = if is_integer {
+                    format!("{x}")
+                } else {
+                    format!("{x:?}")
+                };
+                let read = read_case(&written(&pattern, &literal).unwrap());
+                let problems = read.map_or_else(|error| error.problems, |_| vec![]);
+                let own = path(&pattern);
+                problems.iter().any(|p| p.key == own && p.rule == rule)
+            };
+            assert!(is_broken(outside), "{pattern} = {outside}");
+            assert!(!is_broken(inside), "{pattern} = {inside}");
+            count += 1;
+        }
+        if matches!(key.kind, Kind::Number) {
+            for literal in ["nan", "inf", "-inf"] {
+                let read = read_case(&written(&pattern, literal).unwrap());
+                let problems = read.unwrap_err().problems;
+                assert_eq!(problems[0].rule, "must be a finite number", "{pattern}");
+            }
+        }
+    }
+    assert!(count > 60, "{count}");
+}
+
+/// Scales all values of a case that have a unit.
+fn scale(
+    value: &mut Value,
+    pattern: &str,
+    [length, stress]: [f64; 2],
+    seen: &mut BTreeSet<String>,
+) {
+    fn numbers(value: &mut Value, factor: f64) {
+        match value {
+            Value::Float(x) => *x *= factor,
+            Value::Array(list) => list.iter_mut().for_each(|value| numbers(value, factor)),
+            _ => panic!("a quantity with a unit is a decimal number"),
+        }
+    }
+    let key = keys().into_iter().find(|(own, _)| own == pattern);
+    let unit = key.map_or("", |(_, key)| key.rule.unit);
+    match value {
+        Value::Table(table) => {
+            let of_muscle = table.get("of").is_some_and(Value::is_table);
+            for (name, value) in table {
+                let named = pattern == "muscles" || pattern.ends_with(".drive");
+                let below = match named {
+                    true => format!("{pattern}.<name>"),
+                    false => join(pattern, name),
+                };
+                let below = below.replace("\"\"", "");
+                // The amplitude of a muscle has no unit.
+                if !(of_muscle && name == "amplitude") {
+                    scale(value, &below, [length, stress], seen);
+                }
+            }
+        }
+        Value::Array(list) if list.iter().any(Value::is_table) => {
+            for value in list {
+                scale(value, &format!("{pattern}[]"), [length, stress], seen);
+            }
+        }
+        value if unit == LENGTH || unit == STRESS => {
+            seen.insert(pattern.to_owned());
+            numbers(value, if unit == LENGTH { length } else { stress });
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn units_scale_a_case_and_change_nothing_else() {
+    let plan = read(RICH, "case").unwrap();
+    let mut seen = BTreeSet::new();
+    let mut case = Value::Table(RICH.parse::<Table>().unwrap());
+    scale(&mut case, "", [1.0 / 16.0, 1.0 / 64.0], &mut seen);
+    case.as_table_mut().unwrap().remove("units");
+    let ratios = read(&toml::to_string(&case).unwrap(), "case").unwrap();
+    let units = plan.units.clone().unwrap();
+    assert_eq!((units.diameter, units.youngs_modulus), (16.0, 64.0));
+    assert_eq!(plan.stages[1].load.pressures[0].follower, 0.5 / 64.0);
+    assert_eq!(
+        Plan {
+            units: None,
+            ..plan
+        },
+        ratios
+    );
+    let has_unit = |key: &Key| key.rule.unit == LENGTH || key.rule.unit == STRESS;
+    let all = keys().into_iter().filter(|(_, key)| has_unit(key));
+    assert_eq!(seen, all.map(|(pattern, _)| pattern).collect());
+}
+
+#[test]
+fn no_value_and_no_part_of_a_text_makes_the_reader_panic() {
+    let odd = [
+        "nan",
+        "-1",
+        "0",
+        "1e300",
+        "5e-324",
+        "99999999999999999999",
+        "-9223372036854775808",
+        "'x'",
+        "''",
+        "true",
+        "[]",
+        "{}",
+        "[[]]",
+        "[1]",
+        "[0.0, 0.0]",
+        "[nan, inf]",
+        "[{}]",
+        "[1, {}]",
+        "1979-05-27",
+        "{ x = 1 }",
+        "{ fold = 0 }",
+        "{ table = [] }",
+    ];
+    for (pattern, _) in keys() {
+        for literal in odd {
+            let _ = written(&pattern, literal).map(|text| read_case(&text));
+        }
+    }
+    for end in (0..STARTER.len()).filter(|&end| STARTER.is_char_boundary(end)) {
+        let _ = read(&STARTER[..end], "case");
+        let _ = read(&STARTER[end..], "case");
+    }
+    for name in ["'a.b'", "''", "'stages[1]'", "'[0]'", "\"\\u001b\"", "'ä'"] {
+        let _ = read(&base("").replace("circular]", &format!("{name}]")), "case");
+        let _ = read(
+            &base("").replace("drive.colon", &format!("drive.{name}")),
+            "case",
+        );
+    }
+}
+
+/// Checks a value against the parts of JSON Schema that the schema uses.
+fn conforms(schema: &serde_json::Value, value: &Value) -> Result<(), String> {
+    let wrong = || Err(format!("{value} does not conform to {schema}"));
+    if let Some(choices) = schema["anyOf"].as_array() {
+        let fits = choices.iter().any(|choice| conforms(choice, value).is_ok());
+        return if fits { Ok(()) } else { wrong() };
+    }
+    if let Some(words) = schema["enum"].as_array() {
+        let word = value.as_str().unwrap_or_default();
+        return if words.contains(&word.into()) {
+            Ok(())
+        } else {
+            wrong()
+        };
+    }
+    let bound = |name: &str| schema[name].as_f64();
+    match value {
+        Value::Table(table) if schema["type"] == "object" => {
+            let others = &schema["additionalProperties"];
+            for (name, value) in table {
+                let own = schema["properties"].get(name).unwrap_or(others);
+                if *own == false {
+                    return Err(format!("{name} is not allowed"));
+                }
+                conforms(own, value)?;
+            }
+            let required = schema["required"].as_array().into_iter().flatten();
+            let mut missing = required.filter(|name| !table.contains_key(name.as_str().unwrap()));
+            let size = table.len() as f64;
+            let fits = bound("minProperties").is_none_or(|least| size >= least)
+                && bound("maxProperties").is_none_or(|most| size <= most);
+            if missing.next().is_some() || !fits {
+                wrong()
+            } else {
+                Ok(())
+            }
+        }
+        Value::Array(list) if schema["type"] == "array" => list
+            .iter()
+            .try_for_each(|value| conforms(&schema["items"], value)),
+        Value::String(_) if schema["type"] == "string" => Ok(()),
+        Value::Boolean(_) if schema["type"] == "boolean" => Ok(()),
+        Value::Integer(_) | Value::Float(_) => {
+            let x = value
+                .as_float()
+                .unwrap_or_else(|| value.as_integer().unwrap() as f64);
+            let fits =
+                schema["type"] == "number" || schema["type"] == "integer" && value.is_integer();
+            let in_range = bound("minimum").is_none_or(|low| x >= low)
+                && bound("exclusiveMinimum").is_none_or(|low| x > low)
+                && bound("maximum").is_none_or(|high| x <= high)
+                && bound("exclusiveMaximum").is_none_or(|high| x < high);
+            if fits && in_range { Ok(()) } else { wrong() }
+        }
+        _ => wrong(),
+    }
+}
+
+#[test]
+fn valid_cases_conform_to_the_schema_and_others_do_not() {
+    let schema = schema();
+    let conforms = |text: &str| conforms(&schema, &Value::Table(text.parse().unwrap()));
+    for (name, text) in cases() {
+        assert_eq!(conforms(&text), Ok(()), "{name}");
+    }
+    for (pattern, key) in keys() {
+        if let Some(text) = written(&pattern, &key.example()) {
+            assert_eq!(conforms(&text), Ok(()), "{text}");
+        }
+    }
+    for text in [
+        "",
+        "[[stages]]\nstepps = 3",
+        "[[stages]]\nsteps = 0",
+        "[[stages]]\nsteps = 2.5",
+        "symmetry = 'oval'\n[[stages]]\nsteps = 1",
+        "symmetry = {}\n[[stages]]\nsteps = 1",
+        "[tube]\nlength = 'long'\n[[stages]]\nsteps = 1",
+        "[muscles.a]\ndirection = 'circular'\n[[stages]]\nsteps = 1",
+    ] {
+        assert!(conforms(text).is_err(), "{text}");
+    }
+    let text = schema.to_string();
+    for (pattern, key) in keys().into_iter().filter(|(_, key)| key.name != "stages") {
+        let meaning = serde_json::to_string(&schema::description(key)).unwrap();
+        assert!(text.contains(&meaning), "{pattern}");
+        assert!(key.meaning().ends_with('.'), "{pattern}");
+    }
+}

@@ -1,0 +1,452 @@
+//! The rules between keys, each once just inside and once just outside its bound.
+
+use super::*;
+
+/// A case with a value of `@`.
+struct Rule {
+    /// The key that the problem is reported with.
+    key: &'static str,
+    text: &'static str,
+    inside: &'static [&'static str],
+    outside: &'static [&'static str],
+}
+
+const fn rule(
+    key: &'static str,
+    text: &'static str,
+    inside: &'static [&'static str],
+    outside: &'static [&'static str],
+) -> Rule {
+    Rule {
+        key,
+        text,
+        inside,
+        outside,
+    }
+}
+
+const RING: &str = "\n[muscles.ring]\ndirection = 'circular'\nzone = [0.5, 1.0]\n\
+    [[stages]]\nname = 'first'\ndrive.ring.diameter_ratio = 0.25\n";
+
+const LONG: &str = "\n[muscles.long]\ndirection = 'longitudinal'\nzone = [0.5, 1.0]\n[[stages]]\n";
+
+const MOVED: &str = "\n[[stages]]\ndrive.ileum.displacement = 0.001\n";
+
+/// Rules of cases that end with [`RING`].
+const OF_RING: &[Rule] = &[
+    rule(
+        "tube.thickness",
+        "tube.thickness = @",
+        &["0.001", "0.49999"],
+        &["0.00099999", "0.5"],
+    ),
+    rule(
+        "mesh.control_points.axial",
+        "mesh.control_points.axial = @",
+        &["4"],
+        &["3"],
+    ),
+    rule(
+        "mesh.control_points.thickness",
+        "mesh.control_points.thickness = @",
+        &["4"],
+        &["3"],
+    ),
+    rule(
+        "mesh.control_points.around",
+        "mesh.control_points.around = @",
+        &["8"],
+        &["7"],
+    ),
+    rule(
+        "mesh.control_points.around",
+        "mesh = { degree = 5, control_points = { around = @ } }",
+        &["12"],
+        &["11"],
+    ),
+    rule(
+        "mesh.volumetric_integration",
+        "mesh = { degree = @, volumetric_integration = 'reduced' }",
+        &["3", "5"],
+        &["1", "2", "4"],
+    ),
+    rule(
+        "symmetry.fold",
+        "symmetry.fold = @",
+        &["6", "60"],
+        &["7", "61"],
+    ),
+    rule(
+        "mesh.control_points",
+        "symmetry = 'none'\nmesh.control_points = { axial = @, around = 1000, thickness = 4 }",
+        &["5000"],
+        &["5001"],
+    ),
+    rule(
+        "mesh.refine[1].zone",
+        "mesh.refine = [{ zone = @ }]",
+        &["[0.0, 3.0]", "[1.0, 1.0011]"],
+        &[
+            "[-0.0001, 3.0]",
+            "[0.0, 3.0001]",
+            "[1.0, 1.0009]",
+            "[1.0, 1.0]",
+            "[1.0, 0.5]",
+        ],
+    ),
+    rule(
+        "material.neo-hookean.poisson_ratio",
+        "material.neo-hookean = { volumetric = 'quadratic', poisson_ratio = @ }",
+        &["0.0"],
+        &["-0.0001"],
+    ),
+    rule(
+        "material.mooney-rivlin.i2_share",
+        "material.mooney-rivlin = { poisson_ratio = 0.25, i2_share = @ }",
+        &["0.5", "0.0"],
+        &["0.5001"],
+    ),
+    rule(
+        "solver.pseudo_time",
+        "solver = { scheme = @, pseudo_time = {} }",
+        &["'newmark'", "'backward-euler'"],
+        &["'static'"],
+    ),
+    rule(
+        "muscles.other.zone",
+        "muscles.other = { direction = 'circular', zone = @ }",
+        &["[1.0, 2.0]", "[0.0, 0.5]"],
+        &["[0.9999, 2.0]", "[0.0, 0.5001]", "[0.6, 0.7]"],
+    ),
+    rule(
+        "muscles.other.profile.table",
+        "muscles.other = { direction = 'longitudinal', zone = [0, 1], profile = { table = @ } }",
+        &["[[0, 0], [1, 0.001]]", "[[0, 1], [1, 0]]"],
+        &[
+            "[[0, 1]]",
+            "[]",
+            "[[0, 0], [1, 0.0009]]",
+            "[[0, 1.0001], [1, 0]]",
+            "[[0, 1], [1, -0.0001]]",
+            "[[0.0001, 1], [1, 0]]",
+            "[[0, 1], [0.9999, 0]]",
+            "[[0, 1], [0.5, 1], [0.5, 0], [1, 0]]",
+        ],
+    ),
+    rule(
+        "imperfections[1].amplitude",
+        "@",
+        &[
+            "imperfections = [{ of = 'geometry', amplitude = 0.015, shape = { wave = { mode = 0 } } }]",
+            "imperfections = [{ of = 'geometry', amplitude = -0.015, shape = { wave = { mode = 0 } } }]",
+            "imperfections = [{ of = { muscle = 'ring' }, amplitude = 0.3066, shape = { wave = { mode = 0 } } }]",
+        ],
+        &[
+            "imperfections = [{ of = 'geometry', amplitude = 0.01501, shape = { wave = { mode = 0 } } }]",
+            "imperfections = [{ of = 'geometry', amplitude = -0.01501, shape = { wave = { mode = 0 } } }]",
+            "imperfections = [{ of = { muscle = 'ring' }, amplitude = 0.3067, shape = { wave = { mode = 0 } } }]",
+            "imperfections = [{ of = { muscle = 'ring' }, amplitude = 0.5001, shape = { wave = { mode = 0 } } }]",
+        ],
+    ),
+    rule(
+        "imperfections[1].direction",
+        "imperfections = [{ of = @, direction = 'axial', amplitude = 1e-3, shape = { wave = { mode = 0 } } }]",
+        &["'colon-end'"],
+        &["'geometry'", "{ muscle = 'ring' }"],
+    ),
+    rule(
+        "imperfections[1].of",
+        "ends.colon = @\nimperfections = [{ of = 'colon-end', amplitude = 1e-3, shape = { wave = { mode = 0 } } }]",
+        &["'fixed'"],
+        &["'sliding'", "'free'"],
+    ),
+    rule(
+        "imperfections[1].of",
+        "ends.ileum = @\nimperfections = [{ of = 'ileum-end', direction = 'axial', amplitude = 1e-3, shape = { wave = { mode = 0 } } }]",
+        &["'fixed'", "'sliding'"],
+        &["'free'"],
+    ),
+    rule(
+        "imperfections[1].shape.wave.mode",
+        "@ } } }]",
+        &[
+            "imperfections = [{ of = 'geometry', amplitude = 1e-3, shape = { wave = { mode = 0",
+            "symmetry = 'none'\nimperfections = [{ of = 'geometry', amplitude = 1e-3, shape = { wave = { mode = 15",
+            "symmetry.fold = 3\nimperfections = [{ of = 'geometry', amplitude = 1e-3, shape = { wave = { mode = 3",
+        ],
+        &[
+            "imperfections = [{ of = 'geometry', amplitude = 1e-3, shape = { wave = { mode = 1",
+            "symmetry = 'none'\nimperfections = [{ of = 'geometry', amplitude = 1e-3, shape = { wave = { mode = 16",
+            "symmetry.fold = 3\nimperfections = [{ of = 'geometry', amplitude = 1e-3, shape = { wave = { mode = 4",
+        ],
+    ),
+    rule(
+        "imperfections[1].shape.random.modes",
+        "symmetry = 'none'\nimperfections = [{ of = 'colon-end', amplitude = 1e-3, shape = { random = { seed = 1, modes = @ } } }]",
+        &["15"],
+        &["16"],
+    ),
+    rule(
+        "imperfections[1].shape.wave.axial",
+        "imperfections = [{ of = @, amplitude = 1e-3, shape = { wave = { mode = 0, axial = 'half-sine' } } }]",
+        &["'geometry'", "{ muscle = 'ring' }"],
+        &["'colon-end'"],
+    ),
+    rule(
+        "imperfections[1].shape.random.half_waves",
+        "imperfections = [{ of = @, amplitude = 1e-3, shape = { random = { seed = 1, half_waves = 1 } } }]",
+        &["'geometry'", "{ muscle = 'ring' }"],
+        &["'ileum-end'"],
+    ),
+];
+
+/// Rules of cases that begin with [`RING`].
+const AFTER_RING: &[Rule] = &[
+    rule(
+        "stages[1].drive.ring.diameter_ratio",
+        "drive.ring.diameter_ratio = @",
+        &["0.02"],
+        &["0.0199"],
+    ),
+    rule(
+        "stages[2].name",
+        "[[stages]]\nname = @",
+        &["'second'"],
+        &["'first'"],
+    ),
+    rule(
+        "stages[2].drive.inner-wall.pressure",
+        "[[stages]]\ndrive.inner-wall.pressure = @\n[material.neo-hookean]\nyoungs_modulus = 2.0",
+        &["20.0", "-20.0"],
+        &["20.001", "-20.001"],
+    ),
+    rule(
+        "stages[2].drive.outer-wall.dead_load",
+        "[[stages]]\ndrive.outer-wall.dead_load = @",
+        &["10.0", "-10.0"],
+        &["10.001", "-10.001"],
+    ),
+    rule(
+        "stages[2].drive.outer-wall.pressure",
+        "[[stages]]\ndrive.outer-wall.pressure = 1e-3\n[ends]\ncolon = @",
+        &["'fixed'", "'sliding'"],
+        &["'free'"],
+    ),
+    rule(
+        "stages[2].drive.ileum.displacement",
+        "[[stages]]\ndrive.ileum.displacement = 0.1\n[ends]\nileum = @",
+        &["'fixed'", "'sliding'"],
+        &["'free'"],
+    ),
+    rule(
+        "stages[2].drive.ileum.twist_degrees",
+        "[[stages]]\ndrive.ileum.twist_degrees = 10\n[ends]\nileum = @",
+        &["'fixed'"],
+        &["'sliding'", "'free'"],
+    ),
+    rule(
+        "stages[2].drive.ileum.displacement",
+        "[[stages]]\ndrive.ileum.displacement = @",
+        &["-2.8499", "26.999"],
+        &["-2.8501", "27.001"],
+    ),
+    rule(
+        "stages[2].drive.colon.displacement",
+        "[[stages]]\ndrive.colon.displacement = @",
+        &["2.8499", "-26.999"],
+        &["2.8501", "-27.001"],
+    ),
+    rule(
+        "imperfections[1]",
+        "[[stages]]\ndrive.inner-wall.pressure = 1e-3\n[ends]\ncolon = @\n[[imperfections]]\nof = 'colon-end'\n\
+            direction = 'axial'\namplitude = 1e-3\nshape.wave.mode = 1\n[mesh]\n",
+        &["'fixed'"],
+        &["'sliding'"],
+    ),
+    rule(
+        "muscles.@",
+        "[muscles.@]\ndirection = 'longitudinal'\nzone = [0, 1]",
+        &["a_b-C9", "abcdefghijabcdefghijabcdefghijabcdefghij"],
+        &[
+            "colon",
+            "inner-wall",
+            "abcdefghijabcdefghijabcdefghijabcdefghijk",
+        ],
+    ),
+];
+
+/// Checks that one problem is reported for values outside, and none for values inside.
+fn check(rule: &Rule, case: impl Fn(&str) -> String) {
+    for value in rule.inside {
+        let text = case(&rule.text.replace('@', value));
+        if let Err(error) = read(&text, "case") {
+            panic!("{error}\n{text}");
+        }
+    }
+    for value in rule.outside {
+        let text = case(&rule.text.replace('@', value));
+        let keys: Vec<String> = problems(&text).into_iter().map(|p| p.key).collect();
+        assert_eq!(keys, [rule.key.replace('@', value)], "{text}");
+    }
+}
+
+#[test]
+fn rules_hold_up_to_their_bounds_and_no_further() {
+    for rule in OF_RING {
+        check(rule, |text| format!("{text}{RING}"));
+    }
+    for rule in AFTER_RING {
+        let first = rule.text.starts_with("drive");
+        let ring = RING.replace("drive.ring.diameter_ratio = 0.25\n", "");
+        let base = if first { &ring } else { RING };
+        let symmetry = if rule.key == "imperfections[1]" {
+            "symmetry = 'none'"
+        } else {
+            ""
+        };
+        check(rule, |text| format!("{symmetry}{base}{text}"));
+    }
+    // Of the activity ½(1 − cos 2πx) over 0.5 of a length 3, the mean is a twelfth: the stretch is
+    // 1 + 12 (ratio − 1).
+    let ratio = "drive.long.length_ratio = @";
+    let key = "stages[1].drive.long.length_ratio";
+    check(
+        &rule(key, ratio, &["0.9184", "9.249"], &["0.9183", "9.251"]),
+        |text| format!("{LONG}{text}"),
+    );
+    let length = rule(
+        "tube.length",
+        "tube.length = @",
+        &["0.01", "1000"],
+        &["0.0099", "1000.1"],
+    );
+    check(&length, |text| format!("{text}{MOVED}"));
+    let drive = rule(
+        "stages",
+        "drive.ileum.displacement = @",
+        &["1e-9"],
+        &["0.0"],
+    );
+    check(&drive, |text| format!("[[stages]]\n{text}"));
+}
+
+/// Reads a case with a saved state, or mode, that is changed.
+fn with_state(text: &str, change: impl Fn(&mut SavedState)) -> Vec<String> {
+    let state = |_: InputFile<'_>| {
+        let mut state = state();
+        change(&mut state);
+        Ok(state)
+    };
+    let read = read_with(text, "case", &state);
+    let problems = read.map_or_else(|error| error.problems, |_| vec![]);
+    problems
+        .into_iter()
+        .map(|problem| problem.to_string())
+        .collect()
+}
+
+#[test]
+fn a_state_to_start_from_fits_the_case() {
+    let text = format!("start.state = 'x'{RING}");
+    let check = |text: &str, change: &dyn Fn(&mut SavedState), rules: &[&str]| {
+        let found = with_state(text, change);
+        assert_eq!(found.len(), rules.len(), "{found:?}");
+        for (found, rule) in found.iter().zip(rules) {
+            assert!(
+                found.starts_with("start.state = 'x': ") && found.contains(rule),
+                "{found}"
+            );
+        }
+    };
+    check(&text, &|_| {}, &[]);
+    check(&text, &|s| s.layout.length = 3.0 * (1.0 + 1e-13), &[]);
+    check(
+        &text,
+        &|s| s.layout.length = 3.0 * (1.0 + 1e-11),
+        &["D long"],
+    );
+    check(
+        &text,
+        &|s| s.layout.thickness = 0.07,
+        &["its tube is 0.07 D thick"],
+    );
+    check(&text, &|s| s.layout.rings = 8, &["has no symmetry"]);
+    let fold = |m: usize| format!("symmetry.fold = {m}\n{text}");
+    check(&fold(2), &|s| s.layout.rings = 2, &[]);
+    check(&fold(3), &|s| s.layout.rings = 2, &["repeats 4 times"]);
+    check(&fold(3), &|s| s.layout.rings = 1, &[]);
+    let muscle = |name: &'static str, ratio: f64| {
+        move |state: &mut SavedState| {
+            state.muscles = vec![(name.into(), crate::activation::Direction::Circular)];
+            state.load.muscles = vec![ratio];
+        }
+    };
+    check(&text, &muscle("ring", 0.02), &[]);
+    check(&text, &muscle("ring", 0.0199), &["shrinks the wall"]);
+    check(&text, &muscle("other", 1.0), &[]);
+    check(&text, &muscle("other", 0.9), &["add [muscles.other]"]);
+    let free = format!("ends.ileum = 'free'\n{text}");
+    check(
+        &free,
+        &|s| s.load.ends[1].displacement = 0.1,
+        &["only a fixed or sliding end"],
+    );
+    check(
+        &free,
+        &|s| s.load.ends[1].twist = 0.1,
+        &["only a fixed end"],
+    );
+    check(
+        &free,
+        &|s| s.load.pressures[0].follower = 0.1,
+        &["a follower pressure"],
+    );
+    check(&free, &|s| s.load.pressures[0].dead = 0.1, &[]);
+}
+
+#[test]
+fn a_mode_fits_the_tube_and_the_symmetry() {
+    let text = |symmetry: &str, around: usize, of: &str| {
+        format!(
+            "symmetry = {symmetry}\nmesh.control_points.around = {around}\nimperfections = \
+            [{{ of = {of}, amplitude = 1e-3, shape = {{ mode = 'x' }} }}]{RING}"
+        )
+    };
+    let geometry = "'geometry'";
+    for (case, rule) in [
+        (text("'none'", 8, geometry), ""),
+        (text("{ fold = 2 }", 8, geometry), ""),
+        (
+            text("{ fold = 4 }", 8, geometry),
+            "is of circumferential mode 2, and the tube repeats 4",
+        ),
+        (
+            text("'axisymmetric'", 8, geometry),
+            "an axisymmetric run has mode 0 only",
+        ),
+        (
+            text("'none'", 8, "'colon-end'"),
+            "only an imperfect geometry",
+        ),
+    ] {
+        let found = with_state(&case, |_| {});
+        match rule {
+            "" => assert!(found.is_empty(), "{found:?}"),
+            rule => assert!(found.len() == 1 && found[0].contains(rule), "{found:?}"),
+        }
+    }
+    let third = |state: &mut SavedState| state.arrays.get_mut("harmonic").unwrap().values[0] = 3.0;
+    let found = with_state(&text("'none'", 8, geometry), third);
+    assert!(
+        found.len() == 1 && found[0].contains("resolve at most 2"),
+        "{found:?}"
+    );
+    assert!(with_state(&text("'none'", 12, geometry), third).is_empty());
+    let longer = with_state(&text("'none'", 8, geometry), |state| {
+        state.layout.length = 3.1
+    });
+    assert!(
+        longer.len() == 1 && longer[0].contains("its tube is 3.1 D long"),
+        "{longer:?}"
+    );
+}
