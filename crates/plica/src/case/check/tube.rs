@@ -59,8 +59,8 @@ fn material(case: &Case, problems: &mut Problems) -> Material {
             })
         }
         keys::Material::MooneyRivlin(law) => {
-            let [ratio, share] = ["poisson_ratio", "i2_share"]
-                .map(|key| format!("material.mooney-rivlin.{key}"));
+            let [ratio, share] =
+                ["poisson_ratio", "i2_share"].map(|key| format!("material.mooney-rivlin.{key}"));
             let largest = law.poisson_ratio / (1.0 - 2.0 * law.poisson_ratio);
             if law.i2_share > largest && problems.are_sound(&[&ratio, &share]) {
                 let rule = format!(
@@ -69,7 +69,11 @@ fn material(case: &Case, problems: &mut Problems) -> Material {
                     tidy(largest),
                     law.poisson_ratio
                 );
-                problems.value(&share, rule, "make it smaller, or poisson_ratio at least 1/3");
+                problems.value(
+                    &share,
+                    rule,
+                    "make it smaller, or poisson_ratio at least 1/3",
+                );
             }
             let (ratio, share) = (law.poisson_ratio, law.i2_share);
             Material::MooneyRivlin(MooneyRivlin::new(1.0, ratio, share))

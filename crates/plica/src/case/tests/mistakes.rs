@@ -1,8 +1,8 @@
 //! Each mistake gives one message, at its place; several mistakes are reported together.
 
 use super::*;
-use crate::case::read::Table as _;
 use crate::case::key::join;
+use crate::case::read::Table as _;
 use toml::{Table, Value};
 
 /// A step on the path to a value: a name, or the index of a member of a list.
@@ -185,7 +185,7 @@ fn a_value_of_the_wrong_form_gets_the_right_form_as_help() {
         (
             "material.youngs_modulus = 2",
             "material.youngs_modulus",
-            "it belongs to material.neo-hookean",
+            "it belongs to material.neo-hookean or material.mooney-rivlin",
         ),
         (
             "symmetry = 'fold'",

@@ -113,14 +113,14 @@ const OF_RING: &[Rule] = &[
         &["'static'"],
     ),
     rule(
-        "muscles.other.zone",
-        "muscles.other = { direction = 'circular', zone = @ }",
+        "muscles.side.zone",
+        "muscles.side = { direction = 'circular', zone = @ }",
         &["[1.0, 2.0]", "[0.0, 0.5]"],
         &["[0.9999, 2.0]", "[0.0, 0.5001]", "[0.6, 0.7]"],
     ),
     rule(
-        "muscles.other.profile.table",
-        "muscles.other = { direction = 'longitudinal', zone = [0, 1], profile = { table = @ } }",
+        "muscles.side.profile.table",
+        "muscles.side = { direction = 'longitudinal', zone = [0, 1], profile = { table = @ } }",
         &["[[0, 0], [1, 0.001]]", "[[0, 1], [1, 0]]"],
         &[
             "[[0, 1]]",
