@@ -1,4 +1,4 @@
-//! Every broken case in `broken/` and what is said about it. `PLICA_BLESS=1 cargo test` rewrites
+//! The messages about every broken case in `broken/`. `PLICA_BLESS=1 cargo test` rewrites
 //! `broken.txt`.
 
 use crate::common::{compare, plica, tests, text};

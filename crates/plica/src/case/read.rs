@@ -202,7 +202,12 @@ fn known_keys<'a, 'i>(
     let is_unknown = !strangers.is_empty();
     for (name, own, value) in strangers {
         let near = nearest(name, keys.iter().map(|key| key.name));
-        let tables = tables_with(name, problems.keys);
+        let mut tables = tables_with(name, problems.keys);
+        // Those below this table come before others.
+        let below = format!("{path}.");
+        if tables.iter().any(|table| table.starts_with(&below)) {
+            tables.retain(|table| table.starts_with(&below));
+        }
         problems.key(&own, "unknown key", unknown_help(name, near, kind, &tables));
         if let Some(key) = keys.iter().find(|key| Some(key.name) == near) {
             problems.replaced(join(path, key.name));
