@@ -1,9 +1,24 @@
-//! The kernel's plain twin, which tests hold it against: the whole tube in Cartesian control
-//! points, one quadrature point after the other, every formula from its definition.
+//! Reference implementation of the element. Start here to understand the method.
 //!
-//! It shares with the kernel the splines along z and through the wall, the quadrature rule, the law and
-//! the control values of an imperfect geometry, which have tests of their own, and nothing else. Control point n = (a, c, j) lies at
-//! row a along the tube, point c through the wall, ring j around it.
+//! The wall is a tensor product of splines: open B-splines along z and through the radius R, uniform
+//! periodic ones around. Their control points carry displacements u_a. In Cartesian coordinates,
+//! with the stretches θζ, θη of the muscles (Okino et al. 2025, Eqs. (1)–(12)):
+//!
+//! - position X = Σ N_a X_a, displacement u = Σ N_a u_a, F = I + Σ u_a ⊗ ∇N_a, ∇ = ∂/∂X;
+//! - growth Fp = θζ e_z ⊗ e_z + e_R ⊗ e_R + θη e_θ ⊗ e_θ, elastic part Fe = F Fp⁻¹ = Fp⁻¹ + Σ u_a ⊗ h_a
+//!   with h_a = Fp⁻ᵀ ∇N_a;
+//! - energy W = ∫ w(Fe) det Fp dV, with stress P = ∂w/∂Fe and moduli A = ∂P/∂Fe;
+//! - residual R_a = ∂W/∂u_a = ∫ P h_a det Fp dV;
+//! - tangent K_ab = ∂R_a/∂u_b = ∫ h_a · A · h_b det Fp dV;
+//! - damping matrix C_ab = ∫ N_a N_b dV.
+//!
+//! The kernels of [`SplineTube`] give the same numbers: they work in the rotated frame of each
+//! element, factorise the sums over a, and evaluate eight elements at once. Tests compare them with
+//! this file, which shares with them the splines along z and R, the Gauss rule, the laws and the
+//! control values of an imperfect geometry. Pressures and reduced integration are not here.
+//!
+//! Cartesian vectors are (z, x, y). Control point (i, c, j), the i-th along the tube, c-th through
+//! the wall and j-th around, has the number (i · points through + c) · rings + j.
 
 use super::SplineTube;
 use crate::material::{Law, Material};
@@ -14,126 +29,256 @@ use std::f64::consts::TAU;
 
 type Vector = [f64; 3];
 
-/// A whole tube under a load.
+/// A whole tube under a load, by the reference implementation.
 pub struct ReferenceTube<'a> {
     spline: &'a SplineTube,
     load: &'a Load,
-    /// δ of the control points of an imperfect geometry.
-    shape: Option<Vec<Vector>>,
+    /// Displacements δ_a from the perfect tube to the stress-free shape, where they differ.
+    imperfection: Option<Vec<Vector>>,
 }
 
-/// The splines of an element at a point of it.
-pub struct ElementPoint {
-    /// N_n, one per control point of the element.
-    pub value: Vec<f64>,
-    /// ∂N_n/∂X.
-    gradient: Vec<Vector>,
-    /// Reference position X.
-    pub reference: Vector,
-    /// Volume of the stress-free shape per unit of (z, R, s).
+/// Energy and residual of the wall.
+pub struct ReferenceForces {
+    /// ∫ w det Fp dV, in E·D³.
+    pub energy: f64,
+    /// ∫ w dV, in E·D³.
+    pub energy_ungrown: f64,
+    /// R, numbered as the unknowns of the tube, in E·D².
+    pub residual: Vec<f64>,
+    /// Root of the sum of squares of the contributions of the elements to R.
+    pub residual_scale: f64,
+}
+
+/// An element at a point X.
+pub(super) struct ElementPoint {
+    /// N_a, one per control point of the element.
+    pub(super) value: Vec<f64>,
+    /// h_a = Fp⁻ᵀ ∇N_a.
+    h: Vec<Vector>,
+    /// dV per unit of (z, R, s), s the fraction of the element around.
     volume: f64,
-    /// Unit vectors along, outwards and around at X, as columns; turned with an imperfect wall.
-    pub polar: Tensor2,
-    /// A⁻¹ (R Fp Rᵀ)⁻¹: strain is measured from X + δ(X), with A = ∂(X + δ)/∂X, and the directions of
-    /// Fp have turned by the rotation R nearest A. Both are one in a perfect tube.
+    /// Fp⁻¹; of an imperfect tube B⁻¹ Fp⁻¹, see [`ReferenceTube::at`].
     Fp_inverse: Tensor2,
     /// det Fp.
     growth: f64,
 }
 
-/// Energy and residual.
-pub struct ReferenceForces {
-    /// ∫ w det Fp dV₀, in E·D³.
-    pub energy: f64,
-    /// ∫ w dV₀, in E·D³.
-    pub energy_ungrown: f64,
-    /// R, numbered as the unknowns of the tube, in E·D².
-    pub residual: Vec<f64>,
-    /// Root of the sum of squares of what the elements add to the residual.
-    pub residual_scale: f64,
-}
-
 impl<'a> ReferenceTube<'a> {
-    /// The plain twin of a tube whose sector is the whole circumference.
+    /// Takes over the splines of a tube.
+    ///
+    /// # Panics
+    /// Unless all rings of the mesh are solved for.
     pub fn new(spline: &'a SplineTube, load: &'a Load) -> Self {
         assert_eq!(spline.sector.rings, spline.sector.around);
         let perfect = Self {
             spline,
             load,
-            shape: None,
+            imperfection: None,
         };
-        let shape = spline.geometric_imperfection();
+        let delta = spline.geometric_imperfection();
         Self {
-            shape: shape.map(|delta| perfect.cartesian(delta)),
+            imperfection: delta.map(|delta| perfect.cartesian(delta)),
             ..perfect
         }
     }
 
-    /// The law of its wall.
-    pub(super) fn law(&self) -> &Material {
-        &self.spline.tube.material
-    }
-
-    /// Rings, and control points through the wall.
-    fn shape(&self) -> [usize; 2] {
-        [self.spline.sector.around, self.spline.wall.functions()]
-    }
-
-    fn nodes(&self) -> usize {
-        let [rings, points] = self.shape();
-        self.spline.axial.functions() * points * rings
-    }
-
-    /// Unit vectors (axial, radial, circumferential) at the ring of a control point.
-    fn ring_frame(&self, node: usize) -> [Vector; 3] {
-        let [rings, _] = self.shape();
-        // Element 0 is centred on angle zero; its p + 1 rings lie evenly about its middle.
-        let phi = ((node % rings) as f64 - 0.5 * self.spline.degree() as f64) * TAU / rings as f64;
-        let (sin, cos) = phi.sin_cos();
-        [[1.0, 0.0, 0.0], [0.0, cos, sin], [0.0, -sin, cos]]
-    }
-
-    /// Reference position (z, x, y) of a control point.
-    pub fn control_point(&self, node: usize) -> Vector {
-        let [rings, points] = self.shape();
-        let z = self.spline.axial.greville()[node / (rings * points)];
-        let r = self.spline.wall.greville()[node / rings % points];
-        let [_, outwards, _] = self.ring_frame(node);
-        let r = r * self.spline.circle.control_radius;
-        [z, r * outwards[1], r * outwards[2]]
-    }
-
-    /// Where a component of a control point is numbered among the unknowns of the tube.
-    fn unknown(&self, node: usize, component: usize) -> usize {
-        let [rings, _] = self.shape();
-        (node / rings * 3 + component) * rings + node % rings
-    }
-
-    /// Cartesian vectors of control points from unknowns of the tube.
-    pub fn cartesian(&self, u: &[f64]) -> Vec<Vector> {
-        let vector = |node| {
-            let frame = self.ring_frame(node);
-            [0, 1, 2].map(|x| {
-                (0..3)
-                    .map(|i| frame[i][x] * u[self.unknown(node, i)])
-                    .sum::<f64>()
-            })
-        };
-        (0..self.nodes()).map(vector).collect()
-    }
-
-    /// Unknowns of the tube from Cartesian vectors of control points.
-    pub fn cylindrical(&self, vectors: &[Vector]) -> Vec<f64> {
-        let mut u = vec![0.0; 3 * vectors.len()];
-        for (node, v) in vectors.iter().enumerate() {
-            for (i, unit) in self.ring_frame(node).iter().enumerate() {
-                u[self.unknown(node, i)] = dot(unit, v);
+    /// Computes energy and residual at displacements `u`, unknowns of the tube.
+    pub fn forces(&self, u: &[f64]) -> ReferenceForces {
+        let (law, u) = (self.law(), self.cartesian(u));
+        let (mut energy, mut energy_ungrown, mut squares) = (0.0, 0.0, 0.0);
+        let mut R = vec![[0.0; 3]; self.nodes()];
+        for element in self.elements() {
+            let nodes = self.element_nodes(element);
+            let mut Re = vec![[0.0; 3]; nodes.len()];
+            for (q, dV) in self.quadrature(element) {
+                let Fe = self.elastic(&nodes, &q, &u);
+                let (w, P) = (law.energy(&Fe), law.stress(&Fe));
+                let grown = q.growth * dV; // det Fp dV
+                energy += w * grown;
+                energy_ungrown += w * dV;
+                for (Ra, h) in Re.iter_mut().zip(&q.h) {
+                    let Ph = apply(&P, h);
+                    for i in 0..3 {
+                        Ra[i] += Ph[i] * grown; // δu ⊗ h : P
+                    }
+                }
+            }
+            for (&a, Ra) in nodes.iter().zip(&Re) {
+                squares += dot(Ra, Ra);
+                for i in 0..3 {
+                    R[a][i] += Ra[i];
+                }
             }
         }
-        u
+        ReferenceForces {
+            energy,
+            energy_ungrown,
+            residual: self.cylindrical(&R),
+            residual_scale: squares.sqrt(),
+        }
     }
 
-    /// Elements along the tube, through the wall and around it.
+    /// Computes the tangent K at displacements `u`, dense, row after row.
+    pub fn tangent(&self, u: &[f64]) -> Vec<f64> {
+        let (law, u) = (self.law(), self.cartesian(u));
+        let mut K = vec![0.0; 9 * self.nodes() * self.nodes()];
+        for element in self.elements() {
+            let nodes = self.element_nodes(element);
+            let n = nodes.len();
+            let mut Ke = vec![[[0.0; 3]; 3]; n * n]; // K_ab for a ≤ b
+            for (q, dV) in self.quadrature(element) {
+                let A = moduli(law, &self.elastic(&nodes, &q, &u));
+                let (h, grown) = (&q.h, q.growth * dV);
+                for b in 0..n {
+                    let mut Ah = [[[0.0; 3]; 3]; 3]; // A_ikjl h_bl
+                    for i in 0..3 {
+                        for k in 0..3 {
+                            for j in 0..3 {
+                                Ah[i][k][j] = dot(&A[i][k][j], &h[b]) * grown;
+                            }
+                        }
+                    }
+                    for a in 0..=b {
+                        for i in 0..3 {
+                            for j in 0..3 {
+                                // δu ⊗ h_a : A : du ⊗ h_b
+                                Ke[a * n + b][i][j] += h[a][0] * Ah[i][0][j]
+                                    + h[a][1] * Ah[i][1][j]
+                                    + h[a][2] * Ah[i][2][j];
+                            }
+                        }
+                    }
+                }
+            }
+            for b in 0..n {
+                for a in 0..=b {
+                    let Kab = Tensor2(Ke[a * n + b]);
+                    self.add_block(&mut K, [nodes[a], nodes[b]], &Kab);
+                    if a != b {
+                        self.add_block(&mut K, [nodes[b], nodes[a]], &Kab.transpose());
+                    }
+                }
+            }
+        }
+        K
+    }
+
+    /// Computes the damping matrix C, dense, row after row.
+    pub fn damping(&self) -> Vec<f64> {
+        let mut C = vec![0.0; 9 * self.nodes() * self.nodes()];
+        for element in self.elements() {
+            let nodes = self.element_nodes(element);
+            let points = self.quadrature(element);
+            for (a, &row) in nodes.iter().enumerate() {
+                for (b, &column) in nodes.iter().enumerate() {
+                    let NN = |(q, dV): &(ElementPoint, f64)| q.value[a] * q.value[b] * dV;
+                    let sum = points.iter().map(NN).sum(); // δu · v
+                    self.add_block(&mut C, [row, column], &Tensor2::IDENTITY.scaled(sum));
+                }
+            }
+        }
+        C
+    }
+
+    /// Returns the quadrature points of an element with their weighted dV.
+    fn quadrature(&self, element: [usize; 3]) -> Vec<(ElementPoint, f64)> {
+        let rule = gauss_legendre(self.spline.degree() + 1);
+        let (z0, z1) = self.spline.axial.element(element[0]);
+        let (r0, r1) = self.spline.wall.element(element[1]);
+        let mut points = vec![];
+        for &(z, wz) in &rule {
+            for &(r, wr) in &rule {
+                for &(s, ws) in &rule {
+                    let at = self.at(element, z0 + (z1 - z0) * z, r0 + (r1 - r0) * r, s);
+                    let dV = wz * (z1 - z0) * wr * (r1 - r0) * ws * at.volume;
+                    points.push((at, dV));
+                }
+            }
+        }
+        points
+    }
+
+    /// Returns Fe = Fp⁻¹ + Σ u_a ⊗ h_a.
+    pub(super) fn elastic(&self, nodes: &[usize], at: &ElementPoint, u: &[Vector]) -> Tensor2 {
+        let mut Fe = at.Fp_inverse;
+        for (&a, h) in nodes.iter().zip(&at.h) {
+            add_product(&mut Fe, &u[a], h);
+        }
+        Fe
+    }
+
+    /// Evaluates an element at (z, R) and the fraction s around it.
+    pub(super) fn at(&self, element: [usize; 3], z: f64, radius: f64, s: f64) -> ElementPoint {
+        let (spline, p) = (self.spline, self.spline.degree());
+        let nodes = self.element_nodes(element);
+        let axial = spline.axial.evaluate_in(element[0], z);
+        let wall = spline.wall.evaluate_in(element[1], radius);
+        let mut value = vec![];
+        let mut derivative = vec![]; // ∂N/∂(z, R, s)
+        for i in 0..=p {
+            for c in 0..=p {
+                for j in 0..=p {
+                    // On the element [0, 1] function j is the cardinal spline of [j − p, j + 1].
+                    let x = s + (p - j) as f64;
+                    let n = cardinal(p, x);
+                    let dn = cardinal(p - 1, x) - cardinal(p - 1, x - 1.0);
+                    value.push(axial.value[i] * wall.value[c] * n);
+                    derivative.push([
+                        axial.slope[i] * wall.value[c] * n,
+                        axial.value[i] * wall.slope[c] * n,
+                        axial.value[i] * wall.value[c] * dn,
+                    ]);
+                }
+            }
+        }
+
+        // The map from (z, R, s) to X and its derivative D; ∇N = D⁻ᵀ ∂N/∂(z, R, s).
+        let (mut X, mut D) = ([0.0; 3], Tensor2([[0.0; 3]; 3]));
+        for (k, &a) in nodes.iter().enumerate() {
+            let Xa = self.control_point(a);
+            for i in 0..3 {
+                X[i] += value[k] * Xa[i];
+            }
+            add_product(&mut D, &Xa, &derivative[k]);
+        }
+        let inverse_transpose = D.cofactor().scaled(1.0 / D.determinant());
+        let gradient: Vec<Vector> = derivative
+            .iter()
+            .map(|d| apply(&inverse_transpose, d))
+            .collect();
+
+        // An imperfect tube is free of stress at X + δ: strain is measured from there with
+        // B = I + ∇δ, dV grows by det B, and the directions of growth turn by the rotation nearest B.
+        let mut B = Tensor2::IDENTITY;
+        if let Some(delta) = &self.imperfection {
+            for (&a, gradient) in nodes.iter().zip(&gradient) {
+                add_product(&mut B, &delta[a], gradient);
+            }
+        }
+        let [_, x, y] = X;
+        let (cos, sin) = (x / x.hypot(y), y / x.hypot(y));
+        let polar = Tensor2([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]]);
+        let polar = nearest_rotation(&B).times(polar);
+
+        let (theta_z, theta_t) = spline.tube.stretches(z, self.load);
+        let shrink = [1.0 / theta_z, 1.0, 1.0 / theta_t];
+        let shrink = Tensor2([0, 1, 2].map(|i| [0, 1, 2].map(|j| polar.0[i][j] * shrink[j])));
+        let B_inverse = B.cofactor().transpose().scaled(1.0 / B.determinant());
+        let Fp_inverse = B_inverse.times(shrink.times(polar.transpose()));
+        let Fp_inverse_transpose = Fp_inverse.transpose();
+        ElementPoint {
+            value,
+            h: gradient
+                .iter()
+                .map(|g| apply(&Fp_inverse_transpose, g))
+                .collect(),
+            volume: D.determinant() * B.determinant(),
+            Fp_inverse,
+            growth: theta_z * theta_t,
+        }
+    }
+
+    /// Returns the elements: along the tube, through the wall and around it.
     fn elements(&self) -> Vec<[usize; 3]> {
         let (along, through) = (self.spline.axial.elements(), self.spline.wall.elements());
         let mut elements = vec![];
@@ -145,258 +290,106 @@ impl<'a> ReferenceTube<'a> {
         elements
     }
 
-    /// The control points of an element.
-    pub fn element_nodes(&self, [e, t, g]: [usize; 3]) -> Vec<usize> {
+    /// Returns the control points of an element.
+    pub(super) fn element_nodes(&self, [e, t, g]: [usize; 3]) -> Vec<usize> {
         let ([rings, points], p) = (self.shape(), self.spline.degree());
         let mut nodes = vec![];
-        for a in e..=e + p {
+        for i in e..=e + p {
             for c in t..=t + p {
-                nodes.extend((g..=g + p).map(|j| (a * points + c) * rings + j % rings));
+                nodes.extend((g..=g + p).map(|j| (i * points + c) * rings + j % rings));
             }
         }
         nodes
     }
 
-    /// The splines of an element at (z, R) and the fraction s around it.
-    pub fn at(&self, element: [usize; 3], z: f64, radius: f64, s: f64) -> ElementPoint {
-        let (spline, p) = (self.spline, self.spline.degree());
-        let axial = spline.axial.evaluate_in(element[0], z);
-        let wall = spline.wall.evaluate_in(element[1], radius);
-        let mut value = vec![];
-        let mut over = vec![]; // ∂N/∂(z, R, s)
-        for a in 0..=p {
-            for c in 0..=p {
-                for b in 0..=p {
-                    // On the element [0, 1] function b is the cardinal spline of [b − p, b + 1].
-                    let x = s + (p - b) as f64;
-                    let n = cardinal(p, x);
-                    let dn = cardinal(p - 1, x) - cardinal(p - 1, x - 1.0);
-                    value.push(axial.value[a] * wall.value[c] * n);
-                    over.push([
-                        axial.slope[a] * wall.value[c] * n,
-                        axial.value[a] * wall.slope[c] * n,
-                        axial.value[a] * wall.value[c] * dn,
-                    ]);
-                }
-            }
-        }
-
-        let (mut reference, mut D) = ([0.0; 3], [[0.0; 3]; 3]); // X, ∂X/∂(z, R, s)
-        for (k, node) in self.element_nodes(element).into_iter().enumerate() {
-            let X = self.control_point(node);
-            for i in 0..3 {
-                reference[i] += value[k] * X[i];
-                for alpha in 0..3 {
-                    D[i][alpha] += X[i] * over[k][alpha];
-                }
-            }
-        }
-        let D = Tensor2(D);
-        let volume = D.determinant();
-        let G = D.cofactor().scaled(1.0 / volume); // D⁻ᵀ
-        let gradient: Vec<Vector> = over.iter().map(|d| apply(&G, d)).collect();
-
-        let [_, x, y] = reference;
-        let (cos, sin) = (x / x.hypot(y), y / x.hypot(y));
-        let polar = Tensor2([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]]);
-        let (theta_z, theta_t) = spline.tube.stretches(z, self.load);
-        let shrink = Tensor2([
-            [1.0 / theta_z, 0.0, 0.0],
-            [0.0, 1.0, 0.0],
-            [0.0, 0.0, 1.0 / theta_t],
-        ]);
-        let mut A = Tensor2::IDENTITY;
-        if let Some(delta) = &self.shape {
-            for (&node, gradient) in self.element_nodes(element).iter().zip(&gradient) {
-                for i in 0..3 {
-                    for j in 0..3 {
-                        A.0[i][j] += delta[node][i] * gradient[j];
-                    }
-                }
-            }
-        }
-        let directions = rotation(&A).times(polar);
-        let A_inverse = A.cofactor().transpose().scaled(1.0 / A.determinant());
-        let shrink = directions.times(shrink).times(directions.transpose());
-        ElementPoint {
-            value,
-            gradient,
-            reference,
-            volume: volume * A.determinant(),
-            polar: directions,
-            Fp_inverse: A_inverse.times(shrink),
-            growth: theta_z * theta_t,
-        }
+    /// Returns the law of the wall.
+    pub(super) fn law(&self) -> &Material {
+        &self.spline.tube.material
     }
 
-    /// The quadrature points of an element with their weighted dV₀.
-    fn quadrature(&self, element: [usize; 3]) -> Vec<(ElementPoint, f64)> {
-        let rule = gauss_legendre(self.spline.degree() + 1);
-        let (z0, z1) = self.spline.axial.element(element[0]);
-        let (r0, r1) = self.spline.wall.element(element[1]);
-        let mut points = vec![];
-        for &(z, wz) in &rule {
-            for &(r, wr) in &rule {
-                for &(s, ws) in &rule {
-                    let at = self.at(element, z0 + (z1 - z0) * z, r0 + (r1 - r0) * r, s);
-                    let volume = wz * (z1 - z0) * wr * (r1 - r0) * ws * at.volume;
-                    points.push((at, volume));
-                }
-            }
-        }
-        points
+    /// Counts rings, and control points through the wall.
+    fn shape(&self) -> [usize; 2] {
+        [self.spline.sector.around, self.spline.wall.functions()]
     }
 
-    /// Fe = F Fp⁻¹ with F = I + Σ u_n ⊗ ∂N_n/∂X.
-    pub fn elastic(&self, nodes: &[usize], at: &ElementPoint, u: &[Vector]) -> Tensor2 {
-        let mut F = Tensor2::IDENTITY;
-        for (&node, gradient) in nodes.iter().zip(&at.gradient) {
-            for i in 0..3 {
-                for j in 0..3 {
-                    F.0[i][j] += u[node][i] * gradient[j];
-                }
-            }
-        }
-        F.times(at.Fp_inverse)
+    /// Counts control points.
+    fn nodes(&self) -> usize {
+        let [rings, points] = self.shape();
+        self.spline.axial.functions() * points * rings
     }
 
-    /// W = ∫ w det Fp dV₀ and R = ∫ P Fp⁻ᵀ ∂N/∂X det Fp dV₀.
-    pub fn forces(&self, u: &[f64]) -> ReferenceForces {
-        let (law, u) = (self.law(), self.cartesian(u));
-        let (mut energy, mut energy_ungrown, mut squares) = (0.0, 0.0, 0.0);
-        let mut residual = vec![[0.0; 3]; self.nodes()];
-        for element in self.elements() {
-            let nodes = self.element_nodes(element);
-            let mut force = vec![[0.0; 3]; nodes.len()];
-            for (at, volume) in self.quadrature(element) {
-                let Fe = self.elastic(&nodes, &at, &u);
-                let w = law.energy(&Fe);
-                energy += w * at.growth * volume;
-                energy_ungrown += w * volume;
-                let P = law.stress(&Fe).times(at.Fp_inverse.transpose());
-                for (f, gradient) in force.iter_mut().zip(&at.gradient) {
-                    let df = apply(&P, gradient);
-                    for i in 0..3 {
-                        f[i] += df[i] * at.growth * volume;
-                    }
-                }
-            }
-            for (&node, f) in nodes.iter().zip(&force) {
-                squares += dot(f, f);
-                for i in 0..3 {
-                    residual[node][i] += f[i];
-                }
-            }
-        }
-        ReferenceForces {
-            energy,
-            energy_ungrown,
-            residual: self.cylindrical(&residual),
-            residual_scale: squares.sqrt(),
-        }
+    /// Returns the unit vectors (axial, radial, circumferential) at the ring of a control point.
+    fn ring_frame(&self, node: usize) -> [Vector; 3] {
+        let [rings, _] = self.shape();
+        // Element 0 is centred on angle zero, and so are its p + 1 rings.
+        let phi = ((node % rings) as f64 - 0.5 * self.spline.degree() as f64) * TAU / rings as f64;
+        let (sin, cos) = phi.sin_cos();
+        [[1.0, 0.0, 0.0], [0.0, cos, sin], [0.0, -sin, cos]]
     }
 
-    /// K = ∫ Bᵀ A B det Fp dV₀, dense, row after row.
-    pub fn tangent(&self, u: &[f64]) -> Vec<f64> {
-        let (law, u) = (self.law(), self.cartesian(u));
-        let mut K = vec![0.0; 9 * self.nodes() * self.nodes()];
-        for element in self.elements() {
-            let nodes = self.element_nodes(element);
-            let n = nodes.len();
-            let mut Ke = vec![[[0.0; 3]; 3]; n * n];
-            for (at, volume) in self.quadrature(element) {
-                let A = full(law, &self.elastic(&nodes, &at, &u));
-                let Fp_inverse_transposed = at.Fp_inverse.transpose();
-                let h: Vec<Vector> = at
-                    .gradient
-                    .iter()
-                    .map(|g| apply(&Fp_inverse_transposed, g))
-                    .collect();
-                for b in 0..n {
-                    // D_{ikj} = A_{ik jl} h_l
-                    let mut D = [[[0.0; 3]; 3]; 3];
-                    for i in 0..3 {
-                        for k in 0..3 {
-                            for j in 0..3 {
-                                D[i][k][j] = dot(&A[i][k][j], &h[b]) * at.growth * volume;
-                            }
-                        }
-                    }
-                    for a in 0..=b {
-                        for i in 0..3 {
-                            for j in 0..3 {
-                                Ke[a * n + b][i][j] += h[a][0] * D[i][0][j]
-                                    + h[a][1] * D[i][1][j]
-                                    + h[a][2] * D[i][2][j];
-                            }
-                        }
-                    }
-                }
-            }
-            for b in 0..n {
-                for a in 0..=b {
-                    self.add_block(&mut K, [nodes[a], nodes[b]], Ke[a * n + b]);
-                    if a != b {
-                        let transposed = Tensor2(Ke[a * n + b]).transpose().0;
-                        self.add_block(&mut K, [nodes[b], nodes[a]], transposed);
-                    }
-                }
-            }
-        }
-        K
+    /// Returns the reference position X_a of a control point.
+    pub(super) fn control_point(&self, node: usize) -> Vector {
+        let [rings, points] = self.shape();
+        let z = self.spline.axial.greville()[node / (rings * points)];
+        let r = self.spline.wall.greville()[node / rings % points];
+        let [_, outwards, _] = self.ring_frame(node);
+        let r = r * self.spline.circle.control_radius;
+        [z, r * outwards[1], r * outwards[2]]
     }
 
-    /// C = ∫ N N dV₀, dense, row after row.
-    pub fn damping(&self) -> Vec<f64> {
-        let mut C = vec![0.0; 9 * self.nodes() * self.nodes()];
-        for element in self.elements() {
-            let nodes = self.element_nodes(element);
-            let points = self.quadrature(element);
-            for (a, &row) in nodes.iter().enumerate() {
-                for (b, &column) in nodes.iter().enumerate() {
-                    let sum: f64 = points
-                        .iter()
-                        .map(|(at, volume)| at.value[a] * at.value[b] * volume)
-                        .sum();
-                    let block = Tensor2::IDENTITY.scaled(sum).0;
-                    self.add_block(&mut C, [row, column], block);
-                }
-            }
-        }
-        C
+    /// Returns the index of a component of a control point among the unknowns of the tube.
+    fn unknown(&self, node: usize, component: usize) -> usize {
+        let [rings, _] = self.shape();
+        (node / rings * 3 + component) * rings + node % rings
     }
 
-    /// Adds a Cartesian block for two control points to a dense matrix over the tube's unknowns.
-    fn add_block(&self, matrix: &mut [f64], nodes: [usize; 2], block: [Vector; 3]) {
+    /// Converts unknowns of the tube to Cartesian vectors of the control points.
+    pub(super) fn cartesian(&self, u: &[f64]) -> Vec<Vector> {
+        let vector = |node| {
+            let frame = self.ring_frame(node);
+            [0, 1, 2].map(|x| {
+                (0..3)
+                    .map(|i| frame[i][x] * u[self.unknown(node, i)])
+                    .sum::<f64>()
+            })
+        };
+        (0..self.nodes()).map(vector).collect()
+    }
+
+    /// Converts Cartesian vectors of the control points to unknowns of the tube.
+    pub(super) fn cylindrical(&self, vectors: &[Vector]) -> Vec<f64> {
+        let mut u = vec![0.0; 3 * vectors.len()];
+        for (node, v) in vectors.iter().enumerate() {
+            for (i, unit) in self.ring_frame(node).iter().enumerate() {
+                u[self.unknown(node, i)] = dot(unit, v);
+            }
+        }
+        u
+    }
+
+    /// Adds a Cartesian block for two control points to a dense matrix over the unknowns.
+    fn add_block(&self, matrix: &mut [f64], nodes: [usize; 2], block: &Tensor2) {
         let width = 3 * self.nodes();
         let [left, right] = nodes.map(|node| self.ring_frame(node));
         for i in 0..3 {
             for j in 0..3 {
                 let at = self.unknown(nodes[0], i) * width + self.unknown(nodes[1], j);
-                matrix[at] += dot(&left[i], &apply(&Tensor2(block), &right[j]));
+                matrix[at] += dot(&left[i], &apply(block, &right[j]));
             }
         }
     }
 }
 
-/// The rotation nearest A: A U⁻¹ with U² = AᵀA, in the principal directions of U.
-fn rotation(A: &Tensor2) -> Tensor2 {
-    let C = A.transpose().times(*A);
-    let dense = faer::Mat::from_fn(3, 3, |i, j| C.0[i][j]);
-    let eigen = dense.self_adjoint_eigen(faer::Side::Lower).unwrap();
-    let (Q, squares) = (eigen.U(), eigen.S().column_vector());
-    let mut U_inverse = [[0.0; 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
-            U_inverse[i][j] = (0..3)
-                .map(|k| Q[(i, k)] * Q[(j, k)] / squares[k].sqrt())
-                .sum();
-        }
+/// Returns the rotation nearest B: B U⁻¹ with U² = BᵀB = Σ λ n ⊗ n.
+fn nearest_rotation(B: &Tensor2) -> Tensor2 {
+    let mut U_inverse = Tensor2([[0.0; 3]; 3]);
+    for (square, n) in B.transpose().times(*B).eigenpairs() {
+        add_product(&mut U_inverse, &n.map(|x| x / square.sqrt()), &n);
     }
-    A.times(Tensor2(U_inverse))
+    B.times(U_inverse)
 }
 
-/// The cardinal B-spline of degree p, on the knots 0, 1, …, p + 1.
+/// Returns the cardinal B-spline of degree p, on the knots 0, 1, …, p + 1.
 fn cardinal(p: usize, x: f64) -> f64 {
     if p == 0 {
         return f64::from((0.0..1.0).contains(&x));
@@ -405,8 +398,8 @@ fn cardinal(p: usize, x: f64) -> f64 {
     (x * below + (p as f64 + 1.0 - x) * above) / p as f64
 }
 
-/// A_{ik jl} = ∂²w/∂F_{ik}∂F_{jl}, from the half that a law fills.
-fn full(law: &Material, Fe: &Tensor2) -> [[[[f64; 3]; 3]; 3]; 3] {
+/// Returns all moduli A_{ik jl} = ∂²w/∂F_{ik}∂F_{jl}; a law fills the blocks k ≤ l.
+fn moduli(law: &Material, Fe: &Tensor2) -> [[[[f64; 3]; 3]; 3]; 3] {
     let half = law.moduli(Fe);
     let mut A = [[[[0.0; 3]; 3]; 3]; 3];
     for i in 0..3 {
@@ -420,6 +413,15 @@ fn full(law: &Material, Fe: &Tensor2) -> [[[[f64; 3]; 3]; 3]; 3] {
         }
     }
     A
+}
+
+/// Adds a ⊗ b to a tensor.
+fn add_product(sum: &mut Tensor2, a: &Vector, b: &Vector) {
+    for i in 0..3 {
+        for j in 0..3 {
+            sum.0[i][j] += a[i] * b[j];
+        }
+    }
 }
 
 fn dot(a: &Vector, b: &Vector) -> f64 {

@@ -117,9 +117,13 @@ fn imperfect_tube_sample_equals_the_reference_implementation() {
     );
     let (sin, cos) = (TAU / 6.0).sin_cos();
     let turn = Tensor2([[1.0, 0.0, 0.0], [0.0, cos, sin], [0.0, -sin, cos]]);
-    let elastic = turn.times(Fe).times(at.polar);
-    let found = sample.elastic.0.into_iter().flatten();
-    assert_close("Fe", found, elastic.0.as_flattened());
+    let left = |F: Tensor2| F.times(F.transpose()); // Fe Feᵀ
+    let (found, expected) = (left(sample.elastic), left(turn.times(Fe)));
+    assert_close(
+        "Fe Feᵀ",
+        found.0.into_iter().flatten(),
+        expected.0.as_flattened(),
+    );
 }
 
 #[test]
