@@ -76,6 +76,20 @@ fn the_commands_of_the_pages_exist() {
 }
 
 #[test]
+fn the_page_on_laws_shows_code_of_the_library() {
+    let page = read("CONTRIBUTING.md");
+    let page = page.replace("\n   ", "\n"); // code in lists is indented
+    let laws = files(&root().join("crates/plica/src/material"), "rs");
+    let sources: String = laws.iter().map(read).collect();
+    let blocks: Vec<&str> = page.split("```rust\n").skip(1).collect();
+    for block in &blocks {
+        let code = block.split("```").next().unwrap();
+        assert!(sources.contains(code), "not in the library:\n{code}");
+    }
+    assert!(blocks.len() >= 6);
+}
+
+#[test]
 fn the_readme_shows_the_case_it_runs() {
     let case = read("cases/invagination.toml");
     assert!(read("README.md").contains(&format!("```toml\n{case}```")));

@@ -348,7 +348,7 @@ impl Ran {
         let z = self
             .tube
             .axial
-            .spread(self.tube.axial.elements() * POINTS_PER_ELEMENT + 1);
+            .positions(self.tube.axial.elements() * POINTS_PER_ELEMENT + 1);
         let meridians = Meridians::of(&self.tube, &state.load, &state.u);
         Ok(meridians.walls(face, &[angle], &z).remove(0))
     }

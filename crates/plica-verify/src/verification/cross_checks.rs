@@ -9,7 +9,7 @@ use plica::material::{Material, NeoHookean, Volumetric};
 use plica::solve::{
     Effort, Equilibrium, Integrator, Path, PseudoTime, Scheme, Settings, Solver, State, Tangent,
 };
-use plica::tube::{Axial, End, Imperfection, Integration, Load, Part, Push, Shape, Support, Wave};
+use plica::tube::{Axial, End, Imperfection, Integration, Load, Part, EndDirection, Shape, Support, Wave};
 
 /// Returns a tube whose middle contracts and relaxes, on a coarse mesh.
 fn small_tube(around: usize) -> TubeModel {
@@ -120,7 +120,7 @@ pub fn tangents(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
 pub fn solvers(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     let mut oval = small_tube(12);
     oval.tube.imperfections.push(Imperfection {
-        of: Part::End(End::Colon, Push::Across),
+        of: Part::End(End::Colon, EndDirection::Across),
         amplitude: 0.05,
         shape: Shape::Wave(Wave::new(2, 0.3, Axial::HalfWaves(1))),
     });

@@ -51,8 +51,8 @@ impl Points {
         let sectors = tube.sector.around / tube.sector.rings;
         let around = all_around / sectors;
         let per_element = all_around / tube.sector.around;
-        let radii = tube.wall.spread(outwards);
-        let zs = tube.axial.spread(along);
+        let radii = tube.wall.positions(outwards);
+        let zs = tube.axial.positions(along);
         let rows = zs.par_iter().flat_map_iter(|&z| {
             let radii = &radii;
             (0..around).flat_map(move |j| {
@@ -144,8 +144,8 @@ mod tests {
         let lattice = volume_lattice(&tube);
         let [outwards, around, along] = lattice.points();
         assert_eq!([outwards, around, along], [4, 36, 10]);
-        let z = tube.axial.spread(along);
+        let z = tube.axial.positions(along);
         assert!((z[0], z[9]) == (0.0, 1.0) && (z[3] - 1.0 / 3.0).abs() < 1e-15);
-        assert_eq!(tube.wall.spread(2), [0.4, 0.5]);
+        assert_eq!(tube.wall.positions(2), [0.4, 0.5]);
     }
 }

@@ -236,7 +236,7 @@ impl Wall {
             position: [vec![], vec![], vec![]],
             values: vec![vec![]; Field::ALL.len()],
         };
-        let (zs, radii) = (tube.axial.spread(along), tube.wall.spread(through));
+        let (zs, radii) = (tube.axial.positions(along), tube.wall.positions(through));
         let (sin, cos) = upwards.sin_cos();
         for j in 0..around {
             let angle = upwards + TAU * j as f64 / (around * sectors) as f64;
@@ -350,8 +350,8 @@ mod tests {
                     &state.load,
                     &state.u,
                     Point {
-                        z: tube.axial.spread(along)[i],
-                        radius: tube.wall.spread(through)[level],
+                        z: tube.axial.positions(along)[i],
+                        radius: tube.wall.positions(through)[level],
                         angle: angle + upwards,
                     },
                 );

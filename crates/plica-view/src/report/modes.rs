@@ -121,7 +121,7 @@ fn surfaces(tube: &SplineTube, shown: &Shown, shape: Option<&Vec<f64>>) -> Vec<S
     }
     opening.surfaces(|zeta, angle, xi| {
         let at = Point {
-            z: tube.axial.elements_on(zeta * along as f64),
+            z: tube.axial.position(zeta * along as f64),
             radius: tube.tube.inner_radius() + xi * tube.tube.thickness,
             angle,
         };

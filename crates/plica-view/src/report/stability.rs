@@ -243,7 +243,7 @@ impl<'a> Meridian<'a> {
             largest: 0.0,
             known: RefCell::default(),
         };
-        for z in tube.axial.spread(4 * tube.axial.elements() + 1) {
+        for z in tube.axial.positions(4 * tube.axial.elements() + 1) {
             let (_, amplitude) = meridian.sample(z, Tube::OUTER_RADIUS);
             meridian.radial = meridian.radial.max(amplitude[1].abs());
             let size = amplitude.iter().fold(0.0, |size: f64, a| size.hypot(*a));
@@ -274,7 +274,7 @@ impl<'a> Meridian<'a> {
             let ([z, r], mode) = *self.known.borrow_mut().entry(key).or_insert_with(|| {
                 let inner = self.tube.tube.inner_radius();
                 self.sample(
-                    self.tube.axial.elements_on(zeta * along as f64),
+                    self.tube.axial.position(zeta * along as f64),
                     inner + xi * self.tube.tube.thickness,
                 )
             });
@@ -297,7 +297,7 @@ impl<'a> Meridian<'a> {
 
     /// Plots the amplitudes of the mode along the outer wall.
     fn amplitudes(&self) -> Chart {
-        let z = self.tube.axial.spread(4 * self.tube.axial.elements() + 1);
+        let z = self.tube.axial.positions(4 * self.tube.axial.elements() + 1);
         let samples: Vec<Sampled> = z
             .iter()
             .map(|&z| self.sample(z, Tube::OUTER_RADIUS))

@@ -110,7 +110,7 @@ pub(super) fn tube_surfaces(
 ) -> Vec<Surface> {
     let elements = tube.axial.elements();
     let sample = |along: f64, angle: f64, xi: f64| {
-        let z = tube.axial.elements_on(along);
+        let z = tube.axial.position(along);
         let radius = tube.tube.inner_radius() + xi * tube.tube.thickness;
         let sample = tube.sample(load, u, Point { z, radius, angle });
         (sample.position, look.factor * look.field.of(&sample))

@@ -41,7 +41,7 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
     let angles = if axisymmetric { &both[..1] } else { &both };
     let z = tube
         .axial
-        .spread(tube.axial.elements() * POINTS_PER_ELEMENT + 1);
+        .positions(tube.axial.elements() * POINTS_PER_ELEMENT + 1);
     let mut curves = vec![];
     for (colour, state) in states.iter().enumerate() {
         let meridians = Meridians::of(tube, state.load, state.u);

@@ -17,7 +17,7 @@
 use super::tables::bases;
 use crate::rings::Sector;
 use crate::spline::{Basis, Values, through, transfer};
-use crate::tube::{Axial, End, Imperfection, Mode, Part, Push, Shape, Support, Tube, Wave};
+use crate::tube::{Axial, End, Imperfection, Mode, Part, EndDirection, Shape, Support, Tube, Wave};
 use std::f64::consts::PI;
 
 /// Distance from a fixed end, in D, over which a geometric imperfection that is uniform along the
@@ -44,12 +44,12 @@ pub(super) fn end_face(tube: &Tube, sector: &Sector, end: End, r: &[f64]) -> Vec
                 for (c, &r) in r.iter().enumerate() {
                     let point = &mut face[c * k + ring];
                     match push {
-                        Push::Across => {
+                        EndDirection::Across => {
                             point[1] += size * radial;
                             point[2] += size * around;
                         }
-                        Push::Axial if wave.harmonic == 0 => point[0] += size,
-                        Push::Axial => point[0] += size * axial * (r / Tube::OUTER_RADIUS),
+                        EndDirection::Axial if wave.harmonic == 0 => point[0] += size,
+                        EndDirection::Axial => point[0] += size * axial * (r / Tube::OUTER_RADIUS),
                     }
                 }
             }

@@ -7,7 +7,7 @@ use super::read::{Fields, Read, Table, Value, choice, choose, table};
 use crate::activation::{Direction, Profile};
 use crate::material::Volumetric;
 use crate::study::{LengthUnit, StressUnit};
-use crate::tube::{Axial, Integration, Push, Support, Symmetry};
+use crate::tube::{Axial, Integration, EndDirection, Support, Symmetry};
 use std::collections::BTreeMap;
 
 table! {
@@ -286,7 +286,7 @@ table! {
         /// The direction of the displacement of an end. `"across"` is in its plane, normal to the wall
         /// and around it so that no ring changes its length; mode 1 shifts the end sideways. `"axial"` is
         /// along the axis; mode 1 tilts the end.
-        direction: Option<Push> = described("across", "across");
+        direction: Option<EndDirection> = described("across", "across");
         /// The shape: `shape = { wave = { mode = 2 } }`, `shape = { random = { seed = 7 } }` or, of the
         /// geometry, `shape = { mode = "…" }`.
         shape: Shape = required("{ wave = { mode = 1 } }");
@@ -311,9 +311,9 @@ choice! { Part {
     "muscle": String = described("", "circular") => Part::Muscle,
 } }
 
-choice! { Push {
-    "across" => Push::Across,
-    "axial" => Push::Axial,
+choice! { EndDirection {
+    "across" => EndDirection::Across,
+    "axial" => EndDirection::Axial,
 } }
 
 /// The shape of an imperfection.

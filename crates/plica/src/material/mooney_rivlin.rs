@@ -1,4 +1,4 @@
-//! Compressible Mooney–Rivlin law (Mooney 1940; compressible as in Ciarlet and Geymonat 1982):
+//! Compressible Mooney–Rivlin law, after Mooney (1940) and Rivlin (1948):
 //!
 //! w = a/2 (I₁ − 3) + b/2 (I₂ − 3) − (a + 2b) ln J + λ/2 (ln J)²
 //!

@@ -112,7 +112,7 @@ impl<'a> Meridians<'a> {
         if self.mean.is_none() {
             return largest;
         }
-        let z = self.tube.axial.spread(self.tube.axial.elements() + 1);
+        let z = self.tube.axial.positions(self.tube.axial.elements() + 1);
         let walls = self.walls(Face::Outer, &self.sample_angles(0.0), &z);
         for i in 0..walls[0].points.len() {
             for m in 1..MERIDIANS / 2 {

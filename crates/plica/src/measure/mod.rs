@@ -78,7 +78,7 @@ impl Measures {
         let angles = meridians.sample_angles(asymmetry.crest);
         let z = tube
             .axial
-            .spread(tube.axial.elements() * POINTS_PER_ELEMENT + 1);
+            .positions(tube.axial.elements() * POINTS_PER_ELEMENT + 1);
         let [outer, inner] =
             [Face::Outer, Face::Inner].map(|face| meridians.walls(face, &angles, &z));
         let overhangs = outer.iter().map(Wall::overhang);

@@ -252,7 +252,7 @@ impl<'a> Run<'a> {
     /// Writes the walls of a state: one meridian or, if the tube is not axisymmetric, those at crest and trough.
     fn write_profile(&self, state: &State) -> Result<(), RunError> {
         let tube = self.study.tube();
-        let z = tube.axial.spread(self.plan.output.wall_points);
+        let z = tube.axial.positions(self.plan.output.wall_points);
         let meridians = Meridians::of(tube, &state.load, &state.unknowns);
         let both = state.measures.asymmetry.crest_and_trough();
         let angles = if tube.sector.rings == 1 {

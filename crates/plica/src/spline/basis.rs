@@ -83,7 +83,7 @@ impl Basis {
     pub fn spread(&self, count: usize) -> Vec<f64> {
         let elements = self.elements() as f64;
         let at = |i: usize| elements * i as f64 / (count - 1) as f64;
-        (0..count).map(|i| self.elements_on(at(i))).collect()
+        (0..count).map(|i| self.position(at(i))).collect()
     }
 
     /// The element that holds `x`; points outside belong to the nearest.

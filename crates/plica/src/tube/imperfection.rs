@@ -34,7 +34,7 @@ pub struct Imperfection {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Where an end is held. The end gives the displacement, constant along the whole path.
-    End(End, Push),
+    End(End, EndDirection),
     /// The stress-free shape of the wall.
     Geometry,
     /// How strong a muscle is, by its place in the tube: θ − 1 becomes (θ − 1)(1 + a f).
@@ -43,7 +43,7 @@ pub enum Part {
 
 /// In which direction the face of an end is displaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Push {
+pub enum EndDirection {
     /// In its plane, normal to the wall; and around it so that rings keep their length. Harmonic 1
     /// shifts the face sideways, 2 makes it oval.
     Across,

@@ -3,7 +3,7 @@
 use super::{TubeAndLoad, mesh, tube_and_load};
 use crate::assembly::{Point, SplineTube};
 use crate::spline::{Basis, gauss_legendre};
-use crate::tube::{Axial, End, EndMotion, Imperfection, Part, Push, Shape, Support, Tube, Wave};
+use crate::tube::{Axial, End, EndMotion, Imperfection, Part, EndDirection, Shape, Support, Tube, Wave};
 
 /// Returns the tube of the other tests with twelve rings and an imperfection.
 fn imperfect(ends: [Support; 2], of: Part, amplitude: f64, wave: Wave) -> SplineTube {
@@ -21,7 +21,7 @@ fn imperfect(ends: [Support; 2], of: Part, amplitude: f64, wave: Wave) -> Spline
     SplineTube::new(&tube, &mesh(3, [9, 2, 12]), 12)
 }
 
-const COLON: Part = Part::End(End::Colon, Push::Across);
+const COLON: Part = Part::End(End::Colon, EndDirection::Across);
 
 /// Returns the displacement (z, x, y) of a point of a tube at rest with unknowns `u`.
 pub(super) fn displacement(
@@ -56,7 +56,7 @@ fn end_imperfection_of_harmonic_1_shifts_the_face_sideways() {
 #[test]
 fn axial_end_imperfection_of_harmonic_1_tilts_the_face() {
     let wave = Wave::new(1, 0.0, Axial::Uniform);
-    let of = Part::End(End::Ileum, Push::Axial);
+    let of = Part::End(End::Ileum, EndDirection::Axial);
     let tube = imperfect([Support::Fixed, Support::Sliding], of, 0.03, wave);
     let mut u = vec![0.0; tube.unknowns()];
     tube.apply_prescribed(&tube.tube.rest(), &mut u);

@@ -10,7 +10,7 @@ use super::start::check_size;
 use super::zone::{tidy, zone};
 use crate::study::{ModeShape, Stage, inverted_by_imperfections};
 use crate::tube::{
-    Axial, End, Imperfection, Mesh, Part, Push, Random, Shape, Support, Symmetry, Tube, Wave,
+    Axial, End, Imperfection, Mesh, Part, EndDirection, Random, Shape, Support, Symmetry, Tube, Wave,
 };
 
 /// Largest displacement over the thickness of the wall.
@@ -105,10 +105,10 @@ fn end(
     tube: &Tube,
     problems: &mut Problems,
 ) -> Part {
-    let push = written.direction.unwrap_or(Push::Across);
+    let push = written.direction.unwrap_or(EndDirection::Across);
     let problem = match (tube.ends[end as usize], push) {
-        (Support::Fixed, _) | (Support::Sliding, Push::Axial) => None,
-        (Support::Sliding, Push::Across) => Some((
+        (Support::Fixed, _) | (Support::Sliding, EndDirection::Axial) => None,
+        (Support::Sliding, EndDirection::Across) => Some((
             "a sliding end is held along the axis only",
             "write direction = \"axial\", or \"fixed\" in [ends]",
         )),

@@ -9,7 +9,7 @@ use super::tube::youngs_modulus;
 use super::zone::tidy;
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
-use crate::tube::{Load, Part, Push, Support, Tube};
+use crate::tube::{Load, Part, EndDirection, Support, Tube};
 use std::collections::HashMap;
 
 /// Number of names that a message lists.
@@ -274,7 +274,7 @@ pub(super) fn check_end_planes(tube: &Tube, stages: &[Stage], problems: &mut Pro
         return;
     }
     for (i, imperfection) in tube.imperfections.iter().enumerate() {
-        let Part::End(end, Push::Axial) = imperfection.of else {
+        let Part::End(end, EndDirection::Axial) = imperfection.of else {
             continue;
         };
         let slides = tube.ends[end as usize] == Support::Sliding;
