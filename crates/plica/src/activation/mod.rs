@@ -1,4 +1,4 @@
-//! Muscles: where the wall contracts or relaxes, in which direction, and by how much.
+//! Muscles: the zones of the wall that contract or relax, with direction and amount.
 //!
 //! A muscle changes the stress-free state of the wall (Rodriguez et al. 1994; Okino et al. 2025,
 //! Eqs. (1)–(3)): F = Fe · Fp, Fp = θζ ζ⊗ζ + θη η⊗η + ξ⊗ξ. Over a zone [a, b] with profile s(z):
@@ -34,14 +34,14 @@ pub struct Muscle {
     pub name: String,
     /// Its direction.
     pub direction: Direction,
-    /// Where it begins and ends along the tube, in D.
+    /// Ends of the zone along the tube, in D.
     pub zone: [f64; 2],
-    /// How its activity is spread over the zone.
+    /// Distribution of the activity over the zone.
     pub profile: Profile,
 }
 
 impl Muscle {
-    /// The grown stretch θ at z, for a target ratio (Dmin/D or Lmax/L) of a tube of a length.
+    /// Returns the grown stretch θ at z for a target ratio (Dmin/D or Lmax/L) and the length of the tube.
     pub fn stretch(&self, z: f64, ratio: f64, length: f64) -> f64 {
         let [a, b] = self.zone;
         if z < a || z > b {
@@ -50,7 +50,7 @@ impl Muscle {
         1.0 + self.amplitude(ratio, length) * self.profile.value((z - a) / (b - a))
     }
 
-    /// The change of θ where the profile is one.
+    /// Returns θ − 1 where the profile is one.
     fn amplitude(&self, ratio: f64, length: f64) -> f64 {
         let [a, b] = self.zone;
         match self.direction {
@@ -59,7 +59,7 @@ impl Muscle {
         }
     }
 
-    /// The smallest θ anywhere in the zone, for a target ratio.
+    /// Returns the smallest θ in the zone for a target ratio.
     pub fn smallest_stretch(&self, ratio: f64, length: f64) -> f64 {
         1.0 + (self.amplitude(ratio, length) * self.profile.largest()).min(0.0)
     }
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn the_grown_tube_has_the_length_that_was_asked_for() {
+    fn the_grown_tube_has_the_target_length() {
         let table = Profile::Table(vec![(0.0, 0.0), (0.25, 1.0), (0.75, 0.5), (1.0, 0.0)]);
         for profile in [
             Profile::RaisedCosine,
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn the_main_case_grows_fourfold_and_narrows_to_a_quarter() {
+    fn the_main_case_grows_to_four_and_contracts_to_a_quarter() {
         let relaxed = muscle(Direction::Longitudinal, Profile::RaisedCosine);
         assert!((relaxed.stretch(0.75, 1.25, 3.0) - 4.0).abs() < 1e-14);
         let contracted = muscle(Direction::Circular, Profile::RaisedCosine);

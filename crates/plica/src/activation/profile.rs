@@ -1,27 +1,26 @@
-//! How a muscle's activity is spread over its zone.
+//! Distribution of the activity of a muscle over its zone.
 
 use std::f64::consts::PI;
 
 /// A profile s(x) over the zone, x from 0 to 1; s is between 0 and 1.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Profile {
-    /// ½ (1 − cos 2πx): smooth at both edges. The paper says "sinusoidal"; this is the one that
-    /// puts the energy minimum of its Fig. 4A where it is printed.
+    /// ½ (1 − cos 2πx): smooth at both edges. The paper says "sinusoidal"; this profile has the
+    /// energy minimum of its Fig. 4A.
     RaisedCosine,
     /// sin πx: with a kink at both edges.
     HalfSine,
-    /// One, with a raised-cosine rise and fall over the fraction `edge` (at most ½) of the zone
-    /// at either end.
+    /// One, with a raised-cosine rise and fall at either end of the zone.
     SmoothBox {
-        /// Fraction of the zone over which it rises, and again falls.
+        /// Fraction of the zone over which it rises, and over which it falls; at most ½.
         edge: f64,
     },
-    /// Straight lines between points (x, s), x rising from 0 to 1.
+    /// Linear interpolation between points (x, s), x rising from 0 to 1.
     Table(Vec<(f64, f64)>),
 }
 
 impl Profile {
-    /// s(x), for x in [0, 1].
+    /// Returns s(x) for x in [0, 1].
     pub fn value(&self, x: f64) -> f64 {
         match self {
             Self::RaisedCosine => 0.5 * (1.0 - (2.0 * PI * x).cos()),
@@ -44,7 +43,7 @@ impl Profile {
         }
     }
 
-    /// ∫ s dx over [0, 1].
+    /// Returns ∫ s dx over [0, 1].
     pub fn integral(&self) -> f64 {
         match self {
             Self::RaisedCosine => 0.5,
@@ -57,7 +56,7 @@ impl Profile {
         }
     }
 
-    /// The largest value of s.
+    /// Returns the largest value of s.
     pub fn largest(&self) -> f64 {
         match self {
             Self::Table(points) => points.iter().fold(0.0, |m: f64, p| m.max(p.1)),
@@ -65,7 +64,7 @@ impl Profile {
         }
     }
 
-    /// Positions in (0, 1) where the profile is not smooth: elements should end there.
+    /// Returns the positions in (0, 1) where the profile is not smooth: elements should end there.
     pub fn kinks(&self) -> Vec<f64> {
         match self {
             Self::RaisedCosine | Self::HalfSine => vec![],

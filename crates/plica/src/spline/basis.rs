@@ -1,16 +1,16 @@
 //! B-spline bases by the recurrence of Cox and de Boor.
 
-/// A B-spline basis of one degree on one knot vector.
+/// A B-spline basis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basis {
     degree: usize,
     knots: Vec<f64>,
 }
 
-/// The p+1 functions that live on one element, at one point.
+/// Values at a point of the p + 1 functions that are not zero on an element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
-    /// The element (knot span) that holds the point.
+    /// Element (knot span).
     pub element: usize,
     /// N, one per function; function `b` of element `e` has the number `e + b`.
     pub value: Vec<f64>,
@@ -19,9 +19,8 @@ pub struct Values {
 }
 
 impl Basis {
-    /// Open knots: the first and last breakpoints repeated, so that the first and last control
-    /// points lie on the ends. `breakpoints` must rise strictly; it has one more entry than there
-    /// are elements.
+    /// Creates a basis on open knots, with the first and last control points on the ends.
+    /// `breakpoints` rise strictly, one more than there are elements.
     pub fn open(degree: usize, breakpoints: &[f64]) -> Self {
         assert!(degree >= 1 && breakpoints.len() >= 2);
         assert!(breakpoints.windows(2).all(|w| w[0] < w[1]));
@@ -32,18 +31,22 @@ impl Basis {
         Self { degree, knots }
     }
 
-    /// The same with every inner knot so many times: less smooth there. Its elements are then knot spans,
-    /// some of them empty.
-    pub(super) fn less_smooth(degree: usize, times: usize, breakpoints: &[f64]) -> Self {
+    /// Creates a basis with inner knots of this multiplicity. Its elements are knot spans, some of
+    /// them empty.
+    pub(super) fn with_multiplicity(
+        degree: usize,
+        multiplicity: usize,
+        breakpoints: &[f64],
+    ) -> Self {
         let inner = &breakpoints[1..breakpoints.len() - 1];
         let (first, last) = (breakpoints[0], breakpoints[breakpoints.len() - 1]);
         let mut knots = vec![first; degree + 1];
-        knots.extend(inner.iter().flat_map(|&t| vec![t; times]));
+        knots.extend(inner.iter().flat_map(|&t| vec![t; multiplicity]));
         knots.extend(vec![last; degree + 1]);
         Self { degree, knots }
     }
 
-    /// The one element [0, 1] of a uniform periodic basis.
+    /// Creates the element [0, 1] of a uniform periodic basis.
     pub fn uniform_element(degree: usize) -> Self {
         let p = degree as i32;
         Self {
@@ -52,54 +55,54 @@ impl Basis {
         }
     }
 
-    /// The degree p.
+    /// Returns the degree p.
     pub fn degree(&self) -> usize {
         self.degree
     }
 
-    /// Number of functions, and of control points.
+    /// Returns the number of functions, which is that of control points.
     pub fn functions(&self) -> usize {
         self.knots.len() - self.degree - 1
     }
 
-    /// Number of elements (non-empty knot spans).
+    /// Returns the number of elements (non-empty knot spans).
     pub fn elements(&self) -> usize {
         self.knots.len() - 2 * self.degree - 1
     }
 
-    /// Where an element begins and ends.
+    /// Returns the ends of an element.
     pub fn element(&self, e: usize) -> (f64, f64) {
         (self.knots[self.degree + e], self.knots[self.degree + e + 1])
     }
 
-    /// The position so many elements on from the first one's begin: 2.5 is the middle of the third.
-    pub fn elements_on(&self, at: f64) -> f64 {
+    /// Returns the position at an element number with fraction: 2.5 is the middle of the third.
+    pub fn position(&self, at: f64) -> f64 {
         let e = (at as usize).min(self.elements() - 1);
         let (from, to) = self.element(e);
         from + (to - from) * (at - e as f64)
     }
 
-    /// `count` positions from end to end, as dense as the elements; at least two.
-    pub fn spread(&self, count: usize) -> Vec<f64> {
+    /// Returns `count` ≥ 2 positions from end to end, as dense as the elements.
+    pub fn positions(&self, count: usize) -> Vec<f64> {
         let elements = self.elements() as f64;
         let at = |i: usize| elements * i as f64 / (count - 1) as f64;
         (0..count).map(|i| self.position(at(i))).collect()
     }
 
-    /// The element that holds `x`; points outside belong to the nearest.
+    /// Returns the element that contains `x`; the nearest one if `x` is outside.
     pub fn find(&self, x: f64) -> usize {
         let inner = &self.knots[self.degree + 1..self.knots.len() - self.degree - 1];
         inner.partition_point(|&t| t <= x)
     }
 
-    /// The Greville abscissae: control values that reproduce x exactly.
+    /// Returns the Greville abscissae, the control values of x.
     pub fn greville(&self) -> Vec<f64> {
         (0..self.functions())
             .map(|a| self.knots[a + 1..=a + self.degree].iter().sum::<f64>() / self.degree as f64)
             .collect()
     }
 
-    /// Integral of every function.
+    /// Returns the integral of every function.
     pub fn integrals(&self) -> Vec<f64> {
         let p = self.degree;
         (0..self.functions())
@@ -107,14 +110,14 @@ impl Basis {
             .collect()
     }
 
-    /// Control values of 1, x and x²: function by function. Splines of degree 1 have no x²; theirs
-    /// goes through it at the knots.
+    /// Returns the control values of 1, x and x², function by function. Degree 1 interpolates x² at
+    /// the knots.
     pub fn quadratics(&self) -> Vec<[f64; 3]> {
         let p = self.degree;
         let of = |a: usize| {
             let knots = &self.knots[a + 1..=a + p];
             let mean = knots.iter().sum::<f64>() / p as f64;
-            // The mean of the products of two of the knots: the blossom of x².
+            // Mean of the products of two of the knots: the blossom of x².
             let squares: f64 = knots.iter().map(|t| t * t).sum();
             let pairs = (p * p) as f64 * mean * mean - squares;
             let square = if p == 1 {
@@ -127,12 +130,12 @@ impl Basis {
         (0..self.functions()).map(of).collect()
     }
 
-    /// Values and slopes at a point.
+    /// Returns values and slopes at a point.
     pub fn evaluate(&self, x: f64) -> Values {
         self.evaluate_in(self.find(x), x)
     }
 
-    /// Values and slopes at a point of a given element (on a shared edge the side matters).
+    /// Returns values and slopes at a point of a given element (on a shared edge the side matters).
     pub fn evaluate_in(&self, element: usize, x: f64) -> Values {
         let p = self.degree;
         let lower = self.values(element, x, p - 1);
@@ -155,7 +158,7 @@ impl Basis {
         }
     }
 
-    /// The d+1 functions of degree d that live on an element.
+    /// Returns the d + 1 functions of degree d that are not zero on an element.
     fn values(&self, element: usize, x: f64, d: usize) -> Vec<f64> {
         let span = element + self.degree;
         let t = &self.knots;
@@ -214,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn greville_points_reproduce_the_line() {
+    fn greville_abscissae_reproduce_a_line() {
         for basis in bases() {
             let g = basis.greville();
             assert_eq!((g[0], g[g.len() - 1]), (0.0, 3.0));
@@ -233,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn slopes_are_the_slopes_of_values() {
+    fn slopes_are_the_derivatives_of_values() {
         for basis in bases().filter(|b| b.degree() > 1) {
             let (x, e) = (0.9, basis.find(0.9));
             let error = |h: f64| -> f64 {
@@ -265,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_belong_to_the_right_and_outside_to_the_nearest() {
+    fn find_takes_the_right_element_at_edges_and_the_nearest_outside() {
         let basis = Basis::open(3, &[0.0, 1.0, 2.0]);
         assert_eq!(
             [-1.0, 0.0, 0.5, 1.0, 2.0, 5.0].map(|x| basis.find(x)),

@@ -1,19 +1,19 @@
-//! Breakpoints that lie closer together where more happens.
+//! Graded breakpoints, closer together in refined zones.
 
-/// A stretch of the axis whose elements are `factor` times as dense as elsewhere.
+/// A zone of the axis whose elements are `factor` times as dense as elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refinement {
-    /// Where it begins.
+    /// Beginning of the zone.
     pub from: f64,
-    /// Where it ends.
+    /// End of the zone.
     pub to: f64,
-    /// Density of elements relative to the unrefined rest.
+    /// Density of elements relative to the other parts.
     pub factor: f64,
 }
 
-/// `elements + 1` breakpoints on [0, length]: uniform between the edges of the refinements, which
-/// are breakpoints themselves. Where refinements overlap the densest counts. With fewer elements
-/// than stretches between edges, the edges give way and the mesh is uniform.
+/// Returns `elements + 1` breakpoints on [0, length], uniform between the edges of the refinements,
+/// which are breakpoints themselves. Where refinements overlap the densest counts. With fewer
+/// elements than intervals between edges the mesh is uniform.
 pub fn graded_breakpoints(length: f64, elements: usize, refinements: &[Refinement]) -> Vec<f64> {
     let mut edges = vec![0.0, length];
     for r in refinements {
@@ -38,11 +38,11 @@ pub fn graded_breakpoints(length: f64, elements: usize, refinements: &[Refinemen
         .collect();
     let total: f64 = share.iter().sum();
 
-    // One element each, then always the stretch that is furthest behind its share.
+    // One element each; then every further one goes to the interval that lacks most of its share.
     let mut counts = vec![1_usize; share.len()];
     for _ in counts.len()..elements {
-        let behind = |i: usize| share[i] / total * elements as f64 / counts[i] as f64;
-        let most = (0..share.len()).max_by(|&i, &j| behind(i).total_cmp(&behind(j)));
+        let deficit = |i: usize| share[i] / total * elements as f64 / counts[i] as f64;
+        let most = (0..share.len()).max_by(|&i, &j| deficit(i).total_cmp(&deficit(j)));
         counts[most.unwrap_or(0)] += 1;
     }
 
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zones_are_dense_and_their_edges_are_kept() {
+    fn refined_zones_are_dense_and_end_at_breakpoints() {
         let zone = Refinement {
             from: 0.5,
             to: 1.0,
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_refine_is_uniform() {
+    fn breakpoints_without_refinement_are_uniform() {
         let x = graded_breakpoints(2.0, 4, &[]);
         assert_eq!(x, [0.0, 0.5, 1.0, 1.5, 2.0]);
         assert_eq!(

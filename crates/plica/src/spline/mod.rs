@@ -1,4 +1,4 @@
-//! B-splines: knots, bases, quadrature, the circle they draw, and the way from one basis to another.
+//! B-splines: bases, graded meshes, quadrature, approximation of a circle, and transfer between bases.
 //!
 //! Non-rational splines of degree p (Okino et al. 2025 use p = 3): open knots along the tube and
 //! through the wall, periodic uniform knots around it.
@@ -27,4 +27,4 @@ pub use basis::{Basis, Values};
 pub use circle::{Circle, control_wave};
 pub use grading::{Refinement, graded_breakpoints};
 pub use quadrature::{gauss_legendre, reduced_rule};
-pub use transfer::{through, transfer};
+pub use transfer::{interpolate, transfer};

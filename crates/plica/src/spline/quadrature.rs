@@ -1,14 +1,14 @@
-//! Quadrature: Gauss's rule, and one with about a point to an element.
+//! Quadrature: Gauss–Legendre rules, and reduced rules of about one point per element.
 
 use super::Basis;
 use super::transfer::solve;
 
-/// Points and weights of the n-point Gauss–Legendre rule on [0, 1], rising; exact for polynomials
-/// of degree 2n − 1. The rule is symmetric about ½ to the last bit.
+/// Returns points, rising, and weights of the n-point Gauss–Legendre rule on [0, 1]; exact for
+/// polynomials of degree 2n − 1, and symmetric about ½ to the last bit.
 pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     let mut rule = vec![(0.5, 0.0); n];
     for i in 0..n.div_ceil(2) {
-        // Newton on the Legendre polynomial P_n from Chebyshev's guess.
+        // Newton's method for the roots of the Legendre polynomial P_n.
         let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
         let mut slope = 1.0;
         for _ in 0..50 {
@@ -34,64 +34,63 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     rule
 }
 
-/// About one point to an element of uniform open splines of degree p, as many as such splines of degree
-/// p − 1 have functions: at no more places can something be asked of a slope without asking too much.
-/// Element by element, on [0, 1] of it; none unless p is 3 or 5.
+/// Returns points and weights, element by element on [0, 1], of a rule with about one point per element
+/// of uniform open splines of degree p; None unless p is 3 or 5.
 ///
-/// The rule integrates splines of degree p exactly that are one derivative less smooth than they could be:
-/// slopes of such times R, so that an even stress meets its forces (in the middle of the wall the
-/// middles of elements do, for odd p). Points and weights are the nearest to Greville's for degree p − 1
-/// that do: Newton's steps of the smallest size. (Hughes et al. 2010 look for such rules with as few points
-/// as exactness allows; here there are more, as many as a slope through the wall may be asked at.)
+/// It has as many points as splines of degree p − 1 have functions: more constraints on a slope would
+/// lock. It integrates splines of degree p with knots of multiplicity two exactly, among them slopes
+/// times R, so that a uniform stress has exact forces. Points and weights are the nearest to the
+/// Greville rule of degree p − 1, by Newton steps of minimal norm. (The rules of Hughes et al. 2010
+/// have as few points as exactness allows.)
 pub fn reduced_rule(p: usize, elements: usize) -> Option<Vec<Vec<(f64, f64)>>> {
     if ![3, 5].contains(&p) {
         return None;
     }
-    // In lengths of an element, so that rounding does not depend on where the wall is.
+    // In lengths of an element, so that rounding does not depend on the position of the wall.
     let breakpoints: Vec<f64> = (0..=elements).map(|e| e as f64).collect();
     let lower = Basis::open(p - 1, &breakpoints);
-    let target = Basis::less_smooth(p, 2, &breakpoints);
+    let target = Basis::with_multiplicity(p, 2, &breakpoints);
     let integrals = target.integrals();
     let (mut points, mut weights) = (lower.greville(), lower.integrals());
     for _ in 0..RULE_STEPS {
-        let mut off = missing(&target, &integrals, &points, &weights);
-        if off.iter().all(|off| off.abs() < RULE_ERROR) {
+        let mut residual = rule_residual(&target, &integrals, &points, &weights);
+        if residual.iter().all(|r| r.abs() < RULE_ERROR) {
             break;
         }
-        nearer(&target, &mut off, &mut points, &mut weights);
+        newton_step(&target, &mut residual, &mut points, &mut weights);
     }
-    let off = missing(&target, &integrals, &points, &weights);
-    let exact = off.iter().all(|off| off.abs() < RULE_ERROR);
+    let residual = rule_residual(&target, &integrals, &points, &weights);
+    let exact = residual.iter().all(|r| r.abs() < RULE_ERROR);
     let mut rule = vec![vec![]; elements];
     for (&x, &w) in points.iter().zip(&weights) {
         let e = lower.find(x);
         rule[e].push((x - e as f64, w));
     }
-    let sound = weights.iter().all(|w| *w > 0.0) && rule.iter().all(|rule| rule.len() <= p + 1);
-    (exact && sound).then_some(rule)
+    let valid = weights.iter().all(|w| *w > 0.0) && rule.iter().all(|rule| rule.len() <= p + 1);
+    (exact && valid).then_some(rule)
 }
 
-/// Newton's steps towards a rule, of which five are many.
+/// Largest number of Newton steps; five suffice.
 const RULE_STEPS: usize = 30;
-/// Error of a rule on a function, in lengths of an element, that counts as rounding.
+/// Error of the integral of a function, in lengths of an element, that counts as rounding.
 const RULE_ERROR: f64 = 1e-12;
 
-/// r_j = Σ_i w_i B_j(x_i) − ∫ B_j.
-fn missing(target: &Basis, integrals: &[f64], points: &[f64], weights: &[f64]) -> Vec<f64> {
-    let mut off: Vec<f64> = integrals.iter().map(|integral| -integral).collect();
+/// Returns r_j = Σ_i w_i B_j(x_i) − ∫ B_j.
+fn rule_residual(target: &Basis, integrals: &[f64], points: &[f64], weights: &[f64]) -> Vec<f64> {
+    let mut residual: Vec<f64> = integrals.iter().map(|integral| -integral).collect();
     for (&x, w) in points.iter().zip(weights) {
         let at = target.evaluate(x);
         for (a, value) in at.value.iter().enumerate() {
-            off[at.element + a] += w * value;
+            residual[at.element + a] += w * value;
         }
     }
-    off
+    residual
 }
 
-/// One of Newton's steps against r, the smallest in x and w: −Jᵀ (J Jᵀ)⁻¹ r. Solves in `off`.
-fn nearer(target: &Basis, off: &mut [f64], points: &mut [f64], weights: &mut [f64]) {
+/// Applies the Newton step of minimal norm in x and w, −Jᵀ (J Jᵀ)⁻¹ r. Overwrites the residual r.
+fn newton_step(target: &Basis, residual: &mut [f64], points: &mut [f64], weights: &mut [f64]) {
     let p = target.degree();
-    let mut matrix = vec![vec![0.0; 2 * p + 1]; off.len()];
+    let mut matrix = vec![vec![0.0; 2 * p + 1]; residual.len()];
     let at: Vec<_> = points.iter().map(|&x| target.evaluate(x)).collect();
     for (at, w) in at.iter().zip(weights.iter()) {
         for (a, (value, slope)) in at.value.iter().zip(&at.slope).enumerate() {
@@ -100,11 +99,11 @@ fn nearer(target: &Basis, off: &mut [f64], points: &mut [f64], weights: &mut [f6
             }
         }
     }
-    solve(&mut matrix, off, p, 1);
+    solve(&mut matrix, residual, p, 1);
     let end = target.element(target.elements() - 1).1;
     for (i, at) in at.iter().enumerate() {
         let sum = |of: &[f64]| -> f64 {
-            let values = of.iter().zip(&off[at.element..]);
+            let values = of.iter().zip(&residual[at.element..]);
             values.map(|(b, y)| b * y).sum()
         };
         points[i] = (points[i] - weights[i] * sum(&at.slope)).clamp(0.0, end);
@@ -142,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn polynomials_are_integrated_exactly() {
+    fn a_gauss_rule_integrates_polynomials_exactly() {
         for n in 1..=6 {
             for degree in 0..2 * n {
                 let sum: f64 = gauss_legendre(n)

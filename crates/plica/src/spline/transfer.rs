@@ -1,13 +1,12 @@
-//! From the splines of one basis to those of another.
+//! Transfer of splines from one basis to another.
 
 use super::Basis;
 
-/// The control values on `to` of the spline that has `values` on `from`, `width` numbers for every
-/// function of a basis. Both bases are open and of the same interval.
+/// Returns the control values on `to` of the spline with `values` on `from`, `width` numbers per
+/// function. Both bases are open and of the same interval.
 ///
-/// The new spline goes through the old one at the Greville points of its basis. If the old spline
-/// is one of the new basis, as where knots are only added, it is the same curve; else it is as close
-/// as the coarser of the two allows. Between equal bases values stay as they are, to the bit.
+/// The new spline interpolates the old one at its Greville abscissae. It is the same curve if the new
+/// basis contains it, as when knots are inserted. Equal bases keep the values to the bit.
 pub fn transfer(from: &Basis, to: &Basis, values: &[f64], width: usize) -> Vec<f64> {
     assert_eq!(values.len(), from.functions() * width);
     if from == to {
@@ -23,19 +22,19 @@ pub fn transfer(from: &Basis, to: &Basis, values: &[f64], width: usize) -> Vec<f
             }
         }
     }
-    through(to, curve, width)
+    interpolate(to, curve, width)
 }
 
-/// The control values of the spline through `values` at the Greville points of its basis, `width`
-/// numbers for every function.
-pub fn through(basis: &Basis, mut values: Vec<f64>, width: usize) -> Vec<f64> {
+/// Returns the control values of the spline that interpolates `values` at the Greville abscissae of its
+/// basis, `width` numbers per function.
+pub fn interpolate(basis: &Basis, mut values: Vec<f64>, width: usize) -> Vec<f64> {
     let p = basis.degree();
-    // Collocation: row i holds N_j at Greville point i, for j = i − p to i + p.
+    // Collocation: row i holds N_j at Greville abscissa i, for j = i − p to i + p.
     let mut matrix = vec![vec![0.0; 2 * p + 1]; basis.functions()];
     for (i, (row, &x)) in matrix.iter_mut().zip(&basis.greville()).enumerate() {
         let at = basis.evaluate(x);
         for (b, value) in at.value.iter().enumerate() {
-            // A function beyond the band is zero there.
+            // Functions beyond the band are zero there.
             let place = (at.element + b + p).checked_sub(i);
             if let Some(entry) = place.and_then(|place| row.get_mut(place)) {
                 *entry = *value;
@@ -46,20 +45,20 @@ pub fn through(basis: &Basis, mut values: Vec<f64>, width: usize) -> Vec<f64> {
     values
 }
 
-/// Elimination within the band, without pivoting: a collocation matrix of splines is totally
-/// positive (de Boor and Pinkus 1977).
+/// Solves a banded system in place by elimination without pivoting: a collocation matrix of splines
+/// is totally positive (de Boor and Pinkus 1977).
 pub(super) fn solve(matrix: &mut [Vec<f64>], right: &mut [f64], p: usize, width: usize) {
     let n = matrix.len();
     for i in 0..n {
         let (head, tail) = matrix.split_at_mut(i + 1);
-        let (done, below) = right.split_at_mut((i + 1) * width);
-        let (pivot, done) = (&head[i], &done[i * width..]);
+        let (solved, below) = right.split_at_mut((i + 1) * width);
+        let (pivot, solved) = (&head[i], &solved[i * width..]);
         for (d, row) in (1..=p).zip(tail) {
             let factor = row[p - d] / pivot[p];
             for c in 0..=p {
                 row[p - d + c] -= factor * pivot[p + c];
             }
-            for (x, y) in below[(d - 1) * width..].iter_mut().zip(done) {
+            for (x, y) in below[(d - 1) * width..].iter_mut().zip(solved) {
                 *x -= factor * y;
             }
         }
@@ -96,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn more_knots_leave_the_curve_as_it_is() {
+    fn knot_insertion_keeps_the_curve() {
         for p in 1..=5 {
             let from = Basis::open(p, &BREAKS);
             let mut finer = BREAKS.to_vec();
@@ -122,13 +121,13 @@ mod tests {
     }
 
     #[test]
-    fn the_spline_through_a_smooth_curve_comes_close_with_the_power_of_its_degree() {
+    fn the_error_of_interpolation_has_the_order_of_the_degree() {
         for p in 1..=5 {
             let error = |n: usize| {
                 let even: Vec<f64> = (0..=n).map(|i| 3.0 * i as f64 / n as f64).collect();
                 let basis = Basis::open(p, &even);
                 let sine = basis.greville().iter().map(|x| x.sin()).collect();
-                let values = through(&basis, sine, 1);
+                let values = interpolate(&basis, sine, 1);
                 (0..=500)
                     .map(|i| 0.006 * f64::from(i))
                     .map(|x| (curve(&basis, &values, 1, x)[0] - x.sin()).abs())
@@ -140,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_bases_keep_every_bit() {
+    fn equal_bases_keep_values_to_the_bit() {
         let basis = Basis::open(3, &BREAKS);
         let values: Vec<f64> = (0..basis.functions())
             .map(|i| (i as f64).sin() / 3.0)

@@ -1,10 +1,9 @@
-//! Small plain algebra: numbers alone or eight side by side, and 3×3 tensors over them.
+//! Numbers, alone or eight in a vector, and 3×3 tensors of them.
 //!
 //! Every formula of the element kernel is written once, for any [`Real`]: `f64` in tests and
-//! reports, eight-lane vectors in the kernels. The vectors are those of `fearless_simd`, chosen
-//! for the processor at run time, so that a plain release build is fast everywhere. (Arrays of
-//! eight left to the compiler's own vectorisation took twice as long: it vectorised the loops
-//! around them instead, with gathers.)
+//! reports, eight-lane vectors in the kernels. `fearless_simd` selects the vectors at run time for
+//! the processor. (Arrays of eight, vectorised by the compiler, took twice as long: it vectorised
+//! the loops around them, with gathers.)
 
 mod real;
 mod symmetric;

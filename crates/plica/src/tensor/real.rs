@@ -1,12 +1,12 @@
-//! A real number, alone or eight at a time.
+//! Real numbers, alone or eight in a vector.
 
 use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdFloat, SimdFrom, f64x8, i64x8};
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// Numbers that sit side by side in a vector.
+/// Numbers in a vector.
 pub const LANES: usize = 8;
 
-/// What the formulas of the kernels need of a number.
+/// A number, or a vector of numbers, with the operations that the formulas need.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -16,17 +16,17 @@ pub trait Real:
     + Neg<Output = Self>
     + AddAssign
 {
-    /// A plain number, in every lane of a number like this one.
+    /// Returns `value` in every lane of a vector like this one.
     fn like(self, value: f64) -> Self;
-    /// `self · b + c`, fused where the processor can.
+    /// Returns `self · b + c`, fused where the processor can.
     fn mul_add(self, b: Self, c: Self) -> Self;
-    /// Natural logarithm, lane by lane.
+    /// Returns the natural logarithm.
     fn ln(self) -> Self;
-    /// `self` times a plain number.
+    /// Returns `self · factor`.
     fn times(self, factor: f64) -> Self;
-    /// The numbers of the eight lanes; a single number fills them all.
+    /// Returns the numbers of the eight lanes; a single number fills all of them.
     fn to_lanes(self) -> Lanes;
-    /// A vector of `lanes` like this one; a single number is that of the first lane.
+    /// Returns a vector of `lanes` like this one; of a single number, the first lane.
     fn like_lanes(self, lanes: Lanes) -> Self;
 }
 
@@ -68,8 +68,7 @@ impl<S: Simd> Real for f64x8<S> {
     }
     // x = 2ᵉ (1 + f) with 1 + f between √½ and √2; ln (1 + f) from the odd series of
     // s = f/(2 + f), with the coefficients of fdlibm's `e_log.c` (error below one unit in the last
-    // place). For positive, normal, finite x, where det Fe of anything that has a meaning lies;
-    // otherwise NaN.
+    // place). For positive, normal, finite x; otherwise NaN.
     #[inline(always)]
     fn ln(self) -> Self {
         const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
@@ -86,29 +85,29 @@ impl<S: Simd> Real for f64x8<S> {
             1.479_819_860_511_658_6e-1,
         ];
         let simd = self.simd;
-        let plain = |x: f64| Self::splat(simd, x);
+        let splat = |x: f64| Self::splat(simd, x);
         let bits: i64x8<S> = self.bitcast();
         // Bits of √½, nearly.
         let root = 0x3fe6_a09e_0000_0000_i64;
         let exponent = (bits - i64x8::splat(simd, root)) >> 52;
         let mantissa: Self = (bits - (exponent << 52)).bitcast();
         let e = simd.cvt_f64_i64x8(exponent);
-        let f = mantissa - plain(1.0);
-        let s = f / (mantissa + plain(1.0));
+        let f = mantissa - splat(1.0);
+        let s = f / (mantissa + splat(1.0));
         let z = s * s;
         let w = z * z;
         let even = Real::mul_add(
-            Real::mul_add(plain(EVEN[2]), w, plain(EVEN[1])),
+            Real::mul_add(splat(EVEN[2]), w, splat(EVEN[1])),
             w,
-            plain(EVEN[0]),
+            splat(EVEN[0]),
         ) * w;
-        let odd = Real::mul_add(plain(ODD[3]), w, plain(ODD[2]));
-        let odd = Real::mul_add(Real::mul_add(odd, w, plain(ODD[1])), w, plain(ODD[0])) * z;
+        let odd = Real::mul_add(splat(ODD[3]), w, splat(ODD[2]));
+        let odd = Real::mul_add(Real::mul_add(odd, w, splat(ODD[1])), w, splat(ODD[0])) * z;
         let half = f * f * 0.5;
         let small = Real::mul_add(s, half + even + odd, e * LN2_LOW);
-        let ln = Real::mul_add(e, plain(LN2_HIGH), f - (half - small));
-        let sound = self.simd_gt(plain(0.0)) & self.simd_lt(plain(f64::MAX));
-        sound.select(ln, plain(f64::NAN))
+        let ln = Real::mul_add(e, splat(LN2_HIGH), f - (half - small));
+        let valid = self.simd_gt(splat(0.0)) & self.simd_lt(splat(f64::MAX));
+        valid.select(ln, splat(f64::NAN))
     }
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
@@ -124,25 +123,25 @@ impl<S: Simd> Real for f64x8<S> {
     }
 }
 
-/// Eight numbers at rest in a table, one per element of a pack.
+/// Eight numbers in memory, one per lane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(64))]
 pub struct Lanes(pub [f64; LANES]);
 
 impl Lanes {
-    /// The numbers in vector registers.
+    /// Loads the numbers into a vector.
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S) -> f64x8<S> {
         f64x8::simd_from(simd, self.0)
     }
 
-    /// The numbers of a vector, at rest.
+    /// Stores the numbers of a vector.
     #[inline(always)]
     pub fn store<S: Simd>(vector: f64x8<S>) -> Self {
         Self(vector.into())
     }
 
-    /// The smallest; NaN if any is NaN, so that a bad element cannot hide.
+    /// Returns the smallest number; NaN if any is NaN.
     #[inline(always)]
     pub fn min(self) -> f64 {
         let mut min = self.0[0];
@@ -152,7 +151,7 @@ impl Lanes {
         min
     }
 
-    /// All added up, first to last.
+    /// Returns the sum, added from first to last.
     #[inline(always)]
     pub fn sum(self) -> f64 {
         self.0.iter().sum()
@@ -165,7 +164,7 @@ mod tests {
     use fearless_simd::{Level, dispatch};
 
     #[test]
-    fn the_logarithm_of_eight_is_that_of_each() {
+    fn the_logarithm_of_a_vector_is_that_of_each_lane() {
         let check = |x: [f64; LANES]| {
             let ln = dispatch!(Level::new(), simd => {
                 <[f64; LANES]>::from(Real::ln(f64x8::simd_from(simd, x)))
@@ -201,17 +200,17 @@ mod tests {
                 0.1 / x,
             ]);
         }
-        let none = dispatch!(Level::new(), simd => {
+        let invalid = dispatch!(Level::new(), simd => {
             <[f64; LANES]>::from(Real::ln(f64x8::simd_from(
                 simd,
                 [0.0, -1.0, f64::NAN, f64::INFINITY, -0.0, -1e-300, -2.0, f64::NEG_INFINITY],
             )))
         });
-        assert!(none.iter().all(|x| x.is_nan()), "{none:?}");
+        assert!(invalid.iter().all(|x| x.is_nan()), "{invalid:?}");
     }
 
     #[test]
-    fn a_nan_lane_is_the_smallest() {
+    fn the_minimum_of_lanes_with_nan_is_nan() {
         let mut x = Lanes([1.0; LANES]);
         x.0[3] = f64::NAN;
         assert!(x.min().is_nan());

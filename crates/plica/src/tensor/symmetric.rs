@@ -2,12 +2,12 @@
 
 use super::Tensor2;
 
-/// Sweeps after which rounding is all that is left; three or four do.
+/// Sweeps; three or four reach rounding.
 const SWEEPS: usize = 12;
 
 impl Tensor2 {
-    /// Eigenvalues, largest first, and unit eigenvectors of a symmetric tensor, by Jacobi's rotations.
-    /// Only the upper triangle is read. The vectors are right-handed.
+    /// Returns the eigenvalues, largest first, and unit eigenvectors of a symmetric tensor, by Jacobi
+    /// rotations. Reads only the upper triangle. The eigenvectors form a right-handed basis.
     pub fn eigenpairs(self) -> [(f64, [f64; 3]); 3] {
         let mut a = self.0;
         for i in 0..3 {
@@ -26,7 +26,7 @@ impl Tensor2 {
                 if a[p][q] == 0.0 {
                     continue;
                 }
-                // The smaller of the two angles that take a[p][q] to nothing.
+                // The smaller of the two angles that make a[p][q] zero.
                 let tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
                 let t = tau.signum() / (tau.abs() + tau.hypot(1.0));
                 let c = 1.0 / t.hypot(1.0);
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn eigenpairs_are_eigenpairs() {
+    fn eigenpairs_satisfy_their_equation() {
         assert_eq!(
             check([[1.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 2.0]]),
             [3.0, 2.0, 1.0]
@@ -87,7 +87,7 @@ mod tests {
         check([[2.0, 0.3, -0.7], [0.3, 1.0, 0.4], [-0.7, 0.4, -1.5]]);
         check([[1.0, 1e-9, 0.0], [1e-9, 1.0, 1e-12], [0.0, 1e-12, 1.0]]);
         check([[0.0; 3]; 3]);
-        // Two alike: 1 + 3 nn for a unit vector n.
+        // A double eigenvalue: 1 + 3 nn for a unit vector n.
         let n = [2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0];
         let a =
             [0, 1, 2].map(|i| [0, 1, 2].map(|j| f64::from(u8::from(i == j)) + 3.0 * n[i] * n[j]));

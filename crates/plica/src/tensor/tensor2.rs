@@ -12,7 +12,7 @@ impl Tensor2 {
 }
 
 impl<S: Real> Tensor2<S> {
-    /// The transpose.
+    /// Returns the transpose.
     #[inline(always)]
     pub fn transpose(self) -> Self {
         let a = self.0;
@@ -23,7 +23,7 @@ impl<S: Real> Tensor2<S> {
         ])
     }
 
-    /// The tensor of cofactors, `det(a) a⁻ᵀ`: the derivative of the determinant.
+    /// Returns the tensor of cofactors, `det(a) a⁻ᵀ`: the derivative of the determinant.
     #[inline(always)]
     pub fn cofactor(self) -> Self {
         let (a, mut c) = (self.0, self.0);
@@ -37,20 +37,20 @@ impl<S: Real> Tensor2<S> {
         Self(c)
     }
 
-    /// The determinant, from a cofactor tensor already at hand.
+    /// Returns the determinant, given the cofactors.
     #[inline(always)]
     pub fn determinant_with(self, cofactor: Self) -> S {
         let (a, c) = (self.0[0], cofactor.0[0]);
         a[0].mul_add(c[0], a[1].mul_add(c[1], a[2] * c[2]))
     }
 
-    /// The determinant.
+    /// Returns the determinant.
     #[inline(always)]
     pub fn determinant(self) -> S {
         self.determinant_with(self.cofactor())
     }
 
-    /// The full contraction `a : b`.
+    /// Returns the full contraction `a : b`.
     #[inline(always)]
     pub fn dot(self, b: Self) -> S {
         let mut sum = self.0[0][0].like(0.0);
@@ -62,7 +62,7 @@ impl<S: Real> Tensor2<S> {
         sum
     }
 
-    /// The product `a · b`.
+    /// Returns the product `a · b`.
     #[inline(always)]
     pub fn times(self, b: Self) -> Self {
         let mut c = [[self.0[0][0].like(0.0); 3]; 3];
@@ -76,7 +76,7 @@ impl<S: Real> Tensor2<S> {
         Self(c)
     }
 
-    /// The tensor scaled by a number.
+    /// Returns the tensor times a number.
     #[inline(always)]
     pub fn scaled(self, s: S) -> Self {
         let mut a = self.0;
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cofactor_inverts() {
+    fn the_cofactors_give_the_inverse() {
         let a = Tensor2([[1.0, 0.3, -0.2], [0.1, 0.8, 0.5], [-0.4, 0.2, 1.3]]);
         let inverse = a.cofactor().transpose().scaled(1.0 / a.determinant());
         let product = a.times(inverse);

@@ -1,9 +1,9 @@
-//! A small tube for the tests of any room.
+//! A small tube for tests.
 
 use super::{Mesh, Support, Tube};
 use crate::material::{Material, NeoHookean};
 
-/// A tube as long as it is wide, with free ends and nothing to drive it.
+/// Returns a tube as long as it is wide, with free ends and without muscles.
 pub fn short() -> Tube {
     Tube {
         length: 1.0,
@@ -15,7 +15,7 @@ pub fn short() -> Tube {
     }
 }
 
-/// A coarse cubic mesh: 6 control points along, 12 around, 4 through the wall.
+/// Returns a coarse cubic mesh: 6 control points along, 12 around, 4 through the wall.
 pub fn coarse() -> Mesh {
     Mesh {
         axial: 6,

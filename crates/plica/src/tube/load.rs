@@ -1,19 +1,17 @@
-//! What a tube is under: the target of every muscle, the motion of both ends, the pressure on both
-//! walls.
+//! Loads of a tube: targets of the muscles, displacements of the ends, pressures on the walls.
 
-/// A load. Stages lead from one to the next.
+/// A load of a tube.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Load {
-    /// Target of each muscle of the tube, in its order: Dmin/D or Lmax/L.
+    /// Target of each muscle of the tube, in the order of the tube: Dmin/D or Lmax/L.
     pub muscles: Vec<f64>,
     /// Motion of the colon end and the ileum end.
     pub ends: [EndMotion; 2],
-    /// Pressure on the inner wall, which pushes outwards, and on the outer wall, which pushes
-    /// inwards.
+    /// Pressure on the inner wall, acting outwards, and on the outer wall, acting inwards.
     pub pressures: [Pressure; 2],
 }
 
-/// How far a held end has been moved.
+/// Prescribed motion of a supported end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EndMotion {
     /// Along z, in D.
@@ -22,19 +20,19 @@ pub struct EndMotion {
     pub twist: f64,
 }
 
-/// What presses on a wall, in E.
+/// Pressures on one wall, in E.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pressure {
-    /// True pressure: per area as it is, normal to the wall as it is.
+    /// Follower pressure: per current area, normal to the current wall.
     pub follower: f64,
-    /// Dead load: per area at rest, normal to the wall at rest.
+    /// Dead load: per reference area, normal to the reference wall.
     pub dead: f64,
 }
 
 impl Load {
-    /// The load a fraction `t` of the way from this one to another.
+    /// Interpolates linearly to another load, which has t = 1.
     pub fn towards(&self, other: &Self, t: f64) -> Self {
-        // At t = 1 exactly the other, whatever the rounding.
+        // At t = 1 the other load to the bit.
         let mix = |a: f64, b: f64| if t == 1.0 { b } else { a + t * (b - a) };
         let end = |i: usize| EndMotion {
             displacement: mix(self.ends[i].displacement, other.ends[i].displacement),

@@ -1,4 +1,4 @@
-//! The mesh that is laid over a tube.
+//! The spline mesh of a tube.
 
 use crate::spline::Refinement;
 
@@ -7,42 +7,42 @@ use crate::spline::Refinement;
 pub struct Mesh {
     /// Control points along the tube.
     pub axial: usize,
-    /// Control points around it (N_C), for the whole circumference whatever the symmetry.
+    /// Control points around the whole circumference (N_C), for any symmetry.
     pub around: usize,
     /// Control points through the wall.
     pub thickness: usize,
     /// Degree p of the splines, in every direction.
     pub degree: usize,
-    /// Where elements along the tube are denser.
+    /// Zones along the tube with smaller elements.
     pub refinements: Vec<Refinement>,
-    /// How the wall's resistance to a change of volume is integrated.
+    /// Integration of the volumetric part of the law.
     pub volumetric: Integration,
 }
 
-/// At how many points something is integrated.
+/// A quadrature of the elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integration {
-    /// p + 1 Gauss points to an element each way.
+    /// p + 1 Gauss points per element and direction.
     #[default]
     Full,
-    /// About one point to an element through the wall, and p + 1 along and around, so that a nearly
-    /// incompressible wall does not lock where few elements are that thick. For degrees 3 and 5.
+    /// About one point per element through the wall, and p + 1 along and around. Avoids locking of
+    /// nearly incompressible walls with few elements through the thickness. For degrees 3 and 5.
     Reduced,
 }
 
-/// What repeats around the circumference.
+/// Symmetry of the solution around the circumference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
-    /// Every cross-section stays a circle; it may twist.
+    /// Every cross-section stays circular; twist is possible.
     Axisymmetric,
-    /// The tube repeats `m` times around.
+    /// The tube consists of `m` equal sectors.
     Fold(usize),
-    /// Nothing repeats.
+    /// No symmetry.
     None,
 }
 
 impl Mesh {
-    /// Elements along, around and through the wall.
+    /// Returns the numbers of elements along, around and through the wall.
     pub fn elements(&self) -> [usize; 3] {
         [
             self.axial - self.degree,
@@ -51,8 +51,7 @@ impl Mesh {
         ]
     }
 
-    /// Rings k in the sector that repeats: 1 if axisymmetric, N_C/m if m-fold, N_C if nothing
-    /// repeats.
+    /// Returns the number of rings of a sector: 1 if axisymmetric, N_C/m if m-fold, else N_C.
     pub fn rings(&self, symmetry: Symmetry) -> usize {
         match symmetry {
             Symmetry::Axisymmetric => 1,

@@ -1,14 +1,14 @@
-//! A smooth random shape from a seed. The same seed gives the same shape for ever, on every machine
-//! and in every version of the program.
+//! Smooth random shapes from a seed. A seed gives the same shape on every machine and in every
+//! version of the program.
 //!
 //! For n = 0 … N around and k = 1 … K along, the shape is a sum of waves
 //!
 //! c_nk sin kπx cos n(φ − φ_nk),
 //!
-//! x from 0 to 1 over a span of the tube (for an end, without the factor along it). The numbers
-//! before cosine and sine are normal and all of one variance: c² is exponential and nφ uniform (Box
-//! and Muller 1958). The sum is scaled to 1 where it is largest on a grid of 32 points per shortest
-//! wave around and along; between these it may exceed that by half a percent.
+//! x from 0 to 1 over a span of the tube (for an end, without the factor along it). The coefficients
+//! of cosine and sine are normally distributed with one variance: c² is exponential and nφ uniform
+//! (Box and Muller 1958). The sum is scaled to a maximum of 1 on a grid of 32 points per shortest
+//! wave around and along; between the points it may exceed 1 by half a percent.
 
 use super::{Axial, Wave};
 use std::f64::consts::{PI, TAU};
@@ -21,14 +21,14 @@ pub struct Random {
 }
 
 impl Random {
-    /// Circumferential harmonics 0 to `harmonics`, 1 to `half_waves` half-waves along the tube (0: the
-    /// same all along), of those that repeat `fold` times around.
+    /// Creates a sum of circumferential modes 0 to `harmonics` with 1 to `half_waves` half-waves along
+    /// the tube (0: uniform along it), restricted to multiples of `fold`.
     pub fn new(seed: u64, harmonics: usize, half_waves: usize, fold: usize) -> Self {
         let mut numbers = Numbers::of(seed);
         let mut waves = vec![];
         for n in 0..=harmonics {
             for k in half_waves.min(1)..=half_waves {
-                // Drawn for every wave, so that a fold leaves waves out and changes none.
+                // Drawn for every wave, so that the others do not depend on `fold`.
                 let (size, angle) = numbers.normal_pair();
                 let (phase, share) = match n {
                     0 => (0.0, size * angle.cos()),
@@ -51,27 +51,27 @@ impl Random {
         Self { seed, waves }
     }
 
-    /// The seed.
+    /// Returns the seed.
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// The waves.
+    /// Returns the waves.
     pub fn waves(&self) -> &[Wave] {
         &self.waves
     }
 }
 
-/// The largest |f| on the grid.
+/// Returns the largest |f| on the grid.
 fn largest(waves: &[Wave], harmonics: usize, half_waves: usize) -> f64 {
     let (around, along) = (32 * harmonics.max(1), 16 * half_waves);
-    let turns: Vec<(f64, f64)> = (0..around)
+    let angles: Vec<(f64, f64)> = (0..around)
         .map(|i| (TAU * i as f64 / around as f64).sin_cos())
         .collect();
     let mut largest = 0.0_f64;
     for i in 0..=along {
         let x = i as f64 / along.max(1) as f64;
-        // Numbers before the cosine and the sine of each harmonic.
+        // Coefficients of the cosine and the sine of each mode.
         let mut sums = vec![(0.0, 0.0); harmonics + 1];
         for wave in waves {
             let (sin, cos) = (wave.harmonic as f64 * wave.phase).sin_cos();
@@ -81,7 +81,7 @@ fn largest(waves: &[Wave], harmonics: usize, half_waves: usize) -> f64 {
         }
         for j in 0..around {
             let terms = sums.iter().enumerate().map(|(n, (a, b))| {
-                let (sin, cos) = turns[n * j % around];
+                let (sin, cos) = angles[n * j % around];
                 a * cos + b * sin
             });
             largest = largest.max(terms.sum::<f64>().abs());
@@ -90,7 +90,7 @@ fn largest(waves: &[Wave], harmonics: usize, half_waves: usize) -> f64 {
     largest
 }
 
-/// Random numbers: the output of BLAKE3 at any length, whose specification does not change.
+/// Random numbers from the extended output of BLAKE3, whose specification is fixed.
 struct Numbers(blake3::OutputReader);
 
 impl Numbers {
@@ -101,14 +101,14 @@ impl Numbers {
         Self(hasher.finalize_xof())
     }
 
-    /// Uniform in [0, 1).
+    /// Returns a number uniform in [0, 1).
     fn uniform(&mut self) -> f64 {
         let mut bytes = [0; 8];
         self.0.fill(&mut bytes);
         (u64::from_le_bytes(bytes) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Radius and angle of a point whose two coordinates are normal, of variance one.
+    /// Returns radius and angle of a point with two normal coordinates of variance one.
     fn normal_pair(&mut self) -> (f64, f64) {
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
         (radius, 2.0 * PI * self.uniform())
@@ -124,14 +124,14 @@ mod tests {
         Shape::Random(Random::new(seed, 4, 3, fold))
     }
 
-    /// Some values of a shape over a tube of length 3.
+    /// Returns some values of a shape over a tube of length 3.
     fn values(shape: &Shape) -> [f64; 4] {
         let at = [(0.0, 0.5), (1.0, 1.0), (3.0, 1.7), (5.0, 2.6)];
         at.map(|(phi, z)| shape.value(phi, z, [0.0, 3.0]))
     }
 
     #[test]
-    fn a_seed_gives_the_same_shape_for_ever() {
+    fn the_shape_of_a_seed_does_not_change() {
         let seven = [
             0.333142857804912,
             0.066832243547265,
@@ -145,16 +145,16 @@ mod tests {
     }
 
     #[test]
-    fn another_seed_gives_another_shape() {
+    fn different_seeds_give_different_shapes() {
         for seed in 0..20 {
             let (one, other) = (values(&shape(seed, 1)), values(&shape(seed + 1, 1)));
-            let apart = one.iter().zip(other).map(|(a, b)| (a - b).abs());
-            assert!(apart.sum::<f64>() > 0.05, "{seed}");
+            let difference = one.iter().zip(other).map(|(a, b)| (a - b).abs());
+            assert!(difference.sum::<f64>() > 0.05, "{seed}");
         }
     }
 
     #[test]
-    fn a_random_shape_reaches_one_and_hardly_exceeds_it() {
+    fn the_maximum_of_a_random_shape_is_nearly_one() {
         for seed in 0..10 {
             let shape = shape(seed, 1);
             let mut largest = 0.0_f64;
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fold_keeps_the_harmonics_that_repeat() {
+    fn a_fold_selects_its_multiples_and_leaves_them_unchanged() {
         let Shape::Random(whole) = shape(7, 1) else {
             unreachable!()
         };
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_before_cosine_and_sine_are_normal() {
+    fn coefficients_are_normally_distributed() {
         let mut numbers = Numbers::of(1);
         let pairs: Vec<(f64, f64)> = (0..4000).map(|_| numbers.normal_pair()).collect();
         let mean = |of: &dyn Fn(f64) -> f64| {
