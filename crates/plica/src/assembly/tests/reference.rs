@@ -73,7 +73,7 @@ fn kernels_agree_with_the_reference_implementation() {
 }
 
 #[test]
-fn one_ring_agrees_with_the_reference_implementation() {
+fn axisymmetric_tubes_agree_with_the_reference_implementation() {
     for material in other_laws() {
         let TubeAndLoad { tube, load } = of_material(&material, 3, [9, 2, 6], 1);
         let whole = of_material(&material, 3, [9, 2, 6], 6).tube;
@@ -106,7 +106,12 @@ fn energy_residual_and_tangent_of_other_laws_are_consistent() {
 
         let slope: Vec<f64> = moved(&after.residual, &before.residual, -1.0);
         let mut product = vec![0.0; d.len()];
-        tube.add_tangent_product(&tube.matrix_free_tangent(&load, &u), 2.0 * h, &d, &mut product);
+        tube.add_tangent_product(
+            &tube.matrix_free_tangent(&load, &u),
+            2.0 * h,
+            &d,
+            &mut product,
+        );
         let error = moved(&slope, &product, -1.0);
         assert!(largest(&error) < 1e-6 * largest(&product), "{material:?}");
     }
