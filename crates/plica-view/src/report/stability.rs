@@ -297,7 +297,10 @@ impl<'a> Meridian<'a> {
 
     /// Plots the amplitudes of the mode along the outer wall.
     fn amplitudes(&self) -> Chart {
-        let z = self.tube.axial.positions(4 * self.tube.axial.elements() + 1);
+        let z = self
+            .tube
+            .axial
+            .positions(4 * self.tube.axial.elements() + 1);
         let samples: Vec<Sampled> = z
             .iter()
             .map(|&z| self.sample(z, Tube::OUTER_RADIUS))

@@ -3,7 +3,9 @@
 use super::{TubeAndLoad, mesh, tube_and_load};
 use crate::assembly::{Point, SplineTube};
 use crate::spline::{Basis, gauss_legendre};
-use crate::tube::{Axial, End, EndMotion, Imperfection, Part, EndDirection, Shape, Support, Tube, Wave};
+use crate::tube::{
+    Axial, End, EndDirection, EndMotion, Imperfection, Part, Shape, Support, Tube, Wave,
+};
 
 /// Returns the tube of the other tests with twelve rings and an imperfection.
 fn imperfect(ends: [Support; 2], of: Part, amplitude: f64, wave: Wave) -> SplineTube {
