@@ -9,7 +9,9 @@ use plica::material::{Material, NeoHookean, Volumetric};
 use plica::solve::{
     Effort, Equilibrium, Integrator, Path, PseudoTime, Scheme, Settings, Solver, State, Tangent,
 };
-use plica::tube::{Axial, End, Imperfection, Integration, Load, Part, EndDirection, Shape, Support, Wave};
+use plica::tube::{
+    Axial, End, EndDirection, Imperfection, Integration, Load, Part, Shape, Support, Wave,
+};
 
 /// Returns a tube whose middle contracts and relaxes, on a coarse mesh.
 fn small_tube(around: usize) -> TubeModel {
