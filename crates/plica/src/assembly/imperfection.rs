@@ -17,7 +17,7 @@
 use super::tables::bases;
 use crate::rings::Sector;
 use crate::spline::{Basis, Values, through, transfer};
-use crate::tube::{Axial, End, Imperfection, Mode, Part, EndDirection, Shape, Support, Tube, Wave};
+use crate::tube::{Axial, End, EndDirection, Imperfection, Mode, Part, Shape, Support, Tube, Wave};
 use std::f64::consts::PI;
 
 /// Distance from a fixed end, in D, over which a geometric imperfection that is uniform along the

@@ -7,7 +7,7 @@ use super::read::{Fields, Read, Table, Value, choice, choose, table};
 use crate::activation::{Direction, Profile};
 use crate::material::Volumetric;
 use crate::study::{LengthUnit, StressUnit};
-use crate::tube::{Axial, Integration, EndDirection, Support, Symmetry};
+use crate::tube::{Axial, EndDirection, Integration, Support, Symmetry};
 use std::collections::BTreeMap;
 
 table! {

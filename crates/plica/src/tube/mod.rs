@@ -11,7 +11,7 @@ mod load;
 mod mesh;
 mod random;
 
-pub use imperfection::{Axial, Imperfection, Mode, Part, EndDirection, Shape, Wave};
+pub use imperfection::{Axial, EndDirection, Imperfection, Mode, Part, Shape, Wave};
 pub use load::{EndMotion, Load, Pressure};
 pub use mesh::{Integration, Mesh, Symmetry};
 pub use random::Random;

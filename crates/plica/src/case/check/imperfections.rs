@@ -10,7 +10,8 @@ use super::start::check_size;
 use super::zone::{tidy, zone};
 use crate::study::{ModeShape, Stage, inverted_by_imperfections};
 use crate::tube::{
-    Axial, End, Imperfection, Mesh, Part, EndDirection, Random, Shape, Support, Symmetry, Tube, Wave,
+    Axial, End, EndDirection, Imperfection, Mesh, Part, Random, Shape, Support, Symmetry, Tube,
+    Wave,
 };
 
 /// Largest displacement over the thickness of the wall.

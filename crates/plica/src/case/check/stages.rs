@@ -9,7 +9,7 @@ use super::tube::youngs_modulus;
 use super::zone::tidy;
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
-use crate::tube::{Load, Part, EndDirection, Support, Tube};
+use crate::tube::{EndDirection, Load, Part, Support, Tube};
 use std::collections::HashMap;
 
 /// Number of names that a message lists.
