@@ -16,7 +16,7 @@
 
 use super::tables::bases;
 use crate::rings::Sector;
-use crate::spline::{Basis, Values, through, transfer};
+use crate::spline::{Basis, Values, interpolate, transfer};
 use crate::tube::{Axial, End, EndDirection, Imperfection, Mode, Part, Shape, Support, Tube, Wave};
 use std::f64::consts::PI;
 
@@ -80,7 +80,7 @@ pub(super) fn geometry(
                 .map(|&z| along(wave, tube, z))
                 .collect();
             let rows = u.chunks_exact_mut(points * 3 * k);
-            for (row, factor) in rows.zip(through(axial, factors, 1)) {
+            for (row, factor) in rows.zip(interpolate(axial, factors, 1)) {
                 let size = imperfection.amplitude * wave.share * factor;
                 for ring in 0..k {
                     let [radial, around] = shape.across(ring);

@@ -1,5 +1,5 @@
-//! Imperfections: small deviations from the perfect tube, which decide where a tube goes whose
-//! perfect path branches.
+//! Imperfections: small deviations from the perfect tube, which select the branch at a bifurcation
+//! of the perfect tube.
 //!
 //! An imperfection is a shape f(φ, z), between −1 and 1, times an amplitude. A shape is a sum of
 //! waves around the tube, each with a factor along it:
@@ -8,12 +8,12 @@
 //!
 //! | letter | meaning | Rust |
 //! |---|---|---|
-//! | n | circumferential harmonic | [`Wave::harmonic`] |
+//! | n | circumferential mode | [`Wave::harmonic`] |
 //! | φ₀ | angle of a crest | [`Wave::phase`] |
 //! | c | share of the wave in the shape | [`Wave::share`] |
 //! | g | factor along the tube | [`Axial::value`] |
 //!
-//! The geometry may also have the shape of a [`Mode`], a displacement in which a tube leaves its path.
+//! An imperfect geometry may also have the shape of a [`Mode`], for example a buckling mode.
 
 use super::{End, Mesh, Random};
 use std::f64::consts::{PI, TAU};
@@ -21,33 +21,33 @@ use std::f64::consts::{PI, TAU};
 /// One imperfection of a tube.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imperfection {
-    /// What is imperfect.
+    /// Imperfect part of the tube.
     pub of: Part,
-    /// Its size: of an end or the geometry a displacement in D, of a muscle a fraction of its
+    /// Amplitude: of an end or the geometry a displacement in D, of a muscle a fraction of its
     /// activity.
     pub amplitude: f64,
-    /// How it is spread.
+    /// Shape.
     pub shape: Shape,
 }
 
-/// What is imperfect.
+/// An imperfect part of a tube.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Where an end is held. The end gives the displacement, constant along the whole path.
     End(End, EndDirection),
-    /// The stress-free shape of the wall.
+    /// Stress-free shape of the wall.
     Geometry,
-    /// How strong a muscle is, by its place in the tube: θ − 1 becomes (θ − 1)(1 + a f).
+    /// Strength of the muscle with this index: θ − 1 becomes (θ − 1)(1 + a f).
     Muscle(usize),
 }
 
-/// In which direction the face of an end is displaced.
+/// Direction in which an end face is displaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndDirection {
-    /// In its plane, normal to the wall; and around it so that rings keep their length. Harmonic 1
-    /// shifts the face sideways, 2 makes it oval.
+    /// In its plane, normal to the wall, and around it so that rings keep their length. Mode 1
+    /// shifts the face sideways, mode 2 makes it oval.
     Across,
-    /// Along the axis. Harmonic 1 tilts the face.
+    /// Along the axis. Mode 1 tilts the face.
     Axial,
 }
 
@@ -56,14 +56,14 @@ pub enum EndDirection {
 pub enum Shape {
     /// One wave around the tube.
     Wave(Wave),
-    /// Many, from the seed of a generator.
+    /// A random sum of waves.
     Random(Random),
-    /// A displacement, of the geometry.
+    /// A displacement of the control points, for the geometry only.
     Mode(Mode),
 }
 
-/// A displacement (z cos nφ, r cos nφ, −θ sin nφ) that splines draw, whatever its size: an imperfect
-/// geometry is displaced by the amplitude where that is largest.
+/// A displacement (z cos nφ, r cos nφ, −θ sin nφ) of control points. An imperfect geometry scales it
+/// so that the amplitude is its maximum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// n.
@@ -71,36 +71,36 @@ pub struct Mode {
     /// The mesh whose control points are displaced.
     pub mesh: Mesh,
     /// (z, r, θ) of every control point of one ring: row by row along the tube, and in a row point
-    /// by point through the wall; not all zero. For n = 0 the displacement itself.
+    /// by point through the wall; not all zero. For n = 0 the displacement.
     pub values: Vec<f64>,
 }
 
 /// One wave around the tube, c g(z) cos n(φ − φ₀).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
-    /// n; 0 is the same all around.
+    /// n; 0 is axisymmetric.
     pub harmonic: usize,
     /// φ₀, the angle of a crest, in radians.
     pub phase: f64,
-    /// g, how it is spread along the tube.
+    /// g, the factor along the tube.
     pub axial: Axial,
     /// c; 1 for a shape of one wave.
     pub share: f64,
 }
 
-/// A factor along a span of the tube: all of it, or the zone of a muscle.
+/// A factor along a span of the tube: the whole tube, or the zone of a muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axial {
     /// One.
     Uniform,
     /// sin kπx, x from 0 to 1 over the span.
     HalfWaves(usize),
-    /// ½ (1 − cos 2πx), x from 0 to 1 over a zone in D; nothing elsewhere.
+    /// ½ (1 − cos 2πx), x from 0 to 1 over a zone in D; zero elsewhere.
     Zone([f64; 2]),
 }
 
 impl Shape {
-    /// The waves that it is the sum of; none of a mode.
+    /// Returns the waves of a sum; none for a mode.
     pub fn waves(&self) -> &[Wave] {
         match self {
             Self::Wave(wave) => std::slice::from_ref(wave),
@@ -109,7 +109,7 @@ impl Shape {
         }
     }
 
-    /// f(φ, z), φ in radians, for a span of the tube in D; of a sum of waves.
+    /// Returns f(φ, z) of a sum of waves, φ in radians, for a span of the tube in D.
     pub fn value(&self, phi: f64, z: f64, span: [f64; 2]) -> f64 {
         let waves = self.waves().iter();
         waves.map(|wave| wave.value(phi, z, span)).sum()
@@ -117,7 +117,7 @@ impl Shape {
 }
 
 impl Wave {
-    /// A shape of this wave alone.
+    /// Creates a wave with c = 1.
     pub fn new(harmonic: usize, phase: f64, axial: Axial) -> Self {
         Self {
             harmonic,
@@ -127,7 +127,7 @@ impl Wave {
         }
     }
 
-    /// c g(z) cos n(φ − φ₀).
+    /// Returns c g(z) cos n(φ − φ₀).
     pub fn value(&self, phi: f64, z: f64, span: [f64; 2]) -> f64 {
         let around = (self.harmonic as f64 * (phi - self.phase)).cos();
         self.share * self.axial.value(z, span) * around
@@ -135,7 +135,7 @@ impl Wave {
 }
 
 impl Axial {
-    /// g(z), for a span in D.
+    /// Returns g(z) for a span in D.
     pub fn value(&self, z: f64, span: [f64; 2]) -> f64 {
         let fraction = |[a, b]: [f64; 2]| (z - a) / (b - a);
         match *self {
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_wave_is_one_at_its_crest_and_nowhere_more() {
+    fn the_maximum_of_a_wave_is_one_at_its_crest() {
         let span = [0.0, 3.0];
         for axial in [
             Axial::Uniform,
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn factors_along_the_tube_end_at_zero() {
+    fn factors_along_the_tube_are_zero_at_both_ends() {
         let span = [0.3, 2.9];
         for axial in [Axial::HalfWaves(1), Axial::HalfWaves(4), Axial::Zone(span)] {
             for z in [0.0, 0.3, 2.9, 3.0] {

@@ -1,5 +1,4 @@
-//! What a person means by a tube: its shape, wall, muscles and ends, the mesh laid over it, and
-//! the load it is under. Checked values, no files, no numerics.
+//! The tube as the user defines it: shape, wall, muscles and ends; its mesh; its load.
 //!
 //! Everything is dimensionless: lengths in the outer diameter D, stresses in Young's modulus E,
 //! energies in E·D³. z = 0 is the colon end, z = L the ileum end.
@@ -26,13 +25,13 @@ pub struct Tube {
     pub length: f64,
     /// Wall thickness H, in D; below ½.
     pub thickness: f64,
-    /// The law of the wall, its stresses in E.
+    /// Law of the wall, with stresses in E.
     pub material: Material,
-    /// The muscles of the wall. Zones of muscles of one direction do not overlap.
+    /// Muscles of the wall. Zones of muscles of one direction do not overlap.
     pub muscles: Vec<Muscle>,
-    /// How the colon end (z = 0) and the ileum end (z = L) are held.
+    /// Supports of the colon end (z = 0) and the ileum end (z = L).
     pub ends: [Support; 2],
-    /// Where it is not quite as round or as even as meant; what they do adds up.
+    /// Imperfections; they add up.
     pub imperfections: Vec<Imperfection>,
 }
 
@@ -45,14 +44,14 @@ pub enum End {
     Ileum,
 }
 
-/// How an end face is held.
+/// Support of an end face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
-    /// Every displacement of the end face is given (zero, unless the end is moved).
+    /// All displacements of the end face are prescribed (zero, unless the end is moved).
     Fixed,
-    /// The axial displacement is given; the face slides freely on its plane.
+    /// The axial displacement is prescribed; the face slides in its plane.
     Sliding,
-    /// Nothing is given.
+    /// No displacement is prescribed.
     Free,
 }
 
@@ -65,7 +64,7 @@ impl Tube {
         Self::OUTER_RADIUS - self.thickness
     }
 
-    /// The load at rest: every muscle at ratio one, the ends where they are, no pressure.
+    /// Returns the load at rest: all muscles at ratio one, no displacement of the ends, no pressure.
     pub fn rest(&self) -> Load {
         Load {
             muscles: vec![1.0; self.muscles.len()],
@@ -74,15 +73,15 @@ impl Tube {
         }
     }
 
-    /// The grown stretches (θζ, θη) at z under a load, of muscles without imperfections (Okino et
-    /// al. 2025, Eq. (3)).
+    /// Returns the grown stretches (θζ, θη) at z under a load, of muscles without imperfections
+    /// (Okino et al. 2025, Eq. (3)).
     pub fn stretches(&self, z: f64, load: &Load) -> (f64, f64) {
         self.grown(z, load, |_, theta| theta)
     }
 
-    /// The grown stretches (θζ, θη) at z and at the angle `phi`, in radians, under a load:
-    /// imperfections of muscles make θ − 1 larger or smaller by [`Tube::strength`]. Without such
-    /// imperfections exactly [`Tube::stretches`].
+    /// Returns the grown stretches (θζ, θη) at z and the angle `phi`, in radians, under a load, with
+    /// θ − 1 of each muscle multiplied by [`Tube::strength`]. Without imperfections of muscles it
+    /// equals [`Tube::stretches`] to the bit.
     pub fn stretches_at(&self, z: f64, phi: f64, load: &Load) -> (f64, f64) {
         self.grown(z, load, |m, theta| match self.strength(m, z, phi) {
             1.0 => theta,
@@ -90,8 +89,7 @@ impl Tube {
         })
     }
 
-    /// Whether a muscle has an imperfection, so that it may be stronger at one angle than at
-    /// another.
+    /// Returns true if a muscle has an imperfection, so that its strength may depend on the angle.
     pub fn muscles_vary_around(&self) -> bool {
         let mut parts = self
             .imperfections
@@ -100,8 +98,8 @@ impl Tube {
         parts.any(|part| matches!(part, Part::Muscle(_)))
     }
 
-    /// How strong muscle `m` is at z and at the angle `phi`, in radians: 1 + Σ a f(φ, z) over its
-    /// imperfections, whose shapes span its zone. It does not depend on the load.
+    /// Returns the strength of muscle `m` at z and the angle `phi`, in radians: 1 + Σ a f(φ, z) over
+    /// its imperfections, whose shapes span its zone.
     pub fn strength(&self, m: usize, z: f64, phi: f64) -> f64 {
         let imperfections = self.imperfections.iter();
         let of_it = imperfections.filter(|imperfection| imperfection.of == Part::Muscle(m));
@@ -111,7 +109,7 @@ impl Tube {
         })
     }
 
-    /// The product of what the muscles grow, each θ as `change` makes it.
+    /// Returns the products of the stretches of the muscles along and around, each θ changed by `change`.
     fn grown(&self, z: f64, load: &Load, change: impl Fn(usize, f64) -> f64) -> (f64, f64) {
         let (mut along, mut around) = (1.0, 1.0);
         for (m, (muscle, &ratio)) in self.muscles.iter().zip(&load.muscles).enumerate() {
@@ -124,23 +122,23 @@ impl Tube {
         (along, around)
     }
 
-    /// The grown length over the length, Lmax/L.
+    /// Returns the grown length over the length, Lmax/L.
     pub fn length_ratio(&self, load: &Load) -> f64 {
         1.0 + self
-            .driven(load, Direction::Longitudinal)
+            .ratios(load, Direction::Longitudinal)
             .map(|ratio| ratio - 1.0)
             .sum::<f64>()
     }
 
-    /// The narrowest grown diameter over the diameter, Dmin/D (the widest, if every circular
-    /// muscle relaxes).
+    /// Returns the smallest grown diameter over the diameter, Dmin/D, of the circular muscles.
     pub fn diameter_ratio(&self, load: &Load) -> f64 {
-        self.driven(load, Direction::Circular)
+        self.ratios(load, Direction::Circular)
             .reduce(f64::min)
             .unwrap_or(1.0)
     }
 
-    fn driven<'a>(
+    /// Returns the target ratios of the muscles of one direction.
+    fn ratios<'a>(
         &'a self,
         load: &'a Load,
         direction: Direction,
@@ -180,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn an_uneven_muscle_is_as_strong_on_the_average_around() {
+    fn the_average_strength_of_an_imperfect_muscle_is_one() {
         for harmonic in 1..=3 {
             let tube = tube(Wave::new(harmonic, 0.2, Axial::HalfWaves(1)));
             let load = Load {
@@ -193,7 +191,7 @@ mod tests {
                 let mean = tube.stretches(z, &load).1;
                 assert!((sum / 24.0 - mean).abs() < 1e-15, "{z}: {}", sum / 24.0);
             }
-            // In the middle of the zone and at the crest, θ − 1 = −0.75 is a tenth larger.
+            // In the middle of the zone, at the crest, θ − 1 = −0.75 is a tenth larger.
             let (along, around) = tube.stretches_at(0.75, 0.2, &load);
             assert!((around - (1.0 - 1.1 * 0.75)).abs() < 1e-14, "{around}");
             assert_eq!(along, 1.0);
