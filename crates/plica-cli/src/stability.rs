@@ -6,13 +6,12 @@ use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{case_file, console, threads};
 use plica::run_directory::{RunDirectory, RunError, Verdict};
-use plica::stability::{
-    ModesRequest, Observer, Request, Spectrum, StabilityError, Station, follow, lowest_modes,
-};
+use plica::stability::{CriticalLoads, LowestModes, Spectrum, StabilityError, TestedState};
 use plica::study::{Plan, check_memory};
 use plica::tube::{Load, Tube};
 use plica_view::draw::DrawError;
 use plica_view::report::{mode_pictures, stability_pictures};
+use std::mem;
 
 /// Default width of the brackets of critical values.
 const TOLERANCE: f64 = 1e-4;
@@ -43,15 +42,11 @@ pub fn stability(arguments: &StabilityArguments) -> Result<(), Failure> {
     if directory.verdict() == Verdict::Running {
         console::message("warning: the run is unfinished; its states so far are tested");
     }
-    let mut monitor = Monitor {
-        ticker: Ticker::new(interrupt),
-        has_heading: false,
-        has_pressure: plan.has_pressures(),
-    };
+    let ticker = Ticker::new(interrupt);
     if plan.mesh.rings(plan.symmetry) == 1 {
-        axisymmetric(arguments, &plan, &directory, &mut monitor)
+        axisymmetric(arguments, &plan, &directory, ticker)
     } else {
-        three_dimensional(arguments, &plan, &directory, &mut monitor)
+        three_dimensional(arguments, &plan, &directory, ticker)
     }
 }
 
@@ -60,20 +55,35 @@ fn axisymmetric(
     arguments: &StabilityArguments,
     plan: &Plan,
     directory: &RunDirectory,
-    monitor: &mut Monitor,
+    mut ticker: Ticker,
 ) -> Result<(), Failure> {
     if arguments.modes.is_some() || !arguments.state.is_empty() {
         return Err(Failure::Usage(StabilityError::OneRing.to_string()));
     }
-    let request = Request {
-        harmonics: arguments
-            .harmonics
-            .map_or(plan.output.stability_modes, usize::from),
-        tolerance: arguments.tolerance.unwrap_or(TOLERANCE),
-    };
-    let found = follow(plan, directory, &request, monitor);
-    monitor.ticker.finish();
-    let found = found.map_err(failure)?;
+    let highest = arguments
+        .harmonics
+        .map_or(plan.output.stability_modes, usize::from);
+    let tolerance = arguments.tolerance.unwrap_or(TOLERANCE);
+    let mut test = CriticalLoads::new(plan, directory, highest, tolerance).map_err(failure)?;
+    let table = StateTable::new(plan);
+    let mut is_first = true;
+    loop {
+        match test.next_state(&mut ticker) {
+            Ok(Some(state)) => {
+                if mem::take(&mut is_first) {
+                    ticker.line(&table.modes_heading(state.modes.len()));
+                }
+                ticker.line(&table.modes_line(state));
+            }
+            Ok(None) => break,
+            Err(error) => {
+                ticker.finish();
+                return Err(failure(error));
+            }
+        }
+    }
+    ticker.finish();
+    let found = test.finish();
     let names = found.write(&plan.tube, directory)?;
     let pictures = stability_pictures(plan, &found);
     finish(
@@ -90,7 +100,7 @@ fn three_dimensional(
     arguments: &StabilityArguments,
     plan: &Plan,
     directory: &RunDirectory,
-    monitor: &mut Monitor,
+    mut ticker: Ticker,
 ) -> Result<(), Failure> {
     if arguments.harmonics.is_some() || arguments.tolerance.is_some() {
         return Err(Failure::Usage(
@@ -98,22 +108,35 @@ fn three_dimensional(
                 .into(),
         ));
     }
-    let request = ModesRequest {
-        states: arguments.state.clone(),
-        modes: usize::from(arguments.modes.unwrap_or(MODES)),
+    let modes = usize::from(arguments.modes.unwrap_or(MODES));
+    let mut search = LowestModes::new(plan, directory, &arguments.state, modes).map_err(failure)?;
+    let table = StateTable::new(plan);
+    let mut is_first = true;
+    let interrupted = loop {
+        match search.next_state(&mut ticker) {
+            Ok(Some(spectrum)) => {
+                if mem::take(&mut is_first) {
+                    ticker.line(&table.spectrum_heading());
+                }
+                ticker.line(&table.spectrum_line(spectrum));
+            }
+            Ok(None) => break false,
+            // The completed states are written.
+            Err(StabilityError::Cancelled) if !is_first => break true,
+            Err(error) => {
+                ticker.finish();
+                return Err(failure(error));
+            }
+        }
     };
-    let found = lowest_modes(plan, directory, &request, monitor);
-    monitor.ticker.finish();
-    let found = found.map_err(failure)?;
-    if found.states.is_empty() {
-        return Err(failure(StabilityError::Stopped));
-    }
+    ticker.finish();
+    let found = search.finish();
     let mut names = vec![found.write(&plan.tube, directory)?];
     names.extend(found.modes.iter().cloned());
     let pictures = mode_pictures(plan, &found);
     let table = found.table(&plan.tube);
     finish(arguments, directory, table, names, pictures)?;
-    if found.stopped {
+    if interrupted {
         return Err(Failure::Interrupted(
             "interrupted; completed states were written".into(),
         ));
@@ -124,7 +147,9 @@ fn three_dimensional(
 /// Converts an error of the stability test.
 fn failure(error: StabilityError) -> Failure {
     match error {
-        StabilityError::Stopped => Failure::Interrupted("interrupted; nothing was written".into()),
+        StabilityError::Cancelled => {
+            Failure::Interrupted("interrupted; nothing was written".into())
+        }
         error if error.is_misuse() => Failure::Usage(error.to_string()),
         error => Failure::Files(error.to_string()),
     }
@@ -158,16 +183,22 @@ fn finish(
     console::print(&(table + &written))
 }
 
-/// Prints a line per saved state.
-struct Monitor {
-    ticker: Ticker,
-    has_heading: bool,
+/// Progress table with a line per state.
+struct StateTable<'a> {
+    tube: &'a Tube,
     has_pressure: bool,
 }
 
-impl Monitor {
+impl<'a> StateTable<'a> {
+    fn new(plan: &'a Plan) -> Self {
+        Self {
+            tube: &plan.tube,
+            has_pressure: plan.has_pressures(),
+        }
+    }
+
     /// Returns the heading of the load columns.
-    fn heading(&self) -> String {
+    fn load_heading(&self) -> String {
         let pressure = if self.has_pressure {
             "    pressure/E"
         } else {
@@ -177,8 +208,8 @@ impl Monitor {
     }
 
     /// Returns the load columns of a state, with its first non-zero pressure.
-    fn load_columns(&self, row: usize, tube: &Tube, load: &Load) -> String {
-        let (length, diameter) = (tube.length_ratio(load), tube.diameter_ratio(load));
+    fn load_columns(&self, row: usize, load: &Load) -> String {
+        let (length, diameter) = (self.tube.length_ratio(load), self.tube.diameter_ratio(load));
         let [inner, outer] = load.pressures;
         let pressures = [outer.follower, inner.follower, outer.dead, inner.dead];
         let pressure = pressures.into_iter().find(|p| *p != 0.0).unwrap_or(0.0);
@@ -188,56 +219,45 @@ impl Monitor {
         };
         format!("{row:>5}  {length:>7.4} {diameter:>7.4}{pressure}")
     }
-}
 
-impl Observer for Monitor {
-    fn tested(&mut self, tube: &Tube, station: &Station) {
-        if !self.has_heading {
-            self.has_heading = true;
-            let harmonics =
-                (0..station.tested.len()).map(|n| format!("{:>11}", format!("n = {n}")));
-            self.ticker.line(&format!(
-                "{}  lowest eigenvalue, E/D²:{}",
-                self.heading(),
-                harmonics.collect::<String>()
-            ));
-        }
-        let lowest = station
-            .tested
+    fn modes_heading(&self, modes: usize) -> String {
+        let modes = (0..modes).map(|n| format!("{:>11}", format!("n = {n}")));
+        format!(
+            "{}  lowest eigenvalue, E/D²:{}",
+            self.load_heading(),
+            modes.collect::<String>()
+        )
+    }
+
+    fn modes_line(&self, state: &TestedState) -> String {
+        let lowest = state
+            .modes
             .iter()
-            .map(|tested| format!("{:>11.3e}", tested.lowest));
-        self.ticker.line(&format!(
+            .map(|mode| format!("{:>11.3e}", mode.lowest));
+        format!(
             "{}  {:>24}{}",
-            self.load_columns(station.row.unwrap_or_default(), tube, &station.load),
+            self.load_columns(state.row.unwrap_or_default(), &state.load),
             "",
             lowest.collect::<String>()
-        ));
+        )
     }
 
-    fn found(&mut self, tube: &Tube, spectrum: &Spectrum) {
-        if !self.has_heading {
-            self.has_heading = true;
-            self.ticker.line(&format!(
-                "{}  {:>10}  lowest eigenvalues, E/D²",
-                self.heading(),
-                "iterations"
-            ));
-        }
+    fn spectrum_heading(&self) -> String {
+        format!(
+            "{}  {:>10}  lowest eigenvalues, E/D²",
+            self.load_heading(),
+            "iterations"
+        )
+    }
+
+    fn spectrum_line(&self, spectrum: &Spectrum) -> String {
         let lowest = spectrum.lowest.iter().take(5);
         let lowest = lowest.map(|eigenvalue| format!("{:>11.3e}", eigenvalue.value));
-        self.ticker.line(&format!(
+        format!(
             "{}  {:>10}{}",
-            self.load_columns(spectrum.row, tube, &spectrum.load),
+            self.load_columns(spectrum.row, &spectrum.load),
             spectrum.iterations,
             lowest.collect::<String>()
-        ));
-    }
-
-    fn working(&mut self, what: &str, fraction: f64) {
-        self.ticker.working(what, fraction);
-    }
-
-    fn stop(&mut self) -> bool {
-        self.ticker.stop()
+        )
     }
 }

@@ -46,7 +46,7 @@ fn a_relaxing_tube_becomes_oval_first() {
     let directory = scratch("stability");
     let (code, stdout, stderr) = run_and_test(&directory, RELAXING, &["--threads", "2"]);
     assert_eq!(code, Some(0), "{stderr}");
-    let lost = stdout.lines().find(|line| line.contains("lost")).unwrap();
+    let lost = stdout.lines().find(|line| line.contains(" lost ")).unwrap();
     let cells: Vec<&str> = lost.split_whitespace().collect();
     assert_eq!(
         cells[..8],
@@ -61,7 +61,7 @@ fn a_relaxing_tube_becomes_oval_first() {
         "{stdout}"
     );
     assert!(
-        stdout.contains("first to go            harmonic 2 (turns oval), at Lmax/L"),
+        stdout.contains("first loss             circumferential mode 2 (turns oval), at Lmax/L"),
         "{stdout}"
     );
     // Three lines of heading and one line per state.
@@ -94,7 +94,7 @@ fn a_relaxing_tube_becomes_oval_first() {
     let (code, stdout, _) = stability(&directory, &["--harmonics", "1"]);
     assert_eq!(code, Some(0));
     assert!(
-        stdout.starts_with("  all 7 states are stable, to harmonics 0 to 1\n"),
+        stdout.starts_with("  all 7 states are stable to circumferential modes 0 to 1\n"),
         "{stdout}"
     );
     assert!(!run.join("modes/mode-01-harmonic-2.safetensors").exists());
@@ -128,7 +128,7 @@ fn runs_that_cannot_be_tested_are_explained() {
     note("no states", 2, run_and_test(&directory, &none, &[]));
     let fold = format!("symmetry = {{ fold = 24 }}\n{short}");
     note(
-        "harmonics of several rings",
+        "circumferential modes of several rings",
         2,
         run_and_test(&directory, &fold, &["--harmonics", "2"]),
     );

@@ -4,7 +4,7 @@ use plica::assembly::SplineTube;
 use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
 use plica::solve::{Path, Settings};
-use plica::stability::{Harmonics, Tested};
+use plica::stability::{Harmonics, ModeStability};
 use plica::tube::{Mesh, Support, Tube};
 use std::f64::consts::PI;
 
@@ -36,7 +36,7 @@ fn passive(
 /// Euler's strain between fixed ends is ε = 4π² I/(A L²); with shear it is ε/(1 + ε E/(κG)), κ = ½ for a thin ring
 /// (Timoshenko and Gere 1961).
 #[test]
-fn a_comloaded_tube_buckles_at_euler_s_load() {
+fn a_compressed_tube_buckles_at_euler_s_load() {
     let (length, thickness, poisson_ratio) = (30.0, 0.06, 0.3);
     let inner = 0.5 - thickness;
     let gyration = (0.25 + inner * inner) / 4.0; // I/A
@@ -52,7 +52,7 @@ fn a_comloaded_tube_buckles_at_euler_s_load() {
     let mut loaded = rest;
     loaded.ends[1].displacement = -1.2 * expected * length;
     path.begin_segment(loaded);
-    let mut tested = |factor: f64| -> Vec<Tested> {
+    let mut tested = |factor: f64| -> Vec<ModeStability> {
         path.advance(factor / 1.2, &mut ()).unwrap();
         harmonics.test(&path.state().load, &path.state().u).unwrap()
     };

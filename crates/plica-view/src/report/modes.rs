@@ -4,7 +4,7 @@ use crate::draw::{
     Chart, ColourMap, Curve, Cutaway, DrawError, Opening, Panel, REAR_HALF, Range, Stroke, Surface,
 };
 use plica::assembly::{Point, SplineTube};
-use plica::stability::{Eigenvalue, Shown, Spectra, Spectrum};
+use plica::stability::{Eigenvalue, Spectra, Spectrum, StateWithModes};
 use plica::study::Plan;
 use plica::tube::Tube;
 
@@ -29,7 +29,7 @@ pub fn mode_pictures(plan: &Plan, found: &Spectra) -> Result<Vec<(String, Vec<u8
         pictures.push(("stability.png".to_owned(), chart));
     }
     if let Some(shown) = &found.shown {
-        let cutaway = modes(plan, &found.states[shown.which], shown);
+        let cutaway = modes(plan, &found.states[shown.index], shown);
         pictures.push(("mode.png".to_owned(), cutaway.png(WIDTH)?));
     }
     Ok(pictures)
@@ -64,7 +64,7 @@ fn eigenvalues(states: &[Spectrum]) -> Chart {
 }
 
 /// Draws the state, and the tube displaced by each mode.
-fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
+fn modes(plan: &Plan, spectrum: &Spectrum, shown: &StateWithModes) -> Cutaway {
     let rings = plan.mesh.rings(plan.symmetry);
     let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
     let panel = |(number, (shape, eigenvalue)): (usize, (&Vec<f64>, &Eigenvalue))| Panel {
@@ -101,7 +101,7 @@ fn modes(plan: &Plan, spectrum: &Spectrum, shown: &Shown) -> Cutaway {
 
 /// Returns the surfaces of the tube without its near half, displaced by a mode and coloured by the radial displacement
 /// divided by the largest displacement.
-fn surfaces(tube: &SplineTube, shown: &Shown, shape: Option<&Vec<f64>>) -> Vec<Surface> {
+fn surfaces(tube: &SplineTube, shown: &StateWithModes, shape: Option<&Vec<f64>>) -> Vec<Surface> {
     let along = tube.axial.elements();
     let opening = Opening::uniform(REAR_HALF, [2 * along + 1, 97, 9]);
     let moved = |u: &[f64], at: Point| {

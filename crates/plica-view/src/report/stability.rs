@@ -6,7 +6,7 @@ use crate::draw::{
 };
 use plica::assembly::{Point, SplineTube};
 use plica::equilibrium::mode_effect;
-use plica::stability::{Change, How, Mode, Quantity, Stability, Station};
+use plica::stability::{Mode, PathStability, Quantity, StabilityChange, TestedState, Transition};
 use plica::study::Plan;
 use plica::tube::Tube;
 use std::cell::RefCell;
@@ -34,7 +34,7 @@ const RANGE: [f64; 2] = [-0.8, 1.6];
 /// [`DrawError`] if there is nothing to draw.
 pub fn stability_pictures(
     plan: &Plan,
-    found: &Stability,
+    found: &PathStability,
 ) -> Result<Vec<(String, Vec<u8>)>, DrawError> {
     let mut pictures = vec![("stability.png".to_owned(), eigenvalues(plan, found)?)];
     let first = found.changes.iter().find(|change| change.mode.is_some());
@@ -45,7 +45,7 @@ pub fn stability_pictures(
 }
 
 /// Plots the stages with a change of stability, or else the last stage, one below the other.
-fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
+fn eigenvalues(plan: &Plan, found: &PathStability) -> Result<Vec<u8>, DrawError> {
     let changes = |name: &str| found.changes.iter().any(|change| change.stage == name);
     let mut stages: Vec<&str> = plan
         .stages
@@ -54,7 +54,7 @@ fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
         .collect();
     stages.retain(|name| changes(name));
     if stages.is_empty() {
-        stages.extend(found.stations.last().map(|station| station.stage.as_str()));
+        stages.extend(found.states.last().map(|state| state.stage.as_str()));
     }
     let image = |stage| chart(plan, found, stage).image(WIDTH);
     let images = stages
@@ -65,19 +65,20 @@ fn eigenvalues(plan: &Plan, found: &Stability) -> Result<Vec<u8>, DrawError> {
 }
 
 /// Plots the lowest eigenvalue of each circumferential mode along a stage.
-fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
-    let inside: Vec<usize> = (0..found.stations.len())
-        .filter(|&i| found.stations[i].stage == stage)
+fn chart(plan: &Plan, found: &PathStability, stage: &str) -> Chart {
+    let inside: Vec<usize> = (0..found.states.len())
+        .filter(|&i| found.states[i].stage == stage)
         .collect();
     let (Some(&first), Some(&last)) = (inside.first(), inside.last()) else {
         return Chart::default();
     };
     // A stage begins with the last state of the previous one.
-    let stations = &found.stations[first.saturating_sub(1)..=last];
-    let [begin, end] = [&stations[0], &stations[stations.len() - 1]];
+    let states = &found.states[first.saturating_sub(1)..=last];
+    let [begin, end] = [&states[0], &states[states.len() - 1]];
     let quantity = Quantity::between(&plan.tube, &begin.load, &end.load);
-    let x = |station: &Station| quantity.of(&plan.tube, &station.load);
-    let changes: Vec<&Change> = found.changes.iter().filter(|c| c.stage == stage).collect();
+    let x = |state: &TestedState| quantity.of(&plan.tube, &state.load);
+    let changes: Vec<&StabilityChange> =
+        found.changes.iter().filter(|c| c.stage == stage).collect();
 
     let ends = [x(begin).min(x(end)), x(begin).max(x(end))];
     let mut curves = vec![Curve {
@@ -87,10 +88,10 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
     }];
     let (mut low, mut high) = (0.0_f64, 1.0_f64);
     for n in 0..=found.highest {
-        let unit = begin.tested[n].lowest.abs();
+        let unit = begin.modes[n].lowest.abs();
         let mut points = vec![];
-        for pair in stations.windows(2) {
-            points.push((x(&pair[0]), pair[0].tested[n].lowest / unit));
+        for pair in states.windows(2) {
+            points.push((x(&pair[0]), pair[0].modes[n].lowest / unit));
             if changes
                 .iter()
                 .any(|change| is_snap_between(change, [x(&pair[0]), x(&pair[1])]))
@@ -98,7 +99,7 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
                 points.push((f64::NAN, f64::NAN));
             }
         }
-        points.push((x(end), end.tested[n].lowest / unit));
+        points.push((x(end), end.modes[n].lowest / unit));
         for (_, y) in points.iter().filter(|point| point.1.is_finite()) {
             (low, high) = (low.min(*y), high.max(*y));
         }
@@ -114,9 +115,9 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
     let (low, high) = (low.max(RANGE[0]), high.min(RANGE[1]));
     let margin = 0.06 * (high - low);
     // Only the first eigenvalue of a mode is drawn.
-    let marked: Vec<&&Change> = changes
+    let marked: Vec<&&StabilityChange> = changes
         .iter()
-        .filter(|c| c.negative.contains(&0) && c.how == How::Smooth)
+        .filter(|c| c.negative.contains(&0) && c.transition == Transition::Smooth)
         .collect();
     Chart {
         x_label: label(quantity, &plan.tube),
@@ -144,9 +145,9 @@ fn chart(plan: &Plan, found: &Stability, stage: &str) -> Chart {
     }
 }
 
-fn is_snap_between(change: &Change, [from, to]: [f64; 2]) -> bool {
+fn is_snap_between(change: &StabilityChange, [from, to]: [f64; 2]) -> bool {
     let inside = |x: f64| (from.min(to)..=from.max(to)).contains(&x);
-    change.how == How::Snap && change.between.iter().all(|&x| inside(x))
+    change.transition == Transition::Snap && change.between.iter().all(|&x| inside(x))
 }
 
 /// Returns the name of a circumferential mode in the legend.
@@ -173,7 +174,7 @@ fn label(quantity: Quantity, tube: &Tube) -> String {
 }
 
 /// Draws the tube at the critical state and displaced by the mode, open and closed, above the amplitudes of the mode.
-fn first_mode(plan: &Plan, change: &Change, mode: &Mode) -> Result<Vec<u8>, DrawError> {
+fn first_mode(plan: &Plan, change: &StabilityChange, mode: &Mode) -> Result<Vec<u8>, DrawError> {
     let tube = SplineTube::new(&plan.tube, &plan.mesh, 1);
     let meridian = Meridian::new(&tube, mode);
     let at = format!(

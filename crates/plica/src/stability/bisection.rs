@@ -1,54 +1,54 @@
-//! Between two states of a run that differ in stability.
+//! Bisection of the path between two states that differ in stability.
 
-use super::{Harmonics, How, Quantity, StabilityError};
+use super::{Harmonics, Quantity, StabilityError, Transition};
 use crate::equilibrium::TubeProblem;
 use crate::monitor::Monitor;
 use crate::solve::{Method, Path, Settings, State};
 use crate::tube::Load;
 
-/// Largest distance of two solutions that are the same state, in D.
+/// Largest difference of two solutions that count as the same state, in D.
 const SAME: f64 = 1e-4;
-/// Halvings at most: beyond, loads no longer differ.
+/// Maximum number of halvings; the loads hardly differ beyond it.
 const HALVINGS: usize = 48;
 
-/// A state on the way.
+/// A state of the path.
 #[derive(Clone, Debug)]
 pub struct Point {
     pub along: f64,
     pub load: Load,
     pub u: Vec<f64>,
-    /// Negative eigenvalues of every harmonic.
+    /// Number of negative eigenvalues of every circumferential mode.
     pub negative: Vec<usize>,
 }
 
-/// Two states close together that differ in stability.
+/// Two neighbouring states that differ in stability.
 #[derive(Clone, Debug)]
 pub struct Bracket {
     pub ends: [Point; 2],
-    pub how: How,
+    pub transition: Transition,
 }
 
-/// Goes between states.
+/// Computes states between two states of a run.
 pub struct Bisection<'a> {
     pub problem: &'a TubeProblem,
-    pub harmonics: &'a Harmonics<'a>,
+    pub harmonics: &'a Harmonics,
     pub settings: &'a Settings,
     pub quantity: Quantity,
     pub tolerance: f64,
 }
 
-/// Whether and how one state leads to another.
-enum Way {
-    Smooth,
-    Snap,
-    Lost,
+/// Result of following the path from one state to the load of another.
+struct Connection {
+    transition: Transition,
+    /// Whether the path ends at the other state.
+    reaches: bool,
 }
 
 impl Bisection<'_> {
-    /// All brackets between two neighbouring states of a run, in order.
+    /// Returns all brackets between two neighbouring states of a run, in the order of the path.
     ///
     /// # Errors
-    /// [`StabilityError::Stopped`] if someone asks to.
+    /// [`StabilityError::Cancelled`] if the monitor cancels.
     pub fn brackets(
         &self,
         a: &Point,
@@ -59,15 +59,17 @@ impl Bisection<'_> {
         if a.negative == b.negative {
             return Ok(found);
         }
-        // A path that begins anew must lead where the run went, or what lies between is another's.
-        match self.way(a, b, monitor)? {
-            (_, true) => self.narrow(a, b, HALVINGS, &mut found, monitor)?,
-            (Way::Lost, _) => found.push(bracket(a, b, How::Unfollowed)),
-            _ => found.push(bracket(a, b, How::Snap)),
+        // The bisection is meaningful only if the path from `a` reaches the state of the run.
+        let connection = self.connect(a, b, monitor)?;
+        match connection.transition {
+            _ if connection.reaches => self.narrow(a, b, HALVINGS, &mut found, monitor)?,
+            Transition::Unfollowed => found.push(bracket(a, b, Transition::Unfollowed)),
+            _ => found.push(bracket(a, b, Transition::Snap)),
         }
         Ok(found)
     }
 
+    /// Bisects until the brackets are narrower than the tolerance.
     fn narrow(
         &self,
         a: &Point,
@@ -87,16 +89,16 @@ impl Bisection<'_> {
             1.0
         };
         if (to - from).abs() <= self.tolerance * unit || halvings == 0 {
-            let how = match self.way(a, b, monitor)? {
-                (Way::Smooth, true) => How::Smooth,
-                (Way::Lost, _) => How::Unfollowed,
-                _ => How::Snap,
+            let connection = self.connect(a, b, monitor)?;
+            let transition = match connection.transition {
+                Transition::Smooth if !connection.reaches => Transition::Snap,
+                transition => transition,
             };
-            found.push(bracket(a, b, how));
+            found.push(bracket(a, b, transition));
             return Ok(());
         }
-        let Some((state, _)) = self.go(a, b, 0.5, monitor)? else {
-            found.push(bracket(a, b, How::Unfollowed));
+        let Some((state, _)) = self.advance(a, b, 0.5, monitor)? else {
+            found.push(bracket(a, b, Transition::Unfollowed));
             return Ok(());
         };
         let middle = Point {
@@ -109,26 +111,32 @@ impl Bisection<'_> {
         self.narrow(&middle, b, halvings - 1, found, monitor)
     }
 
-    /// How the path from one state leads to the load of another, and whether to that state.
-    fn way(
+    /// Follows the path from one state to the load of another.
+    fn connect(
         &self,
         a: &Point,
         b: &Point,
         monitor: &mut dyn Monitor,
-    ) -> Result<(Way, bool), StabilityError> {
-        let Some((end, method)) = self.go(a, b, 1.0, monitor)? else {
-            return Ok((Way::Lost, false));
+    ) -> Result<Connection, StabilityError> {
+        let Some((end, method)) = self.advance(a, b, 1.0, monitor)? else {
+            return Ok(Connection {
+                transition: Transition::Unfollowed,
+                reaches: false,
+            });
         };
         let apart = end.u.iter().zip(&b.u).map(|(x, y)| (x - y).abs());
-        let way = match method {
-            Method::Relaxation => Way::Snap,
-            _ => Way::Smooth,
-        };
-        Ok((way, apart.fold(0.0, f64::max) <= SAME))
+        Ok(Connection {
+            transition: match method {
+                Method::Relaxation => Transition::Snap,
+                _ => Transition::Smooth,
+            },
+            reaches: apart.fold(0.0, f64::max) <= SAME,
+        })
     }
 
-    /// Part of the way from one state to the load of another; none if the tube is lost.
-    fn go(
+    /// Returns the state at the fraction `t` of the load step between two states, and the method that found it; none
+    /// if no equilibrium was found.
+    fn advance(
         &self,
         a: &Point,
         b: &Point,
@@ -147,16 +155,16 @@ impl Bisection<'_> {
         path.begin_segment(b.load.clone());
         let step = match path.advance(t, monitor) {
             Ok(step) => step,
-            Err(error) if error.is_cancelled() => return Err(StabilityError::Stopped),
+            Err(error) if error.is_cancelled() => return Err(StabilityError::Cancelled),
             Err(_) => return Ok(None),
         };
         Ok(Some((path.state().clone(), step.method)))
     }
 }
 
-fn bracket(a: &Point, b: &Point, how: How) -> Bracket {
+fn bracket(a: &Point, b: &Point, transition: Transition) -> Bracket {
     Bracket {
         ends: [a.clone(), b.clone()],
-        how,
+        transition,
     }
 }

@@ -40,7 +40,7 @@ pub enum StabilityError {
     /// A state is twisted.
     #[error(
         "state {row} is twisted, so its tangent does not decouple into circumferential modes: run the case \
-         without twist_degrees, or with symmetry = \"none\" and see the column stable of history.csv"
+         without twist_degrees, or with symmetry = \"none\" and see the column unstable_modes of history.csv"
     )]
     Twisted {
         /// Number of the state.
@@ -88,10 +88,10 @@ pub enum StabilityError {
     },
     /// The run directory cannot be read or written.
     #[error(transparent)]
-    Study(#[from] RunError),
+    Directory(#[from] RunError),
     /// The monitor cancelled the computation.
-    #[error("cancelled; nothing was written")]
-    Stopped,
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl StabilityError {

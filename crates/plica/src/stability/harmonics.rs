@@ -7,11 +7,12 @@ use crate::matrix::{
 };
 use crate::tube::Load;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// An axisymmetric tube with the mass matrices and constraints of its circumferential modes.
 #[derive(Clone, Debug)]
-pub struct Harmonics<'a> {
-    tube: &'a SplineTube,
+pub struct Harmonics {
+    tube: Arc<SplineTube>,
     harmonics: Vec<Harmonic>,
 }
 
@@ -22,28 +23,28 @@ struct Harmonic {
     prescribed: Vec<bool>,
 }
 
-/// Relative force up to which a rigid motion is neutral.
+/// Relative force up to which a rigid-body motion is neutral.
 const NEUTRAL: f64 = 1e-7;
 
 /// Stability of a state to one circumferential mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tested {
+pub struct ModeStability {
     /// Number of negative eigenvalues: 0 if the state is stable. A singular block counts as one.
     pub negative: usize,
-    /// Lowest eigenvalue with the mass of unit density, in E/D², without neutral rigid motions.
+    /// Lowest eigenvalue with the mass of unit density, in E/D², without neutral rigid-body motions.
     pub lowest: f64,
 }
 
-impl<'a> Harmonics<'a> {
+impl Harmonics {
     /// Prepares modes 0 to `highest` of a tube of one ring, or as many as its control points around resolve.
-    pub fn new(tube: &'a SplineTube, highest: usize) -> Self {
+    pub fn new(tube: &Arc<SplineTube>, highest: usize) -> Self {
         let highest = highest.min((tube.sector.around - 1) / 2);
         let harmonic = |n| Harmonic {
             mass: harmonic_mass(tube, n),
             prescribed: tube.prescribed_in_harmonic(n),
         };
         Self {
-            tube,
+            tube: tube.clone(),
             harmonics: (0..=highest).into_par_iter().map(harmonic).collect(),
         }
     }
@@ -65,10 +66,10 @@ impl<'a> Harmonics<'a> {
     ///
     /// # Errors
     /// [`NoEigenpairs`] if a lowest eigenvalue is not found.
-    pub fn test(&self, load: &Load, u: &[f64]) -> Result<Vec<Tested>, NoEigenpairs> {
+    pub fn test(&self, load: &Load, u: &[f64]) -> Result<Vec<ModeStability>, NoEigenpairs> {
         let test = |(n, harmonic): (usize, &Harmonic)| {
             let pairs = self.lowest(n, load, u, 1)?;
-            Ok(Tested {
+            Ok(ModeStability {
                 negative: harmonic.negative(self.block(n, load, u)),
                 lowest: pairs.first().map_or(f64::INFINITY, |pair| pair.value),
             })
@@ -76,7 +77,7 @@ impl<'a> Harmonics<'a> {
         self.harmonics.par_iter().enumerate().map(test).collect()
     }
 
-    /// Returns the lowest eigenpairs of mode n at a state without twist, orthogonal to neutral rigid motions. A vector
+    /// Returns the lowest eigenpairs of mode n at a state without twist, orthogonal to neutral rigid-body motions. A vector
     /// holds per control point the amplitudes (z, r, θ) of the displacement (z cos nφ, r cos nφ, −θ sin nφ); for
     /// n = 0 the displacement (z, r, θ) itself.
     ///
@@ -92,12 +93,12 @@ impl<'a> Harmonics<'a> {
         let Harmonic { mass, prescribed } = &self.harmonics[n];
         let block = self.block(n, load, u);
         let motions = self.tube.rigid_motions_in_harmonic(u, n);
-        let held = self.tube.prescribed_at_ends();
+        let fixed = self.tube.prescribed_at_ends();
         if motions
             .iter()
-            .all(|motion| is_neutral(&block, &held, motion))
+            .all(|motion| is_neutral(&block, &fixed, motion))
         {
-            lowest_eigenpairs_excluding(&block, mass, &held, count, &motions)
+            lowest_eigenpairs_excluding(&block, mass, &fixed, count, &motions)
         } else {
             lowest_eigenpairs(&block, mass, prescribed, count)
         }
@@ -111,12 +112,12 @@ impl<'a> Harmonics<'a> {
     }
 }
 
-/// Returns whether a rigid motion meets no force.
-fn is_neutral(block: &BlockBanded, held: &[bool], motion: &[f64]) -> bool {
+/// Returns whether a rigid-body motion meets no force.
+fn is_neutral(block: &BlockBanded, fixed: &[bool], motion: &[f64]) -> bool {
     let mut force = vec![0.0; motion.len()];
     block.multiply_add(1.0, motion, &mut force);
     let (mut forces, mut size) = (0.0, 0.0);
-    for i in (0..motion.len()).filter(|&i| !held[i]) {
+    for i in (0..motion.len()).filter(|&i| !fixed[i]) {
         forces += force[i] * force[i];
         size += (block.entry(i, i) * motion[i]).powi(2);
     }

@@ -1,7 +1,6 @@
-//! The lowest eigenpairs of the saved states of a three-dimensional run.
+//! Lowest eigenpairs of the saved states of a three-dimensional run.
 
-use super::observer::Relay;
-use super::{Eigenvalue, Observer, Shown, Spectra, Spectrum, StabilityError};
+use super::{Eigenvalue, Spectra, Spectrum, StabilityError, StateWithModes};
 use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
 use crate::monitor::{Monitor, Part};
@@ -12,85 +11,110 @@ use crate::solve::{EQUILIBRIUM, Equilibrium, Lowest, Search};
 use crate::study::Plan;
 use std::path::{Path, PathBuf};
 
-/// Relative residual to which eigenpairs are found; eigenvalues then are off by about its square.
+/// Relative residual of converged eigenpairs; the relative error of an eigenvalue is about its square.
 const ACCURACY: f64 = 1e-4;
-/// Iterations after which what there is must do.
+/// Maximum number of iterations.
 const ITERATIONS: usize = 300;
-/// Vectors that are searched for beside those wanted, and one more for every two of them.
+/// Additional vectors of the search block, beside half as many again as requested.
 const GUARDS: usize = 3;
 
-/// What is asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ModesRequest {
-    /// Numbers of the states; all if there are none.
-    pub states: Vec<usize>,
-    /// How many of the lowest eigenpairs of each.
-    pub modes: usize,
+/// Computation of the lowest eigenpairs of the tangent of saved states of a three-dimensional run, state by state.
+pub struct LowestModes<'a> {
+    plan: &'a Plan,
+    directory: &'a RunDirectory,
+    problem: TubeProblem,
+    files: Vec<PathBuf>,
+    /// Number of eigenpairs of each state.
+    modes: usize,
+    result: Spectra,
 }
 
-/// Finds the lowest eigenpairs of the tangent of saved states of a run of many rings, and writes
-/// each state's modes into the run directory as soon as it is done. What a former test wrote there is
-/// taken out first.
-///
-/// # Errors
-/// [`StabilityError`]; the modes of the states before stay written.
-pub fn lowest_modes(
-    plan: &Plan,
-    directory: &RunDirectory,
-    request: &ModesRequest,
-    observer: &mut dyn Observer,
-) -> Result<Spectra, StabilityError> {
-    let files = chosen(directory, &request.states)?;
-    let rings = plan.mesh.rings(plan.symmetry);
-    if rings == 1 {
-        return Err(StabilityError::OneRing);
-    }
-    let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
-    directory.clear_stability()?;
-    let mut spectra = Spectra {
-        states: vec![],
-        shown: None,
-        modes: vec![],
-        stopped: false,
-    };
-    for (done, file) in files.iter().enumerate() {
-        let state = read(plan, &problem, file)?;
-        let (done, all) = (done as f64, files.len() as f64);
-        let mut relay = Relay::new(&mut *observer);
-        let activity = format!("state {}", state.row);
-        let mut monitor = Part::new(&mut relay, activity, done / all, 0.0);
-        let found = search(&problem, &state, request.modes, &mut monitor).ok_or_else(|| {
-            StabilityError::NoTangent {
-                path: file.to_owned(),
-            }
-        })?;
-        if observer.stop() {
-            spectra.stopped = true;
-            return Ok(spectra);
+impl<'a> LowestModes<'a> {
+    /// Prepares the computation of the lowest `modes` eigenpairs of the states with the numbers `states`, or of all if
+    /// there are none. Removes the results of a previous stability test from the run directory.
+    ///
+    /// # Errors
+    /// [`StabilityError`] if the run is axisymmetric or a state was not saved.
+    pub fn new(
+        plan: &'a Plan,
+        directory: &'a RunDirectory,
+        states: &[usize],
+        modes: usize,
+    ) -> Result<Self, StabilityError> {
+        let files = selected(directory, states)?;
+        let rings = plan.mesh.rings(plan.symmetry);
+        if rings == 1 {
+            return Err(StabilityError::OneRing);
         }
-        let (spectrum, shapes) = described(&problem, &state, found);
+        let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
+        directory.clear_stability()?;
+        Ok(Self {
+            plan,
+            directory,
+            problem,
+            files,
+            modes,
+            result: Spectra {
+                states: vec![],
+                shown: None,
+                modes: vec![],
+            },
+        })
+    }
+
+    /// Computes the eigenpairs of the next state and writes its modes into the run directory; none after the last
+    /// state.
+    ///
+    /// # Errors
+    /// [`StabilityError`] if a file is unusable or the monitor cancels; the modes of the states before stay written.
+    pub fn next_state(
+        &mut self,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<&Spectrum>, StabilityError> {
+        let done = self.result.states.len();
+        let Some(file) = self.files.get(done) else {
+            return Ok(None);
+        };
+        let state = read(self.plan, &self.problem, file)?;
+        let activity = format!("state {}", state.row);
+        let fraction = done as f64 / self.files.len() as f64;
+        let mut part = Part::new(monitor, activity, fraction, 0.0);
+        let found = search(&self.problem, &state, self.modes, &mut part);
+        let found = found.ok_or_else(|| StabilityError::NoTangent {
+            path: file.to_owned(),
+        })?;
+        if monitor.is_cancelled() {
+            return Err(StabilityError::Cancelled);
+        }
+        let (spectrum, shapes) = spectrum(&self.problem, &state, found);
         for (number, (shape, eigenvalue)) in shapes.iter().zip(&spectrum.lowest).enumerate() {
             let name = format!("mode-state-{:04}-{}", state.row, number + 1);
             let mode = saved(&state, shape, eigenvalue);
-            spectra.modes.push(directory.write_mode(&name, &mode)?);
+            let name = self.directory.write_mode(&name, &mode)?;
+            self.result.modes.push(name);
         }
-        observer.found(&plan.tube, &spectrum);
-        let shown = spectra.shown.as_ref().map(|shown| shown.which);
-        let settled = shown.is_some_and(|which: usize| spectra.states[which].negative().0 > 0);
-        if !settled {
-            spectra.shown = Some(Shown {
-                which: spectra.states.len(),
+        let shown = self.result.shown.as_ref();
+        let shows_unstable =
+            shown.is_some_and(|shown| self.result.states[shown.index].negative().0 > 0);
+        if !shows_unstable {
+            self.result.shown = Some(StateWithModes {
+                index: done,
                 state,
                 shapes,
             });
         }
-        spectra.states.push(spectrum);
+        self.result.states.push(spectrum);
+        Ok(self.result.states.last())
     }
-    Ok(spectra)
+
+    /// Returns the eigenvalues of the states computed so far.
+    pub fn finish(self) -> Spectra {
+        self.result
+    }
 }
 
-/// The files of the states that are asked for.
-fn chosen(directory: &RunDirectory, rows: &[usize]) -> Result<Vec<PathBuf>, StabilityError> {
+/// Returns the files of the selected states.
+fn selected(directory: &RunDirectory, rows: &[usize]) -> Result<Vec<PathBuf>, StabilityError> {
     let files = directory.states()?;
     if rows.is_empty() && files.is_empty() {
         return Err(StabilityError::NoStates {
@@ -109,14 +133,14 @@ fn chosen(directory: &RunDirectory, rows: &[usize]) -> Result<Vec<PathBuf>, Stab
     Ok(files.into_iter().filter(wanted).collect())
 }
 
-/// A saved state, if it is an equilibrium of this case.
+/// Reads a saved state and checks that it is an equilibrium of this case.
 fn read(plan: &Plan, problem: &TubeProblem, file: &Path) -> Result<SavedState, StabilityError> {
-    let trouble = |source| StabilityError::State {
+    let error = |source| StabilityError::State {
         path: file.to_owned(),
         source,
     };
-    let state = SavedState::read(file).map_err(trouble)?;
-    plan.accepts(&state).map_err(trouble)?;
+    let state = SavedState::read(file).map_err(error)?;
+    plan.accepts(&state).map_err(error)?;
     let forces = problem.forces(&state.load, &state.u);
     let relative_residual =
         forces.map_or(f64::INFINITY, |f| f.relative_residual(problem.prescribed()));
@@ -129,6 +153,7 @@ fn read(plan: &Plan, problem: &TubeProblem, file: &Path) -> Result<SavedState, S
     })
 }
 
+/// Returns the lowest eigenpairs of the tangent of a state; none if it has no preconditioner.
 fn search(
     problem: &TubeProblem,
     state: &SavedState,
@@ -147,12 +172,8 @@ fn search(
     (!found.values.is_empty()).then_some(found)
 }
 
-/// A spectrum in words of the field, and the modes with their largest entry one.
-fn described(
-    problem: &TubeProblem,
-    state: &SavedState,
-    found: Lowest,
-) -> (Spectrum, Vec<Vec<f64>>) {
+/// Returns the spectrum with the shares of circumferential modes, and the modes with their largest entry one.
+fn spectrum(problem: &TubeProblem, state: &SavedState, found: Lowest) -> (Spectrum, Vec<Vec<f64>>) {
     let sector = &problem.tube.sector;
     let (transform, repeats) = (Transform::new(sector.rings), sector.around / sector.rings);
     let (mut lowest, mut shapes) = (vec![], vec![]);
@@ -162,9 +183,9 @@ fn described(
         .take(found.values.len())
         .enumerate()
     {
-        let mut measured = vec![0.0; x.len()];
-        problem.damping(1.0, &x, &mut measured);
-        let products = transform.dot_by_harmonic(&x, &measured);
+        let mut mass_times_x = vec![0.0; x.len()];
+        problem.damping(1.0, &x, &mut mass_times_x);
+        let products = transform.dot_by_harmonic(&x, &mass_times_x);
         let whole: f64 = products.iter().sum();
         let mut shares = vec![0.0; sector.around / 2 + 1];
         for (n, product) in products.iter().enumerate() {
@@ -192,7 +213,7 @@ fn described(
     (spectrum, shapes)
 }
 
-/// A mode with its state, as a file holds them.
+/// Returns the contents of the file of a mode: the state with additional arrays.
 fn saved(state: &SavedState, shape: &[f64], eigenvalue: &Eigenvalue) -> SavedState {
     let array = |shape: &[usize], values: &[f64]| Array {
         shape: shape.to_vec(),

@@ -16,32 +16,30 @@
 //!
 //! | letter | meaning | unit | Rust |
 //! |---|---|---|---|
-//! | n | circumferential mode | – | [`Change::harmonic`] |
+//! | n | circumferential mode | – | [`StabilityChange::harmonic`] |
 //! | K_n | block of the tangent | E D | `SplineTube::tangent_in_harmonic` |
 //! | M_n | mass of unit density | D³ | [`harmonic_mass`] |
-//! | λ | eigenvalue | E/D² | [`Tested::lowest`] |
+//! | λ | eigenvalue | E/D² | [`ModeStability::lowest`] |
 //! | x | mode: amplitudes (z, r, θ) of the control points | D | [`Mode::shape`] |
 //! | ν | eigenvalue of the run's own tangent | E/D² | [`Eigenvalue::value`] |
 
 mod bisection;
+mod critical_loads;
 mod error;
-mod follow;
-mod found;
 mod harmonics;
 mod lowest_modes;
 mod mass;
-mod observer;
+mod path_stability;
+mod path_table;
 mod quantity;
 mod spectra_table;
 mod spectrum;
-mod table;
 
+pub use critical_loads::CriticalLoads;
 pub use error::StabilityError;
-pub use follow::{Request, follow};
-pub use found::{Change, How, Mode, Stability, Station};
-pub use harmonics::{Harmonics, Tested};
-pub use lowest_modes::{ModesRequest, lowest_modes};
+pub use harmonics::{Harmonics, ModeStability};
+pub use lowest_modes::LowestModes;
 pub use mass::harmonic_mass;
-pub use observer::Observer;
+pub use path_stability::{Mode, PathStability, StabilityChange, TestedState, Transition};
 pub use quantity::Quantity;
-pub use spectrum::{Eigenvalue, Shown, Spectra, Spectrum};
+pub use spectrum::{Eigenvalue, Spectra, Spectrum, StateWithModes};

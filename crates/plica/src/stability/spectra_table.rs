@@ -1,4 +1,4 @@
-//! The lowest eigenvalues of states, as tables.
+//! Tables of the lowest eigenvalues.
 
 use super::{Eigenvalue, Spectra, Spectrum};
 use crate::run_directory::{RunDirectory, RunError};
@@ -6,19 +6,19 @@ use crate::tube::Tube;
 use std::fmt::Write;
 
 impl Spectra {
-    /// The table of eigenvalues, as the program prints it.
+    /// Returns the table of eigenvalues that `plica stability` prints.
     pub fn table(&self, tube: &Tube) -> String {
         let mut page = String::new();
         let stage = |state: &Spectrum| state.stage.chars().count();
         let width = self.states.iter().map(stage).max().unwrap_or(0).max(5);
         let _ = writeln!(
             page,
-            "  {:>5}  {:<width$}  {:>7}  {:>7}  {:>8}  {:>4}  {:>12}  {:>8}  harmonics",
+            "  {:>5}  {:<width$}  {:>7}  {:>7}  {:>8}  {:>4}  {:>12}  {:>8}  circumferential modes",
             "state", "stage", "Lmax/L", "Dmin/D", "unstable", "mode", "eigenvalue", "residual",
         );
         for state in &self.states {
             for (number, eigenvalue) in (1..).zip(&state.lowest) {
-                let place = if number == 1 {
+                let columns = if number == 1 {
                     format!(
                         "{:>5}  {:<width$}  {:>7.4}  {:>7.4}  {:>8}",
                         state.row,
@@ -32,19 +32,19 @@ impl Spectra {
                 };
                 let _ = writeln!(
                     page,
-                    "  {place}  {number:>4}  {:>12.5e}  {:>8.0e}  {}",
+                    "  {columns}  {number:>4}  {:>12.5e}  {:>8.0e}  {}",
                     eigenvalue.value,
                     eigenvalue.residual,
                     eigenvalue.content(),
                 );
             }
         }
-        let missed = self.states.iter().flat_map(|state| &state.lowest);
-        let missed = missed.filter(|eigenvalue| !eigenvalue.found).count();
-        if missed > 0 {
+        let inaccurate = self.states.iter().flat_map(|state| &state.lowest);
+        let inaccurate = inaccurate.filter(|eigenvalue| !eigenvalue.found).count();
+        if inaccurate > 0 {
             let _ = writeln!(
                 page,
-                "  {missed} eigenvalue(s) are known only as far as their residual says"
+                "  {inaccurate} eigenvalue(s) were not found to full accuracy; their residuals show the error"
             );
         }
         page
@@ -66,7 +66,7 @@ impl Spectra {
             "residual",
             "found",
             "iterations",
-            "harmonic",
+            "circumferential_mode",
             "shares",
         ];
         let mut rows = vec![header.map(str::to_owned).to_vec()];
@@ -97,7 +97,7 @@ impl Spectra {
 }
 
 impl Spectrum {
-    /// How many eigenvalues are negative, in a table.
+    /// Formats the number of negative eigenvalues; `>=` marks a count that may be incomplete.
     pub fn unstable(&self) -> String {
         match self.negative() {
             (count, true) => format!("{count}"),
@@ -107,7 +107,7 @@ impl Spectrum {
 }
 
 impl Eigenvalue {
-    /// What the mode is made of, in a table: "2 (97 %), 4 (3 %)".
+    /// Formats the largest shares of circumferential modes, for example `2 (97 %), 4 (3 %)`.
     pub fn content(&self) -> String {
         let parts = self.parts();
         let part = |(n, share): &(usize, f64)| format!("{n} ({:.0} %)", 100.0 * share);

@@ -39,18 +39,16 @@ pub struct Spectra {
     /// States in the order of the path.
     pub states: Vec<Spectrum>,
     /// First unstable state, or else the last one, with the shapes of its modes.
-    pub shown: Option<Shown>,
+    pub shown: Option<StateWithModes>,
     /// Files of the modes, relative to the run directory.
     pub modes: Vec<String>,
-    /// Whether the computation was cancelled before the last state.
-    pub stopped: bool,
 }
 
 /// A state with its modes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub struct StateWithModes {
     /// Index among the states.
-    pub which: usize,
+    pub index: usize,
     /// The state.
     pub state: SavedState,
     /// Eigenvectors, numbered as the unknowns of the state; the largest entry is one.

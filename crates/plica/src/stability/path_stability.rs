@@ -1,12 +1,12 @@
 //! Results of the stability test of an axisymmetric path.
 
-use super::{Quantity, Tested};
+use super::{ModeStability, Quantity};
 use crate::saved_state::SavedState;
 use crate::tube::Load;
 
 /// A tested state of the path: a saved one, or one end of a bracket.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Station {
+pub struct TestedState {
     /// Name of its stage.
     pub stage: String,
     /// Number of the saved state; none for a state between two.
@@ -15,13 +15,13 @@ pub struct Station {
     pub along: f64,
     /// Load of the state.
     pub load: Load,
-    /// Circumferential modes 0, 1, 2, ….
-    pub tested: Vec<Tested>,
+    /// Stability to circumferential modes 0, 1, 2, ….
+    pub modes: Vec<ModeStability>,
 }
 
 /// Character of the path where stability changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum How {
+pub enum Transition {
     /// An eigenvalue passes through zero on a continuous path.
     Smooth,
     /// The path snaps to another branch.
@@ -32,10 +32,10 @@ pub enum How {
 
 /// A change in the number of negative eigenvalues of one circumferential mode.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Change {
+pub struct StabilityChange {
     /// Name of the stage.
     pub stage: String,
-    /// n.
+    /// Circumferential mode n.
     pub harmonic: usize,
     /// Driven quantity.
     pub quantity: Quantity,
@@ -47,12 +47,12 @@ pub struct Change {
     /// Numbers of negative eigenvalues before and after.
     pub negative: [usize; 2],
     /// Character of the path there.
-    pub how: How,
+    pub transition: Transition,
     /// Buckling mode; none where stability is regained or the path snaps.
     pub mode: Option<Mode>,
 }
 
-impl Change {
+impl StabilityChange {
     /// Returns whether stability is lost rather than regained.
     pub fn is_loss(&self) -> bool {
         self.negative[1] > self.negative[0]
@@ -62,7 +62,7 @@ impl Change {
 /// Buckling mode just after the loss of stability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// n.
+    /// Circumferential mode n.
     pub harmonic: usize,
     /// Eigenvalue λ in E/D²: negative and near zero.
     pub eigenvalue: f64,
@@ -75,20 +75,20 @@ pub struct Mode {
 
 /// Stability along a path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stability {
+pub struct PathStability {
     /// Highest circumferential mode tested.
     pub highest: usize,
     /// Largest accepted width of a bracket.
     pub tolerance: f64,
     /// Tested states in the order of the path.
-    pub stations: Vec<Station>,
+    pub states: Vec<TestedState>,
     /// Changes in the order of the path.
-    pub changes: Vec<Change>,
+    pub changes: Vec<StabilityChange>,
 }
 
-impl Stability {
+impl PathStability {
     /// Returns the first loss of stability.
-    pub fn first_loss(&self) -> Option<&Change> {
+    pub fn first_loss(&self) -> Option<&StabilityChange> {
         self.changes.iter().find(|change| change.is_loss())
     }
 

@@ -1,30 +1,30 @@
-//! What is found, as tables.
+//! Tables of the stability of a path.
 
-use super::{Change, How, Stability, Station};
+use super::{PathStability, StabilityChange, TestedState, Transition};
 use crate::equilibrium::{UnstableMode, mode_effect};
 use crate::run_directory::{RunDirectory, RunError};
 use crate::saved_state::Array;
 use crate::tube::Tube;
 use std::fmt::Write;
 
-impl Change {
-    /// Lost, or regained.
+impl StabilityChange {
+    /// Returns `lost` or `regained`.
     pub fn verb(&self) -> &'static str {
         if self.is_loss() { "lost" } else { "regained" }
     }
 
-    /// The critical value with so many digits; a word where there is none.
+    /// Formats the critical value, or says why there is none.
     fn critical(&self, digits: usize) -> String {
-        match self.how {
-            How::Smooth => self.quantity.format(self.critical, digits),
-            How::Snap => "a snap".into(),
-            How::Unfollowed => "unknown".into(),
+        match self.transition {
+            Transition::Smooth => self.quantity.format(self.critical, digits),
+            Transition::Snap => "a snap".into(),
+            Transition::Unfollowed => "unknown".into(),
         }
     }
 }
 
-impl How {
-    /// In one word.
+impl Transition {
+    /// Returns its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Smooth => "smooth",
@@ -34,23 +34,27 @@ impl How {
     }
 }
 
-impl Stability {
-    /// The table of critical values, as the program prints it.
+impl PathStability {
+    /// Returns the table of critical values that `plica stability` prints.
     pub fn table(&self, tube: &Tube) -> String {
         let mut page = String::new();
-        let states = self.stations.iter().filter(|s| s.row.is_some()).count();
+        let states = self.states.iter().filter(|s| s.row.is_some()).count();
         let highest = self.highest;
         if self.changes.is_empty() {
-            let unstable = |s: &&Station| s.tested.iter().any(|t| t.negative > 0);
-            let what = match self.stations.iter().filter(unstable).count() {
-                0 => "stable",
-                _ => "as unstable as at rest",
+            let unstable = |s: &TestedState| s.modes.iter().any(|mode| mode.negative > 0);
+            return if self.states.iter().any(unstable) {
+                format!(
+                    "  all {states} states are unstable to the same of the circumferential modes 0 to {highest}\n"
+                )
+            } else {
+                format!(
+                    "  all {states} states are stable to circumferential modes 0 to {highest}\n"
+                )
             };
-            return format!("  all {states} states are {what}, to harmonics 0 to {highest}\n");
         }
-        let stage = |change: &Change| change.stage.chars().count();
+        let stage = |change: &StabilityChange| change.stage.chars().count();
         let width = self.changes.iter().map(stage).max().unwrap_or(0).max(5);
-        // Digits that the tolerance leaves, and one more.
+        // One digit more than the tolerance.
         let digits = (1.0 - self.tolerance.log10().floor()).clamp(3.0, 12.0) as usize;
         let pressures = self.changes.iter().any(|c| c.quantity.is_pressure());
         let wide = digits + if pressures { 6 } else { 3 };
@@ -62,15 +66,15 @@ impl Stability {
             .max(6);
         let _ = writeln!(
             page,
-            "  {:<width$}  {:>8}  {:<24}  {:<8}  {:>8}  {:<at$}  {:>wide$}  {:>wide$}  {:>wide$}",
-            "stage", "harmonic", "the tube", "", "unstable", "at", "critical", "from", "to",
+            "  {:<width$}  {:>4}  {:<24}  {:<9}  {:>8}  {:<at$}  {:>wide$}  {:>wide$}  {:>wide$}",
+            "stage", "mode", "the tube", "stability", "negative", "at", "critical", "from", "to",
         );
         for change in &self.changes {
             let [before, after] = change.negative;
             let [from, to] = change.between.map(|x| change.quantity.format(x, digits));
             let _ = writeln!(
                 page,
-                "  {:<width$}  {:>8}  {:<24}  {:<8}  {:>8}  {:<at$}  {:>wide$}  {from:>wide$}  {to:>wide$}",
+                "  {:<width$}  {:>4}  {:<24}  {:<9}  {:>8}  {:<at$}  {:>wide$}  {from:>wide$}  {to:>wide$}",
                 change.stage,
                 change.harmonic,
                 mode_effect(change.harmonic),
@@ -84,9 +88,11 @@ impl Stability {
             let name = change.quantity.name(tube);
             let written = |x| change.quantity.format(x, digits);
             let [from, to] = change.between.map(written);
-            let place = match change.how {
-                How::Smooth => format!("{name} = {}", written(change.critical)),
-                how => format!("{name} = {from} to {to} ({})", how.name()),
+            let place = match change.transition {
+                Transition::Smooth => format!("{name} = {}", written(change.critical)),
+                transition => {
+                    format!("{name} = {from} to {to} ({})", transition.name())
+                }
             };
             let n = change.harmonic;
             format!(
@@ -97,14 +103,13 @@ impl Stability {
         let line = |page: &mut String, name: &str, value: &str| {
             let _ = writeln!(page, "  {name:<22} {value}");
         };
-        line(&mut page, "first to go", &first);
-        let tested = format!("{states} states, harmonics 0 to {highest}");
+        line(&mut page, "first loss", &first);
+        let tested = format!("{states} states, circumferential modes 0 to {highest}");
         line(&mut page, "tested", &tested);
         page
     }
 
-    /// Writes `stability.csv`, `eigenvalues.csv` and the modes into the directory of the run;
-    /// gives their names.
+    /// Writes `stability.csv`, `eigenvalues.csv` and the modes into the directory of the run; returns their names.
     ///
     /// # Errors
     /// [`RunError`] if a file cannot be written.
@@ -140,7 +145,7 @@ impl Stability {
         let header = [
             "number",
             "stage",
-            "harmonic",
+            "mode",
             "effect",
             "change",
             "quantity",
@@ -168,7 +173,7 @@ impl Stability {
                 to,
                 format!("{before}"),
                 format!("{after}"),
-                change.how.name().into(),
+                change.transition.name().into(),
             ]);
         }
         rows
@@ -177,17 +182,17 @@ impl Stability {
     fn eigenvalues(&self, tube: &Tube) -> Vec<Vec<String>> {
         let named = ["state", "stage", "along", "length_ratio", "diameter_ratio"];
         let mut header = named.map(str::to_owned).to_vec();
-        for what in ["negative", "lowest"] {
-            header.extend((0..=self.highest).map(|n| format!("{what}_{n}")));
+        for name in ["negative", "lowest"] {
+            header.extend((0..=self.highest).map(|n| format!("{name}_{n}")));
         }
         let mut rows = vec![header];
-        for Station {
+        for TestedState {
             stage,
             row,
             along,
             load,
-            tested,
-        } in &self.stations
+            modes,
+        } in &self.states
         {
             let mut cells = vec![
                 row.map(|row| row.to_string()).unwrap_or_default(),
@@ -196,8 +201,8 @@ impl Stability {
                 format!("{:.9}", tube.length_ratio(load)),
                 format!("{:.9}", tube.diameter_ratio(load)),
             ];
-            cells.extend(tested.iter().map(|tested| tested.negative.to_string()));
-            cells.extend(tested.iter().map(|tested| format!("{:.9e}", tested.lowest)));
+            cells.extend(modes.iter().map(|mode| mode.negative.to_string()));
+            cells.extend(modes.iter().map(|mode| format!("{:.9e}", mode.lowest)));
             rows.push(cells);
         }
         rows
