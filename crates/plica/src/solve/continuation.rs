@@ -42,6 +42,18 @@ pub struct ContinuationState {
     pub velocity: Vec<f64>,
 }
 
+impl ContinuationState {
+    /// Returns that of the start of a segment.
+    pub(super) fn at_start(velocity: Vec<f64>) -> Self {
+        Self {
+            reached: 0.0,
+            halving_level: 0,
+            previous: None,
+            velocity,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

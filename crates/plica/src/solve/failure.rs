@@ -14,33 +14,11 @@ pub enum Failure<E: std::error::Error> {
     /// The energy is not defined at the shortest step that was tried.
     #[error(transparent)]
     Evaluation(E),
-    /// No step lowered the energy.
-    #[error(
-        "no step lowered the energy (residual {relative_residual:.1e} after {linear_solves} solves)"
-    )]
-    NoDescent {
-        /// Linear solves so far.
-        linear_solves: usize,
-        /// Relative residual reached.
-        relative_residual: f64,
-        /// Free unknown with the largest residual.
-        worst_unknown: usize,
-    },
-    /// Successive linear solves missed the required accuracy.
-    #[error(
-        "the linear solver misses the required accuracy (residual {relative_residual:.1e} after {linear_solves} solves)"
-    )]
-    InaccurateSolves {
-        /// Linear solves so far.
-        linear_solves: usize,
-        /// Relative residual reached.
-        relative_residual: f64,
-        /// Free unknown with the largest residual.
-        worst_unknown: usize,
-    },
-    /// The largest admitted number of linear solves did not suffice.
-    #[error("not in equilibrium after {linear_solves} solves (residual {relative_residual:.1e})")]
+    /// The residual is not within the tolerance.
+    #[error("{cause} after {linear_solves} solves (residual {relative_residual:.1e})")]
     NotConverged {
+        /// The reason for giving up.
+        cause: Cause,
         /// Linear solves so far.
         linear_solves: usize,
         /// Relative residual reached.
@@ -66,17 +44,35 @@ pub enum Failure<E: std::error::Error> {
     Cancelled,
 }
 
+/// The reason for giving up before the residual is within the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// No step lowered the energy.
+    NoDescent,
+    /// Successive linear solves missed the required accuracy.
+    InaccurateSolves,
+    /// The largest admitted number of linear solves was reached.
+    SolveLimit,
+}
+
+impl std::fmt::Display for Cause {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::NoDescent => "no step lowered the energy",
+            Self::InaccurateSolves => "the linear solver misses the required accuracy",
+            Self::SolveLimit => "not in equilibrium",
+        })
+    }
+}
+
 impl<E: std::error::Error> Failure<E> {
     /// Returns the unknown at which the failure shows most, if there is one.
     pub fn worst_unknown(&self) -> Option<usize> {
         match self {
-            Self::NoDescent { worst_unknown, .. }
-            | Self::InaccurateSolves { worst_unknown, .. }
-            | Self::NotConverged { worst_unknown, .. }
-            | Self::StillMoving { worst_unknown, .. } => Some(*worst_unknown),
-            Self::Indefinite { .. } | Self::Evaluation(_) | Self::Singular(_) | Self::Cancelled => {
-                None
+            Self::NotConverged { worst_unknown, .. } | Self::StillMoving { worst_unknown, .. } => {
+                Some(*worst_unknown)
             }
+            _ => None,
         }
     }
 }

@@ -2,7 +2,7 @@
 //! K + α C and a line search.
 
 use super::equilibrium::{EQUILIBRIUM, Equilibrium, ResidualEvaluation};
-use super::failure::Failure;
+use super::failure::{Cause, Failure};
 use super::line_search::{LONGEST, LineSearch, largest};
 use super::operator::dot;
 use super::state::{Effort, Solution};
@@ -194,34 +194,13 @@ impl<'a, P: Equilibrium> Iterate<'a, P> {
         }
     }
 
-    /// Returns the failure of too many linear solves.
-    pub fn not_converged(&self, linear_solves: usize) -> Failure<P::EvaluationError> {
+    /// Returns the failure to converge from here.
+    pub fn failure(&self, cause: Cause, linear_solves: usize) -> Failure<P::EvaluationError> {
         Failure::NotConverged {
+            cause,
             linear_solves,
             relative_residual: self.relative_residual,
-            worst_unknown: self.worst_unknown(),
+            worst_unknown: self.forces.worst_unknown(self.problem.prescribed()),
         }
-    }
-
-    /// Returns the failure of a line search.
-    pub fn no_descent(&self, linear_solves: usize) -> Failure<P::EvaluationError> {
-        Failure::NoDescent {
-            linear_solves,
-            relative_residual: self.relative_residual,
-            worst_unknown: self.worst_unknown(),
-        }
-    }
-
-    /// Returns the failure of successive inaccurate linear solves.
-    pub fn inaccurate_solves(&self, linear_solves: usize) -> Failure<P::EvaluationError> {
-        Failure::InaccurateSolves {
-            linear_solves,
-            relative_residual: self.relative_residual,
-            worst_unknown: self.worst_unknown(),
-        }
-    }
-
-    fn worst_unknown(&self) -> usize {
-        self.forces.worst_unknown(self.problem.prescribed())
     }
 }

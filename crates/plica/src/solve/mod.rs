@@ -57,7 +57,7 @@ pub use conjugate_gradients::conjugate_gradients;
 pub use continuation::{ContinuationState, PreviousPoint};
 pub(crate) use equilibrium::EQUILIBRIUM;
 pub use equilibrium::{Equilibrium, ResidualEvaluation};
-pub use failure::Failure;
+pub use failure::{Cause, Failure};
 pub use lowest::{Lowest, Search, lowest};
 pub use newton::newton;
 pub use operator::Operator;

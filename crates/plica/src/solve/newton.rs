@@ -1,7 +1,7 @@
 //! Newton's method with a line search.
 
 use super::equilibrium::Equilibrium;
-use super::failure::Failure;
+use super::failure::{Cause, Failure};
 use super::forcing::Forcing;
 use super::iterate::{Iterate, LinearStep};
 use super::line_search::LineSearch;
@@ -37,7 +37,7 @@ pub fn newton<P: Equilibrium>(
     let (mut solves, mut inaccurate) = (0, 0);
     while !now.converged(settings.tolerance) {
         if solves == settings.newton_iterations {
-            return Err(now.not_converged(solves));
+            return Err(now.failure(Cause::SolveLimit, solves));
         }
         let solver = now.tangent().into_shifted(0.0)?;
         let accuracy = forcing.accuracy(now.relative_residual);
@@ -55,12 +55,12 @@ pub fn newton<P: Equilibrium>(
         inaccurate = if accurate { 0 } else { inaccurate + 1 };
         if inaccurate == INACCURATE_SOLVES {
             report(monitor, Method::Newton, solves, now.relative_residual)?;
-            return Err(now.inaccurate_solves(solves));
+            return Err(now.failure(Cause::InaccurateSolves, solves));
         }
         let (length, next) = match now.search(&step, LineSearch::Armijo) {
             Ok(found) => found,
             Err(None) if now.in_equilibrium() => break, // Rounding hides the decrease.
-            Err(None) => return Err(now.no_descent(solves)),
+            Err(None) => return Err(now.failure(Cause::NoDescent, solves)),
             Err(Some(error)) => return Err(Failure::Evaluation(error)),
         };
         report(monitor, Method::Newton, solves, next.relative_residual)?;

@@ -2,7 +2,7 @@
 
 use super::continuation::{ContinuationState, PreviousPoint};
 use super::equilibrium::{Equilibrium, ResidualEvaluation};
-use super::failure::Failure;
+use super::failure::{Cause, Failure};
 use super::newton::newton;
 use super::pseudo_time::pseudo_time;
 use super::relaxation::relaxation;
@@ -31,11 +31,7 @@ pub struct Path<P: Equilibrium> {
     tangent: Option<Option<Vec<f64>>>,
     from: P::Load,
     to: P::Load,
-    /// What else [`ContinuationState`] holds.
-    reached: f64,
-    previous: Option<PreviousPoint>,
-    halving_level: usize,
-    velocity: Vec<f64>,
+    continuation: ContinuationState,
 }
 
 type SolverOf<P> = <<P as Equilibrium>::Tangent as Tangent>::Solver;
@@ -51,21 +47,14 @@ pub struct Step {
     pub damping_work: f64,
 }
 
-impl Step {
-    fn new(method: Method) -> Self {
-        Self {
-            method,
-            effort: Effort::default(),
-            damping_work: 0.0,
-        }
-    }
-}
+/// Methods that were tried in order, with their failures.
+type Attempts<E> = Vec<(Method, Failure<E>)>;
 
 /// The end of a path: all attempts to continue from its last state failed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathError<E: std::error::Error> {
     /// The attempts in their order, with their failures.
-    pub attempts: Vec<(Method, Failure<E>)>,
+    pub attempts: Attempts<E>,
     /// Method and work up to the last accepted state, and the work of the attempts.
     pub step: Step,
 }
@@ -77,9 +66,8 @@ impl<E: std::error::Error> PathError<E> {
     }
 }
 
-fn is_cancelled<E: std::error::Error>(attempts: &[(Method, Failure<E>)]) -> bool {
-    let mut failures = attempts.iter().map(|(_, failure)| failure);
-    failures.any(|failure| matches!(failure, Failure::Cancelled))
+fn is_cancelled<E: std::error::Error>(attempts: &Attempts<E>) -> bool {
+    matches!(attempts.last(), Some((_, Failure::Cancelled)))
 }
 
 impl<E: std::error::Error> std::fmt::Display for PathError<E> {
@@ -107,7 +95,7 @@ impl<P: Equilibrium> Path<P> {
         settings: Settings,
     ) -> Result<Self, P::EvaluationError> {
         let forces = problem.forces(&load, &u)?;
-        let velocity = vec![0.0; u.len()];
+        let continuation = ContinuationState::at_start(vec![0.0; u.len()]);
         let (state, solver) = accepted(&problem, load.clone(), u, &forces);
         Ok(Self {
             problem,
@@ -117,10 +105,7 @@ impl<P: Equilibrium> Path<P> {
             tangent: None,
             from: load.clone(),
             to: load,
-            reached: 0.0,
-            previous: None,
-            halving_level: 0,
-            velocity,
+            continuation,
         })
     }
 
@@ -140,22 +125,14 @@ impl<P: Equilibrium> Path<P> {
         Ok(Self {
             from,
             to,
-            reached: continuation.reached,
-            previous: continuation.previous,
-            halving_level: continuation.halving_level,
-            velocity: continuation.velocity,
+            continuation,
             ..Self::begin(problem, load, u, settings)?
         })
     }
 
     /// Returns what [`Path::resume`] needs beside the last accepted state.
     pub fn continuation_state(&self) -> ContinuationState {
-        ContinuationState {
-            reached: self.reached,
-            halving_level: self.halving_level,
-            previous: self.previous.clone(),
-            velocity: self.velocity.clone(),
-        }
+        self.continuation.clone()
     }
 
     /// Returns the last accepted state.
@@ -175,13 +152,14 @@ impl<P: Equilibrium> Path<P> {
 
     /// Begins a segment from the load of the last accepted state to another.
     pub fn begin_segment(&mut self, to: P::Load) {
-        (self.from, self.to, self.reached) = (self.state.load.clone(), to, 0.0);
-        (self.tangent, self.previous, self.halving_level) = (None, None, 0);
+        (self.from, self.to, self.tangent) = (self.state.load.clone(), to, None);
+        let velocity = std::mem::take(&mut self.continuation.velocity);
+        self.continuation = ContinuationState::at_start(velocity);
     }
 
     /// Returns the position of the last accepted state on its segment, 0 to 1.
     pub fn reached(&self) -> f64 {
-        self.reached
+        self.continuation.reached
     }
 
     /// Advances to position `t` of the segment, through intermediate states if need be.
@@ -194,20 +172,20 @@ impl<P: Equilibrium> Path<P> {
         t: f64,
         monitor: &mut dyn Monitor,
     ) -> Result<Step, PathError<P::EvaluationError>> {
+        let mut step = Step {
+            method: Method::Newton,
+            effort: Effort::default(),
+            damping_work: 0.0,
+        };
         let advanced = match self.settings.scheme.clone() {
-            Scheme::Static => {
-                let mut step = Step::new(Method::Newton);
-                (self.advance_static(t, &mut step, monitor), step)
-            }
-            Scheme::PseudoTime(scheme) => {
-                let mut step = Step::new(Method::PseudoTime);
-                let advanced = self.advance_damped(t, &scheme, &mut step, monitor);
-                (advanced.map_err(|failed| vec![failed]), step)
-            }
+            Scheme::Static => self.advance_static(t, &mut step, monitor),
+            Scheme::PseudoTime(scheme) => self
+                .advance_damped(t, &scheme, &mut step, monitor)
+                .map_err(|attempt| vec![attempt]),
         };
         match advanced {
-            (Ok(()), step) => Ok(step),
-            (Err(attempts), step) => Err(PathError { attempts, step }),
+            Ok(()) => Ok(step),
+            Err(attempts) => Err(PathError { attempts, step }),
         }
     }
 
@@ -217,14 +195,15 @@ impl<P: Equilibrium> Path<P> {
         target: f64,
         step: &mut Step,
         monitor: &mut dyn Monitor,
-    ) -> Result<(), Vec<(Method, Failure<P::EvaluationError>)>> {
+    ) -> Result<(), Attempts<P::EvaluationError>> {
         let max_level = self.settings.max_step_halvings;
-        let mut parts = StepController::new([self.reached, target], self.halving_level, max_level);
+        let level = self.continuation.halving_level;
+        let mut parts = StepController::new([self.reached(), target], level, max_level);
         while let Some(t) = parts.next() {
             match self.try_methods(t, parts.halves_before_relaxation(), step, monitor) {
                 Ok(()) => {
                     parts.accept();
-                    self.halving_level = parts.level();
+                    self.continuation.halving_level = parts.level();
                 }
                 Err(attempts) => {
                     if is_cancelled(&attempts) || !parts.halve() {
@@ -245,14 +224,20 @@ impl<P: Equilibrium> Path<P> {
         may_halve: bool,
         step: &mut Step,
         monitor: &mut dyn Monitor,
-    ) -> Result<(), Vec<(Method, Failure<P::EvaluationError>)>> {
+    ) -> Result<(), Attempts<P::EvaluationError>> {
         let Err(failed) = self.try_newton(t, step, monitor) else {
             return Ok(());
         };
-        let inaccurate = matches!(failed, Failure::InaccurateSolves { .. });
-        let cancelled = matches!(failed, Failure::Cancelled);
+        let ends_attempt = match failed {
+            Failure::Cancelled => true,
+            Failure::NotConverged {
+                cause: Cause::InaccurateSolves,
+                ..
+            } => false,
+            _ => may_halve && self.state.negative_pivots == 0,
+        };
         let mut attempts = vec![(Method::Newton, failed)];
-        if cancelled || (may_halve && !inaccurate && self.state.negative_pivots == 0) {
+        if ends_attempt {
             return Err(attempts);
         }
         self.try_relaxation(t, step, monitor).map_err(|failed| {
@@ -283,12 +268,12 @@ impl<P: Equilibrium> Path<P> {
         let (settings, effort) = (&self.settings, &mut step.effort);
         let found = newton(&self.problem, &load, start, settings, effort, monitor)?;
         let previous = tangent.map(|tangent| PreviousPoint {
-            t: self.reached,
+            t: self.continuation.reached,
             u: self.state.u.clone(),
             tangent,
         });
         self.accept(t, load, found, step);
-        self.previous = previous;
+        self.continuation.previous = previous;
         Ok(())
     }
 
@@ -304,7 +289,7 @@ impl<P: Equilibrium> Path<P> {
         let mut start = self.state.u.clone();
         self.problem.apply_prescribed(&load, &mut start);
         if start != self.state.u {
-            self.previous = None;
+            self.continuation.previous = None;
             let tangent = self.tangent(&mut step.effort, monitor);
             start = self.predict(t, &load, tangent.as_deref());
         }
@@ -312,7 +297,7 @@ impl<P: Equilibrium> Path<P> {
         let (settings, effort) = (&self.settings, &mut step.effort);
         let found = relaxation(&self.problem, &load, start, settings, effort, monitor)?;
         self.accept(t, load, found, step);
-        self.previous = None;
+        self.continuation.previous = None;
         step.method = Method::Relaxation;
         Ok(())
     }
@@ -326,11 +311,12 @@ impl<P: Equilibrium> Path<P> {
         step: &mut Step,
         monitor: &mut dyn Monitor,
     ) -> Result<(), (Method, Failure<P::EvaluationError>)> {
+        step.method = Method::PseudoTime;
         self.solver = None;
         let load = self.load_at(t);
         let (problem, settings, effort) = (&self.problem, &self.settings, &mut step.effort);
         let loads = [&self.state.load, &load];
-        let start = (self.state.u.clone(), self.velocity.clone());
+        let start = (self.state.u.clone(), self.continuation.velocity.clone());
         let (mut found, mut velocity) =
             pseudo_time(problem, loads, start, scheme, settings, effort, monitor)
                 .map_err(|failed| (Method::PseudoTime, failed))?;
@@ -341,7 +327,7 @@ impl<P: Equilibrium> Path<P> {
             found = relaxation(problem, &load, found.u, settings, effort, monitor)
                 .map_err(|failed| (Method::Relaxation, failed))?;
         }
-        self.velocity = velocity;
+        self.continuation.velocity = velocity;
         self.accept(t, load, found, step);
         Ok(())
     }
@@ -354,7 +340,7 @@ impl<P: Equilibrium> Path<P> {
         step.effort.linear_solves += 1;
         step.damping_work += found.damping_work;
         (self.state, self.solver) = accepted(&self.problem, load, found.u, &found.forces);
-        (self.tangent, self.reached) = (None, t);
+        (self.tangent, self.continuation.reached) = (None, t);
     }
 
     /// Returns du/dt at the state. None if the tangent stiffness is singular, the residual is not
@@ -383,8 +369,8 @@ impl<P: Equilibrium> Path<P> {
             let forces = problem.forces(&load, u).ok()?;
             Some((forces.residual, moved))
         };
-        let (after, moved_after) = at(self.reached + DIFFERENCE)?;
-        let (before, moved_before) = at(self.reached - DIFFERENCE)?;
+        let (after, moved_after) = at(self.continuation.reached + DIFFERENCE)?;
+        let (before, moved_before) = at(self.continuation.reached - DIFFERENCE)?;
         let slope = |a: &[f64], b: &[f64]| -> Vec<f64> {
             let pairs = a.iter().zip(b);
             pairs.map(|(a, b)| (a - b) / (2.0 * DIFFERENCE)).collect()
@@ -418,7 +404,7 @@ impl<P: Equilibrium> Path<P> {
     /// Predicts u at `t`: along the tangent, or along the cubic through the previous point and the
     /// state, whichever has the smaller residual.
     fn predict(&self, t: f64, load: &P::Load, tangent: Option<&[f64]>) -> Vec<f64> {
-        let (problem, u, ahead) = (&self.problem, &self.state.u, t - self.reached);
+        let (problem, u, ahead) = (&self.problem, &self.state.u, t - self.continuation.reached);
         let prescribed = |mut u: Vec<f64>| {
             problem.apply_prescribed(load, &mut u);
             u
@@ -427,10 +413,10 @@ impl<P: Equilibrium> Path<P> {
             return prescribed(u.clone());
         };
         let line = prescribed(u.iter().zip(tangent).map(|(u, v)| u + ahead * v).collect());
-        let Some(previous) = &self.previous else {
+        let Some(previous) = &self.continuation.previous else {
             return line;
         };
-        let cubic = prescribed(previous.extrapolate(self.reached, u, tangent, t));
+        let cubic = prescribed(previous.extrapolate(self.continuation.reached, u, tangent, t));
         let relative_residual = |u: &[f64]| {
             let forces = problem.forces(load, u);
             forces.map_or(f64::INFINITY, |forces| {

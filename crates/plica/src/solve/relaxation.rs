@@ -2,7 +2,7 @@
 
 use super::damping_controller::{AcceptedStep, DampingController};
 use super::equilibrium::Equilibrium;
-use super::failure::Failure;
+use super::failure::{Cause, Failure};
 use super::forcing::Forcing;
 use super::iterate::{Iterate, LinearStep};
 use super::line_search::LineSearch;
@@ -53,10 +53,12 @@ pub fn relaxation<P: Equilibrium>(
     let (mut rejections, mut undefined) = (0, None);
     while !now.converged(settings.tolerance) {
         if damping.is_exhausted() {
-            return Err(undefined.map_or(now.no_descent(solves), Failure::Evaluation));
+            return Err(
+                undefined.map_or(now.failure(Cause::NoDescent, solves), Failure::Evaluation)
+            );
         }
         if solves == settings.relaxation_steps {
-            return Err(now.not_converged(solves));
+            return Err(now.failure(Cause::SolveLimit, solves));
         }
         let K = tangent.take().unwrap_or_else(|| now.tangent());
         solves += 1;

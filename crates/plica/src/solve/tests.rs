@@ -501,7 +501,8 @@ fn relaxation_takes_over_at_once_where_linear_solves_are_inaccurate() {
     let failed = newton_from(&springs, &0.5, [0.0; 2]).unwrap_err();
     let expected = matches!(
         failed,
-        Failure::InaccurateSolves {
+        Failure::NotConverged {
+            cause: Cause::InaccurateSolves,
             linear_solves: 2,
             ..
         }
