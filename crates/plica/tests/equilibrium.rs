@@ -1,4 +1,5 @@
-//! Equilibria of whole tubes, held against closed forms, against each other, and against orders.
+//! Equilibria of whole tubes, compared with closed forms, with each other, and with orders of
+//! convergence.
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
@@ -22,8 +23,8 @@ fn muscle(direction: Direction, zone: [f64; 2], profile: Profile) -> Muscle {
     }
 }
 
-/// As active everywhere in its zone.
-fn even() -> Profile {
+/// Activation 1 everywhere in the zone.
+fn uniform() -> Profile {
     Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)])
 }
 
@@ -38,7 +39,7 @@ fn tube(length: f64, muscles: Vec<Muscle>, ends: Support) -> Tube {
     }
 }
 
-/// Elements along, around and through.
+/// Returns the mesh of so many elements along, around and through the wall.
 fn mesh(degree: usize, [along, around, through]: [usize; 3]) -> Mesh {
     Mesh {
         axial: along + degree,
@@ -54,8 +55,8 @@ fn problem(tube: &Tube, mesh: &Mesh, rings: usize) -> TubeProblem {
     TubeProblem::new(SplineTube::new(tube, mesh, rings))
 }
 
-/// The state at the end of legs from rest, each walked in equal steps.
-fn lead(problem: &TubeProblem, settings: Settings, segments: &[(Load, usize)]) -> State<Load> {
+/// Returns the state at the end of segments from rest, each divided into equal steps.
+fn follow(problem: &TubeProblem, settings: Settings, segments: &[(Load, usize)]) -> State<Load> {
     let rest = problem.tube.tube.rest();
     let zero = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(problem, rest, zero, settings).unwrap();
@@ -79,25 +80,25 @@ fn position(
     problem.tube.sample(&state.load, &state.u, point).position
 }
 
-/// The current distance of a point of the wall from the axis.
+/// Returns the current distance of a point of the wall from the axis.
 fn radius(problem: &TubeProblem, state: &State<Load>, z: f64, radius: f64) -> f64 {
     let [_, x, y] = position(problem, state, z, radius, 0.0);
     x.hypot(y)
 }
 
-/// The reference volume of the tube as its splines draw it: e_z · C e_z integrates one.
+/// Returns the volume of the undeformed splines, e_z · C e_z.
 fn volume(problem: &TubeProblem) -> f64 {
     let (n, rings) = (problem.tube.unknowns(), problem.tube.sector.rings);
     let shift: Vec<f64> = (0..n)
         .map(|i| f64::from(u8::from(i / rings % 3 == 0))) // axial components
         .collect();
-    let mut weighed = vec![0.0; n];
-    problem.damping(1.0, &shift, &mut weighed);
-    let sector: f64 = shift.iter().zip(&weighed).map(|(u, c)| u * c).sum();
+    let mut product = vec![0.0; n];
+    problem.damping(1.0, &shift, &mut product);
+    let sector: f64 = shift.iter().zip(&product).map(|(u, c)| u * c).sum();
     sector * problem.tube.sector.repeats()
 }
 
-/// W of the whole tube.
+/// Returns the energy of the whole tube.
 fn whole_energy(problem: &TubeProblem, state: &State<Load>) -> f64 {
     problem.tube.forces(&state.load, &state.u).unwrap().energy
 }
@@ -106,7 +107,7 @@ fn relative(a: f64, b: f64) -> f64 {
     (a / b - 1.0).abs()
 }
 
-/// Energies that need more digits than a residual of 1e-8 gives.
+/// Returns settings for energies with more digits than a residual of 1e-8 gives.
 fn tight() -> Settings {
     Settings {
         tolerance: 1e-11,
@@ -115,8 +116,8 @@ fn tight() -> Settings {
 }
 
 #[test]
-fn a_free_tube_that_relaxes_evenly_grows_and_stays_free_of_stress() {
-    let along = muscle(Direction::Longitudinal, [0.0, 1.0], even());
+fn a_free_tube_under_uniform_growth_is_free_of_stress() {
+    let along = muscle(Direction::Longitudinal, [0.0, 1.0], uniform());
     let tube = tube(1.0, vec![along], Support::Free);
     for rings in [1, 3, 12] {
         let problem = problem(&tube, &mesh(3, [6, 12, 2]), rings);
@@ -124,16 +125,16 @@ fn a_free_tube_that_relaxes_evenly_grows_and_stays_free_of_stress() {
             muscles: vec![1.3],
             ..tube.rest()
         };
-        let state = lead(&problem, tight(), &[(grown, 2)]);
+        let state = follow(&problem, tight(), &[(grown, 2)]);
         let energy = whole_energy(&problem, &state);
-        // Each w is a difference of numbers of order one: rounding, over a volume of 0.08.
+        // Energy densities are differences of numbers of order one, over a volume of 0.08.
         assert!(energy.abs() < 1e-16, "{rings} rings: {energy}");
         assert_eq!(state.negative_pivots, 0);
         for angle in [0.2, 2.0, 4.5] {
-            let colon = position(&problem, &state, 0.0, 0.5, angle);
-            let ileum = position(&problem, &state, 1.0, 0.5, angle);
+            let begin = position(&problem, &state, 0.0, 0.5, angle);
+            let end = position(&problem, &state, 1.0, 0.5, angle);
             let length = (0..3)
-                .map(|i| (ileum[i] - colon[i]).powi(2))
+                .map(|i| (end[i] - begin[i]).powi(2))
                 .sum::<f64>()
                 .sqrt();
             assert!((length - 1.3).abs() < 1e-9, "{rings} rings: {length}");
@@ -142,10 +143,10 @@ fn a_free_tube_that_relaxes_evenly_grows_and_stays_free_of_stress() {
 }
 
 #[test]
-fn a_ring_that_contracts_evenly_has_the_closed_form_s_radii_and_energy() {
-    // Plane strain, E = 1, nu = 0.495, from 0.44 to 0.5; a one-dimensional solution to the digits
-    // shown. Per case: the grown ratio, inner and outer radius, energy per length.
-    let around = muscle(Direction::Circular, [0.0, 0.2], even());
+fn a_uniformly_contracted_ring_has_the_radii_and_energy_of_the_closed_form() {
+    // Plane strain, E = 1, nu = 0.495, radii 0.44 and 0.5; digits of a one-dimensional solution. Per
+    // case: growth stretch, inner and outer radius, energy per length.
+    let around = muscle(Direction::Circular, [0.0, 0.2], uniform());
     let tube = tube(0.2, vec![around], Support::Sliding);
     let problem = problem(&tube, &mesh(3, [3, 60, 12]), 1);
     for (ratio, inner, outer, energy) in [
@@ -156,7 +157,7 @@ fn a_ring_that_contracts_evenly_has_the_closed_form_s_radii_and_energy() {
             muscles: vec![ratio],
             ..tube.rest()
         };
-        let state = lead(&problem, tight(), &[(contracted, 5)]);
+        let state = follow(&problem, tight(), &[(contracted, 5)]);
         for z in [0.0, 0.07, 0.2] {
             // The spline circle is round to 3.1e-7.
             let (a, b) = (
@@ -167,12 +168,12 @@ fn a_ring_that_contracts_evenly_has_the_closed_form_s_radii_and_energy() {
             assert!(relative(b, outer) < 4e-7, "{ratio}: outer radius {b}");
         }
         let per_length = whole_energy(&problem, &state) / 0.2;
-        // Off by 1.2e-7 with half as many elements through the wall, and falling with h⁶.
+        // The error is 1.2e-7 with half as many elements through the wall, and of order h⁶.
         assert!(relative(per_length, energy) < 2e-8, "{ratio}: {per_length}");
     }
 }
 
-/// Contraction and relaxation of one zone, as in the paper's main case but less.
+/// Contraction and relaxation of one zone, less than in the main case of the paper.
 fn main_case() -> (Tube, [(Load, usize); 2]) {
     let zone = [0.5, 1.0];
     let muscles = vec![
@@ -189,7 +190,7 @@ fn main_case() -> (Tube, [(Load, usize); 2]) {
 }
 
 #[test]
-fn the_main_case_is_the_same_for_every_sector() {
+fn the_energy_does_not_depend_on_the_number_of_rings_in_a_sector() {
     let (tube, segments) = main_case();
     let mesh = Mesh {
         axial: 60,
@@ -205,24 +206,24 @@ fn the_main_case_is_the_same_for_every_sector() {
     };
     let energy = |rings: usize| {
         let problem = problem(&tube, &mesh, rings);
-        whole_energy(&problem, &lead(&problem, tight(), &segments))
+        whole_energy(&problem, &follow(&problem, tight(), &segments))
     };
     let one = energy(1);
     for rings in [2, 3] {
-        // The energy is off by the square of what the residual leaves.
+        // The error of the energy is the square of that of the residual.
         let off = relative(energy(rings), one);
         assert!(off < 1e-10, "{rings} rings: {off:e}");
     }
 }
 
 #[test]
-fn the_energy_that_the_solver_sees_has_the_residual_as_its_slope() {
-    // With drag the solver adds energies of its own, so the factor counts, for every sector.
+fn the_residual_is_the_derivative_of_the_energy() {
+    // In every sector with the same factor, since damping adds energies of its own.
     let (tube, segments) = main_case();
     let load = &segments[1].0;
     for rings in [1, 3, 6] {
         let problem = problem(&tube, &mesh(3, [24, 6, 1]), rings);
-        let state = lead(&problem, tight(), &segments[..1]);
+        let state = follow(&problem, tight(), &segments[..1]);
         let direction: Vec<f64> = (0..state.u.len()).map(|i| (0.3 * i as f64).sin()).collect();
         let at = |h: f64| {
             let moved = state.u.iter().zip(&direction).map(|(u, d)| u + h * d);
@@ -248,7 +249,7 @@ impl Monitor for Residuals {
 }
 
 #[test]
-fn newton_squares_the_residual_at_the_end() {
+fn newton_converges_quadratically() {
     let (tube, [(contracted, _), _]) = main_case();
     let problem = problem(&tube, &mesh(3, [60, 12, 2]), 1);
     let zero = vec![0.0; problem.tube.unknowns()];
@@ -260,27 +261,27 @@ fn newton_squares_the_residual_at_the_end() {
         path.advance(t, &mut residuals).unwrap();
         for pair in residuals.0.windows(2) {
             let [before, after] = [pair[0], pair[1]];
-            // From where the square rules to where rounding does.
+            // Between the linear range and rounding.
             if before < 0.1 && after > 1e-11 {
                 assert!(after < 100.0 * before * before, "{:?}", residuals.0);
                 pairs += 1;
             }
         }
     }
-    assert!(pairs >= 4, "only {pairs} solves to judge by");
+    assert!(pairs >= 4, "only {pairs} pairs");
 }
 
 #[test]
-fn the_paper_s_scheme_arrives_where_newton_does() {
+fn pseudo_time_reaches_the_same_states_as_newton() {
     let (tube, _) = main_case();
     let problem = problem(&tube, &mesh(3, [24, 12, 1]), 1);
     let load = |circular, longitudinal| Load {
         muscles: vec![circular, longitudinal],
         ..tube.rest()
     };
-    // Every step is ramped over ten of pseudo-time.
+    // Every step is ramped over ten pseudo-time steps.
     let segments = [(load(0.9, 1.0), 5), (load(0.9, 1.01), 2)];
-    let direct = lead(&problem, tight(), &segments);
+    let direct = follow(&problem, tight(), &segments);
     for integrator in [Integrator::Newmark, Integrator::BackwardEuler] {
         let scheme = Scheme::PseudoTime(PseudoTime {
             integrator,
@@ -290,7 +291,7 @@ fn the_paper_s_scheme_arrives_where_newton_does() {
             scheme,
             ..Settings::default()
         };
-        let damped = lead(&problem, settings, &segments);
+        let damped = follow(&problem, settings, &segments);
         let [damped, direct] = [&damped, &direct].map(|state| whole_energy(&problem, state));
         let off = relative(damped, direct);
         assert!(off < 1e-9, "{integrator:?}: {off:e}");
@@ -298,9 +299,9 @@ fn the_paper_s_scheme_arrives_where_newton_does() {
 }
 
 #[test]
-fn a_pulled_tube_is_a_bar_under_uniaxial_stress() {
-    // P = μ (λt − 1/λt) + Λ ln J / λt across, J = λ λt²: Newton for the stretch λt at which the
-    // lateral surfaces are free, then w times the volume.
+fn a_pulled_tube_is_under_uniaxial_stress() {
+    // The lateral stress P = μ (λt − 1/λt) + Λ ln J / λt with J = λ λt² vanishes at the lateral
+    // stretch λt, found by Newton's method; the energy is w times the volume.
     let (E, nu, lambda) = (1.0, 0.495, 1.1_f64);
     let (mu, Lame) = (
         E / (2.0 * (1.0 + nu)),
@@ -321,14 +322,14 @@ fn a_pulled_tube_is_a_bar_under_uniaxial_stress() {
     pulled.ends[1].displacement = 0.15;
     for (degree, rings) in [(1, 1), (2, 1), (3, 1), (3, 4), (3, 24)] {
         let problem = problem(&tube, &mesh(degree, [2, 24, 1]), rings);
-        let state = lead(&problem, tight(), &[(pulled.clone(), 2)]);
-        // A whole tube is held sideways at one point of it only, so its diameter is looked at.
+        let state = follow(&problem, tight(), &[(pulled.clone(), 2)]);
+        // A whole tube is fixed laterally at one point only, so diameters are compared.
         let diameter = |state: &State<Load>| {
             let [_, x0, y0] = position(&problem, state, 0.7, 0.5, 0.0);
             let [_, x1, y1] = position(&problem, state, 0.7, 0.5, PI);
             (x1 - x0).hypot(y1 - y0)
         };
-        let rest = lead(&problem, tight(), &[]);
+        let rest = follow(&problem, tight(), &[]);
         let ratio = diameter(&state) / diameter(&rest);
         let name = format!("degree {degree}, {rings} rings");
         assert!(relative(ratio, lateral) < 1e-9, "{name}: {ratio}");
@@ -347,22 +348,22 @@ fn a_twisted_tube_has_the_torsional_stiffness_of_saint_venant() {
     let off = |twist: f64| {
         let mut twisted = tube.rest();
         twisted.ends[1].twist = twist;
-        let state = lead(&problem, tight(), &[(twisted, 1)]);
-        // Every cross-section turns by its share.
+        let state = follow(&problem, tight(), &[(twisted, 1)]);
+        // The rotation of a cross-section is proportional to its position.
         let [_, x, y] = position(&problem, &state, 0.25, 0.47, 0.0);
         assert!((y.atan2(x) - 0.25 * twist).abs() < 0.1 * twist.powi(3));
         whole_energy(&problem, &state) / (0.5 * stiffness * twist * twist) - 1.0
     };
-    // Exact for small angles; the rest grows with the square of the angle.
+    // Exact for small angles; the error grows with the square of the angle.
     assert!(off(0.02).abs() < 1e-4, "{:e}", off(0.02));
     let order = (off(0.1) / off(0.05)).log2();
     assert!((order - 2.0).abs() < 0.05, "order {order}");
 }
 
 #[test]
-fn the_energy_converges_with_twice_the_degree() {
-    // Sliding ends are planes of mirror symmetry and the profile is even about them: the solution
-    // is smooth. A compressible wall, so that straight elements do not lock.
+fn the_order_of_convergence_of_the_energy_is_twice_the_degree() {
+    // Sliding ends are planes of symmetry and the profile is even about them, so the solution is
+    // smooth. The wall is compressible, so that linear elements do not lock.
     let length = 1.0;
     let around = muscle(Direction::Circular, [0.0, length], Profile::RaisedCosine);
     let tube = Tube {
@@ -380,7 +381,7 @@ fn the_energy_converges_with_twice_the_degree() {
             let problem = problem(&tube, &mesh(degree, [2 * n, 24, n / 2]), 1);
             whole_energy(
                 &problem,
-                &lead(&problem, tight(), &[(contracted.clone(), 1)]),
+                &follow(&problem, tight(), &[(contracted.clone(), 1)]),
             )
         };
         let w = [energy(0), energy(1), energy(2)];

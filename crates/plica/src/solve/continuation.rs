@@ -1,4 +1,4 @@
-//! What a path keeps of the way behind its state.
+//! The state of a path beside its accepted state.
 
 /// The state before the current one, with the tangent du/dt of the path there.
 #[derive(Clone, Debug, PartialEq)]

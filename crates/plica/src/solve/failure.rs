@@ -66,6 +66,15 @@ impl std::fmt::Display for Cause {
 }
 
 impl<E: std::error::Error> Failure<E> {
+    /// Returns the linear solves that the failure counts: 1 of an indefinite tangent.
+    pub(super) fn linear_solves(&self) -> usize {
+        match self {
+            Self::NotConverged { linear_solves, .. } => *linear_solves,
+            Self::Indefinite { .. } => 1,
+            _ => 0,
+        }
+    }
+
     /// Returns the unknown at which the failure shows most, if there is one.
     pub fn worst_unknown(&self) -> Option<usize> {
         match self {

@@ -42,7 +42,6 @@ pub fn newton<P: Equilibrium>(
         let solver = now.tangent().into_shifted(0.0)?;
         let accuracy = forcing.accuracy(now.relative_residual);
         solves += 1;
-        effort.linear_solves += 1;
         let (step, accurate) = match now.solve(solver, accuracy, effort, monitor) {
             LinearStep::Descent { step, accurate } => (step, accurate),
             LinearStep::Indefinite { negative_pivots } => {
@@ -73,5 +72,6 @@ pub fn newton<P: Equilibrium>(
             break;
         }
     }
+    effort.linear_solves += solves;
     Ok(now.into_solution(0.0))
 }

@@ -17,8 +17,7 @@ pub trait Operator {
     fn metric(&self, v: &[f64], out: &mut [f64]);
 }
 
-/// Projects `v` to what supports leave free: sets prescribed unknowns to zero, and takes out constrained
-/// combinations.
+/// Sets prescribed unknowns to zero, and projects out constrained combinations.
 pub(super) fn project<O: Operator>(operator: &O, v: &mut [f64]) {
     for (x, &prescribed) in v.iter_mut().zip(operator.prescribed()) {
         if prescribed {

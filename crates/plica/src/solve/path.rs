@@ -41,7 +41,7 @@ type SolverOf<P> = <<P as Equilibrium>::Tangent as Tangent>::Solver;
 pub struct Step {
     /// The method that found it.
     pub method: Method,
-    /// Work of the solvers. Each accepted state adds one linear solve for its own tangent.
+    /// Work of the solvers.
     pub effort: Effort,
     /// Energy dissipated by damping.
     pub damping_work: f64,
@@ -266,7 +266,8 @@ impl<P: Equilibrium> Path<P> {
         let start = self.predict(t, &load, tangent.as_deref());
         self.solver = None;
         let (settings, effort) = (&self.settings, &mut step.effort);
-        let found = newton(&self.problem, &load, start, settings, effort, monitor)?;
+        let found = newton(&self.problem, &load, start, settings, effort, monitor)
+            .inspect_err(|failed| effort.linear_solves += failed.linear_solves())?;
         let previous = tangent.map(|tangent| PreviousPoint {
             t: self.continuation.reached,
             u: self.state.u.clone(),
@@ -295,7 +296,8 @@ impl<P: Equilibrium> Path<P> {
         }
         self.solver = None;
         let (settings, effort) = (&self.settings, &mut step.effort);
-        let found = relaxation(&self.problem, &load, start, settings, effort, monitor)?;
+        let found = relaxation(&self.problem, &load, start, settings, effort, monitor)
+            .inspect_err(|failed| effort.linear_solves += failed.linear_solves())?;
         self.accept(t, load, found, step);
         self.continuation.previous = None;
         step.method = Method::Relaxation;
@@ -431,7 +433,7 @@ impl<P: Equilibrium> Path<P> {
     }
 }
 
-/// Makes a state of a solution, with the solver of its tangent, which may show that it is unstable.
+/// Returns the state of a solution and the solver of its tangent.
 fn accepted<P: Equilibrium>(
     problem: &P,
     load: P::Load,

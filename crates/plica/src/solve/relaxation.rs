@@ -62,7 +62,6 @@ pub fn relaxation<P: Equilibrium>(
         }
         let K = tangent.take().unwrap_or_else(|| now.tangent());
         solves += 1;
-        effort.linear_solves += 1;
         let step = K
             .shifted(damping.alpha())
             .map(|solver| now.solve(solver, accuracy, effort, monitor));
@@ -107,6 +106,7 @@ pub fn relaxation<P: Equilibrium>(
         }
         report(monitor, Method::Relaxation, solves, now.relative_residual)?;
     }
+    effort.linear_solves += solves;
     Ok(now.into_solution(damping_work))
 }
 

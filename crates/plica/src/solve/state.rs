@@ -1,4 +1,4 @@
-//! States, how they were found, and at what cost.
+//! Accepted states, solutions, and the effort of finding them.
 
 use super::equilibrium::{EQUILIBRIUM, ResidualEvaluation};
 use super::failure::Failure;
@@ -65,12 +65,13 @@ impl fmt::Display for Method {
     }
 }
 
-/// Work of the solvers, failed attempts included.
+/// Work of the solvers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Effort {
-    /// Linear solves.
+    /// Linear solves of successful attempts. A path adds those that the failures of its Newton and
+    /// relaxation attempts count, and one for the tangent of every accepted state.
     pub linear_solves: usize,
-    /// Iterations inside the linear solves; 0 where the solver is direct.
+    /// Iterations inside all linear solves, failed attempts included; 0 where the solver is direct.
     pub inner_iterations: usize,
 }
 

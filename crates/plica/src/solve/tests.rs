@@ -227,10 +227,39 @@ fn newton_refuses_an_indefinite_tangent() {
 }
 
 #[test]
+fn newton_halves_a_full_step_that_ends_at_the_same_energy() {
+    // The full step leads from u to −u.
+    let cusp = toy(|_, [u]: [f64; 1]| {
+        let root = u.abs().sqrt();
+        (u.abs() * root, [1.5 * root * u.signum()], [[0.75 / root]])
+    });
+    assert_eq!(newton_from(&cusp, &0.0, [1.0]).unwrap().u, [0.0]);
+}
+
+#[test]
+fn a_resumed_path_begins_with_its_halving_level() {
+    let spring = spring_before_a_wall();
+    let resumed = |halving_level| {
+        let continuation = ContinuationState {
+            halving_level,
+            ..ContinuationState::at_start(vec![0.0])
+        };
+        let (loads, settings) = ([0.0, 0.5], Settings::default());
+        let path = Path::resume(&spring, loads, 0.0, vec![0.0], continuation, settings);
+        let mut path = path.unwrap();
+        let step = path.advance(1.0, &mut ()).unwrap();
+        // One for each accepted state, since predictions are exact.
+        let states = step.effort.linear_solves;
+        (states, path.continuation_state().halving_level)
+    };
+    assert_eq!([0, 1, 2, 3].map(resumed), [(1, 0), (2, 0), (3, 0), (4, 0)]);
+}
+
+#[test]
 fn steps_to_undefined_energies_are_shortened() {
     let spring = stiffening_spring();
     let mut path = path_from(&spring, 0.0, [0.0], 3.0);
-    // The tangent alone leads to u = 3.
+    // The tangent alone predicts u = 3.
     let step = path.advance(1.0, &mut ()).unwrap();
     assert_eq!(step.method, Method::Newton);
     assert_at(path.state(), [0.75]);
@@ -249,6 +278,7 @@ fn a_path_ends_at_a_wall_as_close_as_its_halvings_permit() {
     // Eight halvings of a step of 0.5.
     let (state, shortest) = (path.state(), 0.5 / 256.0);
     assert!(path.reached() < 0.5 && path.reached() + shortest >= 0.5);
+    assert_eq!(path.continuation_state().halving_level, 8);
     assert_eq!(state.load, 2.0 * path.reached());
     assert!(state.in_equilibrium());
     assert_at(state, [state.load]);
@@ -445,7 +475,7 @@ fn a_monitor_cancels_within_the_first_linear_solves() {
         );
         assert_eq!(found.unwrap_err(), Failure::Cancelled);
         let expected = Effort {
-            linear_solves: 1,
+            linear_solves: 0,
             inner_iterations: 1,
         };
         assert_eq!(effort, expected);
@@ -530,6 +560,9 @@ fn relaxation_leaves_a_saddle_in_few_solves() {
         let [x, y] = [4.0, 3.0_f64.sqrt() * push.signum()];
         assert!((found.u[0] - x).abs() < 1e-7 && (found.u[1] - y).abs() < 1e-7);
         solves.push(count);
+        // The decrease of the energy is the work of the damping.
+        let start = strut.forces(&2.5, &[2.5, push]).unwrap().energy;
+        assert!((start - found.forces.energy - found.damping_work).abs() < 1e-12);
     }
     // However close to the saddle it begins.
     assert!(solves[2] <= solves[0] + 2, "{solves:?}");
