@@ -2,7 +2,7 @@
 
 use super::{Plan, Scale};
 use crate::assembly::{Inverted, Place, SplineTube};
-use crate::solve::{Failure, PathError};
+use crate::solve::{Cause, Failure, PathError};
 use crate::tube::Load;
 use std::fmt;
 
@@ -178,9 +178,10 @@ fn advice(phase: &Phase, error: &PathError<Inverted>) -> &'static str {
         Some(Failure::StillMoving { .. }) => {
             "Try more pseudo-time (solver.pseudo_time.max_steps), less damping, or more steps in this stage"
         }
-        Some(Failure::InaccurateSolves { .. }) => {
-            "Try more steps in this stage, or fewer or more even elements (mesh.refine)"
-        }
+        Some(Failure::NotConverged {
+            cause: Cause::InaccurateSolves,
+            ..
+        }) => "Try more steps in this stage, or fewer or more even elements (mesh.refine)",
         Some(Failure::Evaluation(_)) => {
             "Try more steps in this stage, more solver.max_step_halvings, or a finer mesh there (mesh.refine)"
         }

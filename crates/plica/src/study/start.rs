@@ -25,8 +25,6 @@ pub(super) fn equilibrate(
         Ok(solution) => return Ok(step(Method::Newton, solution, effort)),
         Err(failed) => failed,
     };
-    // The iterations of the failed attempt count, its linear solves do not.
-    effort.linear_solves = 0;
     match relaxation(problem, load, u, settings, &mut effort, monitor) {
         Ok(solution) => Ok(step(Method::Relaxation, solution, effort)),
         Err(failed) => Err(PathError {
@@ -36,10 +34,7 @@ pub(super) fn equilibrate(
             ],
             step: Step {
                 method: Method::Relaxation,
-                effort: Effort {
-                    linear_solves: 0,
-                    ..effort
-                },
+                effort,
                 damping_work: 0.0,
             },
         }),
