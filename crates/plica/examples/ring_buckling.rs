@@ -45,8 +45,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (mode, exact) in [(2, 6.94351e-4), (3, 1.883913e-3)] {
         let [from, to] = bracket(mode, 1e-4, 2e-3, 19)?;
         let [from, to] = bracket(mode, from, to, 20)?;
+        let [from, to] = bracket(mode, from, to, 20)?;
         println!(
-            "mode {mode} loses stability between p = {from:.4e} and {to:.4e} E (expected {exact:.6e})"
+            "mode {mode} loses stability between p = {from:.5e} and {to:.5e} E (expected {exact:.6e})"
         );
     }
     Ok(())

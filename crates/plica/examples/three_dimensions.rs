@@ -56,6 +56,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let covariance: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
     let variance: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
     let critical = variance / covariance;
-    println!("critical pressure {critical:.3e} E (expected {CRITICAL:.3e})");
+    println!("critical pressure {critical:.3e} E (expected {CRITICAL:.3e} within 5 %)");
     Ok(())
 }

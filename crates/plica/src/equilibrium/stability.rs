@@ -28,7 +28,7 @@ const ITERATIONS: usize = 80;
 /// others are blocks of the tangent of the whole tube. For any other state only the run's own tangent
 /// is tested, whose eigenvalues do not separate by mode: for a twisted axisymmetric run all of them count
 /// for mode 0; otherwise the verdict says whether the lowest eigenvalue is negative. It is
-/// [`Stability::Unknown`] if its sign did not show within [`ITERATIONS`], if the monitor cancelled, or if
+/// [`Stability::Unknown`] if its sign did not show within 80 iterations, if the monitor cancelled, or if
 /// `modes` is zero, which skips the test.
 ///
 /// Uses the solver that the path has at its state, and makes it if needed.

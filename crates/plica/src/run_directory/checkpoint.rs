@@ -25,7 +25,7 @@ pub struct Checkpoint {
 const PATH: &str = "path";
 const HISTORY: &str = "history";
 const PREVIOUS: &str = "previous";
-const TANGENT: &str = "behind_tangent";
+const TANGENT: &str = "previous_tangent";
 const VELOCITY: &str = "velocity";
 /// Number that stands for no value among the numbers of the path.
 const NONE: f64 = -1.0;

@@ -18,7 +18,7 @@ const INACCURATE_SOLVES: usize = 2;
 ///
 /// Every step must lower the energy, and the tangent must be positive definite as far as the solver
 /// finds out, so the solution is a minimum. The required accuracy of an iterative linear solver
-/// follows the residual ([`Forcing`]).
+/// follows the residual.
 ///
 /// # Errors
 ///

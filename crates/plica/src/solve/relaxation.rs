@@ -22,7 +22,7 @@ const REJECTIONS: usize = 3;
 /// A step is taken if K + α C is positive definite, no element inverts and the energy decreases; if
 /// need be after it was shortened, which costs an evaluation of the energy but no linear solve. The
 /// damping α follows the residual and the agreement of the energy with the tangent
-/// ([`DampingController`]). The equilibrium is stable unless a symmetry of the start keeps the iterates
+/// (`DampingController`). The equilibrium is stable unless a symmetry of the start keeps the iterates
 /// on a saddle.
 ///
 /// Where an iterative solver meets a direction of negative curvature, the step is the one found so far
