@@ -81,6 +81,11 @@ pub const CHECKS: &[Check] = &[
         rings::growth,
     ),
     quick(
+        "mooney-rivlin",
+        "inflation and growth of a Mooney–Rivlin ring",
+        rings::mooney_rivlin,
+    ),
+    quick(
         "ring-buckling",
         "buckling of rings under external pressure",
         rings::buckling,

@@ -83,6 +83,19 @@ impl Wall {
         }
     }
 
+    /// Creates an unloaded Mooney–Rivlin wall with E = 1 and the share of I₂ in the shear modulus.
+    ///
+    /// Its Lamé constants at small strains, a + b and λ + 2b, are those of [`Wall::new`].
+    pub fn mooney_rivlin(radii: [f64; 2], nu: f64, share: f64) -> Self {
+        let neo_hookean = Self::new(radii, nu);
+        let mu = neo_hookean.shear[0];
+        Self {
+            shear: [(1.0 - share) * mu, share * mu],
+            lambda: neo_hookean.lambda - 2.0 * share * mu,
+            ..neo_hookean
+        }
+    }
+
     /// Returns U, J U′ and J (J U′)′ at J.
     fn volume(&self, J: f64) -> (f64, f64, f64) {
         let lambda = self.lambda;

@@ -8,7 +8,7 @@ use super::tube_model::{
 };
 use plica::activation::Direction;
 use plica::equilibrium::TubeProblem;
-use plica::material::{Material, NeoHookean, Volumetric};
+use plica::material::{Material, MooneyRivlin, NeoHookean, Volumetric};
 use plica::solve::State;
 use plica::tube::Load;
 use plica_view::draw::{Chart, Curve, Stroke};
@@ -152,6 +152,52 @@ pub fn growth(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
         let W = energy(&problem, &state) / model.tube.length;
         recorder.relative(1e-6, "W over length", W, (solution.energy(), ONE));
         stresses(recorder, (&problem, &state), &solution);
+    }
+    Ok(())
+}
+
+/// Records a Mooney–Rivlin ring that is stretched along by growth: radii and stresses under internal pressure, and
+/// radii, energy and stresses after circumferential growth.
+///
+/// In plane strain alone I₁ and I₂ of a nearly incompressible wall coincide, and so would the law with the neo-Hookean
+/// one. The elastic stretch along the axis, 1/θζ, separates them.
+pub fn mooney_rivlin(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
+    let share = 0.3;
+    let mut model = TubeModel::ring(B - A, NU, 20)
+        .with_uniform_muscle(Direction::Circular)
+        .with_uniform_muscle(Direction::Longitudinal);
+    model.tube.material = Material::MooneyRivlin(MooneyRivlin::new(1.0, NU, share));
+    let problem = model.problem(1);
+    for (growth, p) in [
+        ([1.0, 0.8], 0.0122),
+        ([1.0, 0.8], 0.025),
+        ([0.75, 0.8], 0.0),
+    ] {
+        let pressures = [p, 0.0];
+        let wall = Wall {
+            growth,
+            pressures,
+            ..Wall::mooney_rivlin([A, B], NU, share)
+        };
+        let solution = wall.solve(8)?;
+        let load = Load {
+            muscles: growth.to_vec(),
+            ..model.under_pressure(pressures)
+        };
+        let state = solve_from_rest(&problem, &load, 6)?;
+        let [around, along] = growth;
+        let ring = (&problem, &state);
+        recorder.case(format!(
+            "ring, Mooney–Rivlin, share of I₂ {share}, growth θη = {around}, θζ = {along}, internal pressure p = {p}"
+        ))?;
+        if p == 0.0 {
+            radii(recorder, 1e-6, ring, &solution);
+            let W = energy(&problem, &state) / model.tube.length;
+            recorder.relative(1e-6, "W over length", W, (solution.energy(), ONE));
+        } else {
+            radii(recorder, 1e-5, ring, &solution);
+        }
+        stresses(recorder, ring, &solution);
     }
     Ok(())
 }
