@@ -6,9 +6,8 @@ use crate::interrupt::Interrupt;
 use crate::page_directory::FirstPage;
 use crate::ticker::Ticker;
 use crate::{console, page_directory, threads};
-use plica::run_directory::Verdict;
 use plica_verify::reproduction::{
-    FIGURES, Figure, Fineness, Observer, Ran, SUMMARY, TITLE, Trouble, reproduce as run_figures,
+    FIGURES, Figure, Fineness, ReproductionError, SUMMARY, TITLE, reproduce as run_figures,
 };
 use std::path::PathBuf;
 
@@ -24,7 +23,7 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
     };
     let mut wanted: Vec<&'static Figure> = vec![];
     for name in &arguments.figures {
-        let figure = Figure::meant(name).ok_or_else(|| {
+        let figure = Figure::find(name).ok_or_else(|| {
             let names: Vec<&str> = FIGURES.iter().map(|figure| figure.name).collect();
             Failure::Usage(format!(
                 "{name:?}: no such figure; choose one of {}",
@@ -53,15 +52,15 @@ pub fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
     };
     page_directory::prepare(&out, &first)?;
     let interrupt = Interrupt::listen()?;
-    let mut monitor = Monitor(Ticker::new(interrupt));
+    let mut ticker = Ticker::new(interrupt);
     console::message(&format!("writing to {}", out.display()));
-    let found = run_figures(&wanted, fineness, &out.join(RUNS), &mut monitor);
-    monitor.0.finish();
-    let found = found.map_err(|trouble| match trouble {
-        Trouble::Stopped => Failure::Interrupted(
+    let found = run_figures(&wanted, fineness, &out.join(RUNS), &mut ticker);
+    ticker.finish();
+    let found = found.map_err(|error| match error {
+        ReproductionError::Cancelled => Failure::Interrupted(
             "interrupted; the same command resumes after the completed runs".into(),
         ),
-        trouble => Failure::Files(trouble.to_string()),
+        error => Failure::Files(error.to_string()),
     })?;
     // Print first: writing the files may fail.
     console::print(&found.text())?;
@@ -102,36 +101,4 @@ fn list(figures: &[&Figure], fineness: Fineness) -> String {
         text += &format!("            {} runs of {}\n", jobs.len(), cases.join(", "));
     }
     text
-}
-
-/// Prints a line per run.
-struct Monitor(Ticker);
-
-impl Observer for Monitor {
-    fn ran(&mut self, ran: &Ran, done: usize, of: usize) {
-        let lost = if ran.verdict == Verdict::Complete {
-            ""
-        } else {
-            ", lost"
-        };
-        self.0.line(&format!(
-            "{done:>4} of {of}  {}: {} states, {} solves, {:.1} s{lost}",
-            ran.job.name,
-            ran.rows.len(),
-            ran.solves(),
-            ran.seconds()
-        ));
-    }
-
-    fn failed(&mut self, run: &str, why: &str) {
-        self.0.line(&format!("            {run} FAILED: {why}"));
-    }
-
-    fn working(&mut self, what: &str, fraction: f64) {
-        self.0.working(what, fraction);
-    }
-
-    fn stop(&mut self) -> bool {
-        self.0.stop()
-    }
 }

@@ -1,4 +1,4 @@
-//! A run that figures look at: a case of the house, with keys changed.
+//! Runs of figures: cases of `cases/` with changed keys.
 
 macro_rules! case {
     ($name:literal) => {
@@ -21,21 +21,21 @@ const CASES: &[(&str, &str)] = &[
     case!("perturbed"),
 ];
 
-/// A case, what is changed in it, and how it is run.
+/// A run to do: a case with changed keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
-    /// Its name, and that of its directory.
+    /// Name of the run and of its directory.
     pub name: String,
-    /// The name of its case: that of the file in `cases/`, without the ending.
+    /// Name of the case file in `cases/`, without the extension.
     pub case: &'static str,
-    /// Keys that are changed, and to what.
+    /// Changed keys with their values.
     pub changes: Vec<(String, String)>,
-    /// Whether it is worth all threads: a tube of many rings. Others run side by side.
+    /// Whether it runs alone, with all threads; others run in parallel, with one thread each.
     pub large: bool,
 }
 
 impl Job {
-    /// A case as it stands, under its own name.
+    /// Creates a run of an unchanged case, under the name of the case.
     ///
     /// # Panics
     /// If there is no such case.
@@ -52,59 +52,59 @@ impl Job {
         }
     }
 
-    /// Under another name.
+    /// Sets the name.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
     }
 
-    /// With a key changed.
+    /// Changes a key.
     #[must_use]
     pub fn with(mut self, key: &str, value: impl ToString) -> Self {
         self.changes.push((key.into(), value.to_string()));
         self
     }
 
-    /// On a mesh: control points along, around, through the wall.
+    /// Sets the mesh: control points along, around and through the wall.
     #[must_use]
     pub fn on(self, [axial, around, thickness]: [usize; 3]) -> Self {
         let points = format!("{{ axial = {axial}, around = {around}, thickness = {thickness} }}");
         self.with("mesh.control_points", points)
     }
 
-    /// From a state of another run.
+    /// Starts from a state of another run.
     #[must_use]
     pub fn from(self, run: &str, state: usize) -> Self {
         let file = plica::run_directory::RunDirectory::name_of_state(state);
         self.with("start.state", format!("\"../{run}/{file}\""))
     }
 
-    /// The name of the run that it starts from, if it starts from one.
+    /// Returns the name of the run that it starts from, if any.
     pub fn parent(&self) -> Option<String> {
         let start = self.changes.iter().find(|(key, _)| key == "start.state")?;
         Some(start.1.split('/').nth(1)?.to_owned())
     }
 
-    /// Of which only the history is kept.
+    /// Saves the history only, without states and profiles.
     #[must_use]
-    pub fn bare(self) -> Self {
+    pub fn history_only(self) -> Self {
         let kept = self.with("output.states_every", 0);
         kept.with("output.profiles_every", 0)
     }
 
-    /// With all threads.
+    /// Runs alone, with all threads.
     #[must_use]
     pub fn large(mut self) -> Self {
         self.large = true;
         self
     }
 
-    /// The text of the case with its changes.
+    /// Returns the text of the changed case.
     pub fn text(&self) -> String {
         let known = CASES.iter().find(|(name, _)| *name == self.case);
         let Some((_, text)) = known else {
-            unreachable!("a job is of a case that is there")
+            unreachable!("the case of a job exists")
         };
         match plica::case::edited(text, &self.changes) {
             Ok(text) => text,

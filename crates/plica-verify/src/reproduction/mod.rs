@@ -1,14 +1,14 @@
-//! The computations of Okino et al. (2025), figure by figure, beside what the paper reports.
+//! Reproduction of the figures of Okino et al. (2025), compared with the statements of the paper.
 //!
-//! | file | holds |
+//! | module | content |
 //! |---|---|
-//! | `job` | a run: a case of the house with keys changed |
-//! | `runs` | doing what is not done yet, side by side; looking at a run that is done |
-//! | `page` | claims of the paper and what became of them; a figure's page |
-//! | `pictures` | pictures in the manner of the paper's |
-//! | `figures` | one file a figure: its runs, and what it tells of them |
+//! | `job` | a run to do: a case of `cases/` with changed keys |
+//! | `runs` | performs missing runs in parallel; results of completed runs |
+//! | `page` | the page of a figure: claims of the paper beside results of Plica |
+//! | `pictures` | pictures in the style of the paper |
+//! | `figures` | the runs and the evaluation of every figure |
 //!
-//! A figure is told from the run directories alone, so that what is done need not be done again.
+//! Figures are evaluated from run directories, so completed runs are not repeated.
 
 mod figures;
 mod job;
@@ -18,17 +18,18 @@ mod runs;
 
 pub use figures::FIGURES;
 pub use job::Job;
-pub use page::{Claim, Item, Page, Took, Verdict};
-pub use runs::{Ran, Runs};
+pub use page::{Claim, Item, Page, RunCost, Verdict};
+pub use runs::{CompletedRun, Runs};
 
+use plica::monitor::Monitor;
 use plica_view::draw::DrawError;
 use std::fmt::Write;
 use std::path::Path;
 
-/// What a summary begins with.
+/// First line of the summary.
 pub const TITLE: &str = "# Okino et al. (2025), figure by figure";
 
-/// How fine meshes are, and what is three-dimensional.
+/// Resolution of the meshes, and extent of the three-dimensional runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fineness {
     /// Coarser meshes: minutes.
@@ -38,7 +39,7 @@ pub enum Fineness {
 }
 
 impl Fineness {
-    /// One of two, for quick and for full.
+    /// Returns one of two values.
     pub fn choose<T>(self, quick: T, full: T) -> T {
         match self {
             Self::Quick => quick,
@@ -46,7 +47,7 @@ impl Fineness {
         }
     }
 
-    /// What pages say of it.
+    /// Returns the sentence about it on pages.
     pub fn sentence(self) -> &'static str {
         self.choose(
             "Written by `plica reproduce --quick`: coarser meshes than the paper's.",
@@ -55,26 +56,26 @@ impl Fineness {
     }
 }
 
-/// A figure, or an appendix, of the paper.
+/// A figure or an appendix of the paper.
 pub struct Figure {
-    /// What it is asked for by.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What it is about.
+    /// Title of its page.
     pub title: &'static str,
-    /// What the paper shows there.
+    /// Content of the figure in the paper.
     pub paper: &'static str,
     jobs: fn(Fineness) -> Vec<Job>,
-    tell: fn(&Runs, Fineness, &mut Page) -> Result<(), Trouble>,
+    describe: fn(&Runs, Fineness, &mut Page) -> Result<(), ReproductionError>,
 }
 
 impl Figure {
-    /// The runs that it is told from.
+    /// Returns the runs that it needs.
     pub fn jobs(&self, fineness: Fineness) -> Vec<Job> {
         distinct((self.jobs)(fineness))
     }
 
-    /// The figure that a person means: by its name, or as `4`, `4A`, `Fig. 4`, `A` or `appendix a`.
-    pub fn meant(name: &str) -> Option<&'static Self> {
+    /// Finds a figure by its name, or by `4`, `4A`, `Fig. 4`, `A` or `appendix a`.
+    pub fn find(name: &str) -> Option<&'static Self> {
         let plain = |text: &str| -> String {
             let letters = text.chars().filter(|c| c.is_ascii_alphanumeric());
             letters.map(|c| c.to_ascii_lowercase()).collect()
@@ -84,7 +85,7 @@ impl Figure {
             .iter()
             .find_map(|word| name.strip_prefix(word))
             .unwrap_or(&name);
-        // A panel of a figure means the figure.
+        // A panel stands for its figure.
         let bare = match bare.as_bytes() {
             [digit @ b'0'..=b'9', b'a'..=b'c'] => char::from(*digit).to_string(),
             _ => bare.to_owned(),
@@ -102,7 +103,7 @@ impl Figure {
     }
 }
 
-/// Each run once: one name means one run.
+/// Removes repeated runs. Runs of the same name are equal.
 fn distinct(jobs: impl IntoIterator<Item = Job>) -> Vec<Job> {
     let mut distinct: Vec<Job> = vec![];
     for job in jobs {
@@ -113,37 +114,21 @@ fn distinct(jobs: impl IntoIterator<Item = Job>) -> Vec<Job> {
     distinct
 }
 
-/// Is told what goes on, and may ask to stop.
-pub trait Observer {
-    /// A run is done; so many of all that were to do.
-    fn ran(&mut self, _ran: &Ran, _done: usize, _of: usize) {}
-    /// A run could not be done.
-    fn failed(&mut self, _run: &str, _why: &str) {}
-    /// What takes time, and how far it all is (0 to 1).
-    fn working(&mut self, _what: &str, _fraction: f64) {}
-    /// Whether to stop.
-    fn stop(&mut self) -> bool {
-        false
-    }
-}
-
-impl Observer for () {}
-
-/// Why a figure cannot be told.
+/// Errors of the reproduction.
 #[derive(Debug, thiserror::Error)]
-pub enum Trouble {
-    /// Someone asked to stop.
-    #[error("stopped")]
-    Stopped,
-    /// A run is not there.
+pub enum ReproductionError {
+    /// The monitor cancelled the computation.
+    #[error("cancelled")]
+    Cancelled,
+    /// A run is missing.
     #[error("the run {run} is missing: {why}")]
     Missing {
         /// Its name.
         run: String,
-        /// What became of it.
+        /// Reason.
         why: String,
     },
-    /// A state is not there, or cannot be read.
+    /// A state is missing or cannot be read.
     #[error("{0}")]
     State(String),
     /// A picture cannot be drawn.
@@ -151,47 +136,47 @@ pub enum Trouble {
     Draw(#[from] DrawError),
 }
 
-/// What was reproduced.
+/// Result of the reproduction.
 pub struct Reproduction {
-    /// How fine.
+    /// Resolution.
     pub fineness: Fineness,
     /// The figures, in the order of the paper.
     pub pages: Vec<Page>,
 }
 
-/// Runs what the wanted figures are told from, as far as it is not in `folder` yet, and tells them; and with them those
-/// whose runs are all there already.
+/// Performs the runs of the wanted figures that are not in `folder` yet and evaluates these figures, and those whose
+/// runs are all complete. The monitor gets a notice for every run.
 ///
 /// # Errors
-/// [`Trouble::Stopped`] if the observer asked to stop; runs that were done by then need not be done again. Any other
-/// trouble is told on the page of its figure.
+/// [`ReproductionError::Cancelled`] if the monitor cancels; completed runs are not repeated. Any other error is shown on
+/// the page of its figure.
 pub fn reproduce(
     wanted: &[&'static Figure],
     fineness: Fineness,
     folder: &Path,
-    observer: &mut (dyn Observer + Send),
-) -> Result<Reproduction, Trouble> {
+    monitor: &mut (dyn Monitor + Send),
+) -> Result<Reproduction, ReproductionError> {
     let is_wanted = |figure: &Figure| wanted.iter().any(|wanted| wanted.name == figure.name);
-    let there = |figure: &Figure| Runs::are_there(&figure.jobs(fineness), folder);
-    let told: Vec<&Figure> = FIGURES
+    let is_complete = |figure: &Figure| Runs::are_complete(&figure.jobs(fineness), folder);
+    let figures: Vec<&Figure> = FIGURES
         .iter()
-        .filter(|figure| is_wanted(figure) || there(figure))
+        .filter(|figure| is_wanted(figure) || is_complete(figure))
         .collect();
-    let jobs = distinct(told.iter().flat_map(|figure| figure.jobs(fineness)));
-    let runs = Runs::of(&jobs, folder, observer)?;
+    let jobs = distinct(figures.iter().flat_map(|figure| figure.jobs(fineness)));
+    let runs = Runs::of(&jobs, folder, monitor)?;
     let mut pages = vec![];
-    for figure in told {
-        if observer.stop() {
-            return Err(Trouble::Stopped);
+    for figure in figures {
+        if monitor.is_cancelled() {
+            return Err(ReproductionError::Cancelled);
         }
         let mut page = Page::new(figure);
         for job in figure.jobs(fineness) {
             if let Ok(ran) = runs.get(&job.name) {
-                page.took(ran);
+                page.add_run(ran);
             }
         }
-        if let Err(trouble) = (figure.tell)(&runs, fineness, &mut page) {
-            page.trouble = Some(trouble.to_string());
+        if let Err(error) = (figure.describe)(&runs, fineness, &mut page) {
+            page.error = Some(error.to_string());
         }
         pages.push(page);
     }
@@ -199,12 +184,12 @@ pub fn reproduce(
 }
 
 impl Reproduction {
-    /// Claims that are not met, and figures that could not be told.
+    /// Returns the number of claims that differ and of incomplete figures.
     pub fn failed(&self) -> usize {
         self.pages.iter().map(Page::failed).sum()
     }
 
-    /// The claims, as text of plain lines.
+    /// Returns the claims as plain text.
     pub fn text(&self) -> String {
         let mut text = String::new();
         for page in &self.pages {
@@ -220,75 +205,75 @@ impl Reproduction {
                     claim.panel, claim.paper, claim.found
                 );
             }
-            if let Some(trouble) = &page.trouble {
-                let _ = writeln!(text, "{}: not told to the end: {trouble}", page.figure.name);
+            if let Some(error) = &page.error {
+                let _ = writeln!(text, "{}: incomplete: {error}", page.figure.name);
             }
         }
-        text += &self.count();
+        text += &self.counts();
         text.push('\n');
         text
     }
 
-    /// How many of the paper's statements agree.
-    fn count(&self) -> String {
-        let told = |verdict| {
+    /// Returns a sentence with the numbers of claims by verdict.
+    fn counts(&self) -> String {
+        let count = |verdict| {
             let pages = self.pages.iter();
-            pages.map(|page| page.told(verdict)).sum::<usize>()
+            pages.map(|page| page.count(verdict)).sum::<usize>()
         };
         let [agree, explained, differ] =
-            [Verdict::Agrees, Verdict::Explained, Verdict::Differs].map(told);
+            [Verdict::Agrees, Verdict::Explained, Verdict::Differs].map(count);
         let of = agree + explained + differ;
         let mut text = format!("{agree} of {of} statements of the paper agree");
         if explained > 0 {
             let _ = write!(text, ", {explained} explained");
         }
-        let torn = self.pages.iter().filter(|page| page.trouble.is_some());
-        match torn.count() {
+        let incomplete = self.pages.iter().filter(|page| page.error.is_some());
+        match incomplete.count() {
             0 => {}
-            torn => {
-                let _ = write!(text, "; figures that could not be told to the end: {torn}");
+            incomplete => {
+                let _ = write!(text, "; incomplete figures: {incomplete}");
             }
         }
         text
     }
 
-    /// The summary, in Markdown.
+    /// Returns the summary in Markdown.
     pub fn summary(&self) -> String {
         let mut page = format!(
             "{TITLE}\n\n{} {}.\n\n\
              - *agrees*: Plica finds the same.\n\
-             - *explained*: it finds something else, or does not get there, and the page of the figure shows why.\n\
-             - *differs*: it finds something else, and nobody knows why.\n\
-             - *added*: the paper does not say.\n\n",
+             - *explained*: the result differs, or the state is not reached, and the page of the figure shows why.\n\
+             - *differs*: the result differs for an unknown reason.\n\
+             - *added*: the paper has no such statement.\n\n",
             self.fineness.sentence(),
-            self.count()
+            self.counts()
         );
         page += "| | the paper | Plica | |\n|---|---|---|---|\n";
-        for told in &self.pages {
-            for claim in &told.claims {
+        for figure_page in &self.pages {
+            for claim in &figure_page.claims {
                 let _ = writeln!(
                     page,
                     "| [{}]({}) | {} | {} | {} |",
                     claim.panel,
-                    told.file(),
+                    figure_page.file(),
                     claim.paper,
                     claim.found,
                     page::verdict(claim)
                 );
             }
-            if let Some(trouble) = &told.trouble {
+            if let Some(error) = &figure_page.error {
                 let _ = writeln!(
                     page,
-                    "| [{}]({}) | | {trouble} | **not told** |",
-                    told.figure.name,
-                    told.file()
+                    "| [{}]({}) | | {error} | **incomplete** |",
+                    figure_page.figure.name,
+                    figure_page.file()
                 );
             }
         }
         page
     }
 
-    /// Every file: its name and its bytes, the summary first.
+    /// Returns the names and contents of all files, the summary first.
     pub fn files(&self) -> Vec<(String, Vec<u8>)> {
         let mut files = vec![(SUMMARY.to_owned(), self.summary().into_bytes())];
         for page in &self.pages {
@@ -303,7 +288,7 @@ impl Reproduction {
     }
 }
 
-/// The file of the summary.
+/// Name of the file of the summary.
 pub const SUMMARY: &str = "reproduction.md";
 
 #[cfg(test)]
@@ -311,21 +296,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_figure_is_known_by_many_names() {
-        let meant = |name| Figure::meant(name).map(|figure| figure.name);
+    fn figures_are_found_by_several_names() {
+        let find = |name| Figure::find(name).map(|figure| figure.name);
         for name in ["fig4", "4", "4A", "Fig. 4b", "figure4"] {
-            assert_eq!(meant(name), Some("fig4"), "{name}");
+            assert_eq!(find(name), Some("fig4"), "{name}");
         }
         for name in ["appendix-a", "A", "app. a", "Appendix A"] {
-            assert_eq!(meant(name), Some("appendix-a"), "{name}");
+            assert_eq!(find(name), Some("appendix-a"), "{name}");
         }
         for name in ["", "fig", "44", "fig8", "c", "fig4d", "colon"] {
-            assert_eq!(meant(name), None, "{name}");
+            assert_eq!(find(name), None, "{name}");
         }
     }
 
     #[test]
-    fn every_job_is_a_sound_case_and_one_name_means_one_run() {
+    fn every_job_is_a_valid_case_and_names_are_unique() {
         for fineness in [Fineness::Quick, Fineness::Full] {
             let mut jobs: Vec<Job> = vec![];
             for job in FIGURES.iter().flat_map(|figure| (figure.jobs)(fineness)) {
@@ -336,7 +321,7 @@ mod tests {
             }
             for job in &jobs {
                 let starts = job.parent();
-                // A state to start from is there only when the run before it is done.
+                // The state to start from does not exist before the run of the parent.
                 let text = job.text();
                 match plica::case::read(&text, &job.name) {
                     Ok(_) => assert!(starts.is_none()),
@@ -350,7 +335,7 @@ mod tests {
                         );
                     }
                 }
-                // And that comes before it.
+                // The parent comes first.
                 if let Some(from) = starts {
                     let at = |name: &str| jobs.iter().position(|other| other.name == name);
                     assert!(

@@ -1,6 +1,6 @@
-//! What a figure has to tell: claims and what became of them, tables, pictures.
+//! Pages of figures: claims of the paper beside results of Plica, tables and pictures.
 
-use super::runs::Ran;
+use super::runs::CompletedRun;
 use super::{Figure, Fineness};
 use plica::run_directory;
 use plica::solve::Scheme;
@@ -10,36 +10,36 @@ use std::fmt::Write;
 /// A statement of the paper beside what Plica finds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// The part of the figure: `3A`.
+    /// Panel of the figure, for example `3A`.
     pub panel: &'static str,
-    /// What the paper states.
+    /// Statement of the paper.
     pub paper: String,
-    /// What Plica finds.
+    /// Result of Plica.
     pub found: String,
-    /// Whether that agrees.
+    /// Whether they agree.
     pub verdict: Verdict,
 }
 
-/// What became of a statement.
+/// Comparison of a statement with the result of Plica.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Plica finds the same.
+    /// The result is the same.
     Agrees,
-    /// Plica does not get there, and the page shows why.
+    /// The result differs, or the state is not reached, and the page shows why.
     Explained,
-    /// Plica finds something else.
+    /// The result differs.
     Differs,
-    /// The paper does not say; Plica adds it.
+    /// The paper has no such statement.
     Added,
 }
 
 impl Verdict {
-    /// Of a statement that either holds or does not.
+    /// Returns `Agrees` if the statement holds, otherwise `Differs`.
     pub fn of(holds: bool) -> Self {
         if holds { Self::Agrees } else { Self::Differs }
     }
 
-    /// In a word.
+    /// Returns its name on pages.
     pub fn word(self) -> &'static str {
         match self {
             Self::Agrees => "agrees",
@@ -50,9 +50,9 @@ impl Verdict {
     }
 }
 
-/// A run, and what it took.
+/// Size and cost of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Took {
+pub struct RunCost {
     name: String,
     case: &'static str,
     mesh: String,
@@ -66,7 +66,7 @@ pub struct Took {
     lumen: String,
 }
 
-/// How near walls come along a run, and in which states they have met.
+/// Smallest distance between walls along a run, and the states in which they have met.
 #[derive(Clone, Debug, PartialEq)]
 struct Nearest {
     least: f64,
@@ -87,8 +87,8 @@ impl Nearest {
         }
     }
 
-    /// As a cell of a table; a dash where the least is no less than what a straight tube has.
-    fn told(&self, straight: f64) -> String {
+    /// Formats a cell of a table; a dash where the distance is that of a straight tube.
+    fn describe(&self, straight: f64) -> String {
         if self.met.is_empty() && self.least > 0.99 * straight {
             return "–".into();
         }
@@ -106,7 +106,7 @@ impl Nearest {
     }
 }
 
-/// Spans of numbers that follow each other.
+/// Returns the ranges of consecutive numbers.
 fn spans(numbers: impl Iterator<Item = usize>) -> Vec<[usize; 2]> {
     let mut spans: Vec<[usize; 2]> = vec![];
     for number in numbers {
@@ -118,14 +118,14 @@ fn spans(numbers: impl Iterator<Item = usize>) -> Vec<[usize; 2]> {
     spans
 }
 
-/// Something on a page, in its order.
+/// An item of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
     /// A paragraph, in Markdown.
     Text(String),
-    /// A table: heads and rows.
+    /// A table: headings and rows.
     Table(Vec<String>, Vec<Vec<String>>),
-    /// A picture: name of its file, PNG bytes, what it shows.
+    /// A picture: file name, PNG data, caption.
     Picture(String, Vec<u8>, String),
 }
 
@@ -135,12 +135,12 @@ pub struct Page {
     pub figure: &'static Figure,
     /// Its claims.
     pub claims: Vec<Claim>,
-    /// Whatever else it tells.
+    /// Text, tables and pictures after the claims.
     pub items: Vec<Item>,
-    /// The runs that were looked at.
-    pub took: Vec<Took>,
-    /// Why it could not be told to the end.
-    pub trouble: Option<String>,
+    /// Its runs.
+    pub runs: Vec<RunCost>,
+    /// Error that left the page incomplete.
+    pub error: Option<String>,
 }
 
 impl Page {
@@ -149,24 +149,24 @@ impl Page {
             figure,
             claims: vec![],
             items: vec![],
-            took: vec![],
-            trouble: None,
+            runs: vec![],
+            error: None,
         }
     }
 
-    /// A statement that agrees if it holds, and differs if not.
+    /// Adds a statement of the paper, which agrees if it holds.
     pub(super) fn claim(&mut self, panel: &'static str, paper: &str, found: String, holds: bool) {
         self.judge(panel, paper, found, Verdict::of(holds));
     }
 
-    /// Something that the paper does not say; it differs if it does not hold.
-    pub(super) fn add(&mut self, panel: &'static str, what: &str, found: String, holds: bool) {
+    /// Adds a statement that the paper does not make.
+    pub(super) fn add(&mut self, panel: &'static str, statement: &str, found: String, holds: bool) {
         let verdict = if holds {
             Verdict::Added
         } else {
             Verdict::Differs
         };
-        self.judge(panel, what, found, verdict);
+        self.judge(panel, statement, found, verdict);
     }
 
     pub(super) fn judge(
@@ -198,9 +198,9 @@ impl Page {
         self.items.push(Item::Picture(name, png, caption.into()));
     }
 
-    /// Takes down what a run took, once.
-    pub(super) fn took(&mut self, ran: &Ran) {
-        if self.took.iter().any(|took| took.name == ran.job.name) {
+    /// Adds the cost of a run, unless it is there already.
+    pub(super) fn add_run(&mut self, ran: &CompletedRun) {
+        if self.runs.iter().any(|cost| cost.name == ran.job.name) {
             return;
         }
         let (plan, mesh) = (&ran.plan, &ran.plan.mesh);
@@ -209,7 +209,7 @@ impl Page {
             n if n == mesh.around => "whole".to_owned(),
             n => format!("repeats {} times", mesh.around / n),
         };
-        self.took.push(Took {
+        self.runs.push(RunCost {
             name: ran.job.name.clone(),
             case: ran.job.case,
             mesh: format!(
@@ -222,33 +222,33 @@ impl Page {
             cg_iterations: ran.cg_iterations(),
             seconds: ran.seconds(),
             verdict: ran.verdict,
-            gap: Nearest::of(&ran.rows, |row| row.gap).told(plan.tube.thickness),
-            lumen: Nearest::of(&ran.rows, |row| row.lumen).told(2.0 * plan.tube.inner_radius()),
+            gap: Nearest::of(&ran.rows, |row| row.gap).describe(plan.tube.thickness),
+            lumen: Nearest::of(&ran.rows, |row| row.lumen).describe(2.0 * plan.tube.inner_radius()),
         });
     }
 
-    /// How many claims got a verdict.
-    pub fn told(&self, verdict: Verdict) -> usize {
+    /// Returns the number of claims with a verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
         let has = |claim: &&Claim| claim.verdict == verdict;
         self.claims.iter().filter(has).count()
     }
 
-    /// Claims that are not met, and 1 if the figure could not be told to the end.
+    /// Returns the number of claims that differ, plus 1 if the page is incomplete.
     pub fn failed(&self) -> usize {
-        self.told(Verdict::Differs) + usize::from(self.trouble.is_some())
+        self.count(Verdict::Differs) + usize::from(self.error.is_some())
     }
 
-    /// The name of its file.
+    /// Returns the name of its file.
     pub fn file(&self) -> String {
         format!("{}.md", self.figure.name)
     }
 
-    /// The page, in Markdown.
+    /// Returns the page in Markdown.
     pub fn markdown(&self, fineness: Fineness) -> String {
         let Figure { title, paper, .. } = self.figure;
         let mut page = format!("# {title}\n\n{}\n\n{paper}\n\n", fineness.sentence());
-        if let Some(trouble) = &self.trouble {
-            let _ = writeln!(page, "**Not told to the end: {trouble}**\n");
+        if let Some(error) = &self.error {
+            let _ = writeln!(page, "**Incomplete: {error}**\n");
         }
         page += &claims(&self.claims);
         for item in &self.items {
@@ -262,23 +262,23 @@ impl Page {
             }
         }
         page += "\n## What was run\n\n";
-        let rows = self.took.iter().map(|took| {
-            let lost = if took.verdict == run_directory::Verdict::Complete {
+        let rows = self.runs.iter().map(|cost| {
+            let lost = if cost.verdict == run_directory::Verdict::Complete {
                 ""
             } else {
                 " (lost)"
             };
             vec![
-                format!("`{}`{lost}", took.name),
-                format!("`cases/{}.toml`", took.case),
-                took.mesh.clone(),
-                took.scheme.clone(),
-                took.states.to_string(),
-                took.solves.to_string(),
-                took.cg_iterations.to_string(),
-                format!("{:.1}", took.seconds),
-                took.gap.clone(),
-                took.lumen.clone(),
+                format!("`{}`{lost}", cost.name),
+                format!("`cases/{}.toml`", cost.case),
+                cost.mesh.clone(),
+                cost.scheme.clone(),
+                cost.states.to_string(),
+                cost.solves.to_string(),
+                cost.cg_iterations.to_string(),
+                format!("{:.1}", cost.seconds),
+                cost.gap.clone(),
+                cost.lumen.clone(),
             ]
         });
         let heads = [
@@ -293,15 +293,15 @@ impl Page {
             "gap, D",
             "lumen, D",
         ];
-        let seconds: f64 = self.took.iter().map(|took| took.seconds).sum();
+        let seconds: f64 = self.runs.iter().map(|cost| cost.seconds).sum();
         let _ = writeln!(
             page,
-            "{} runs by plica {}, {seconds:.0} s if done one after the other. A run of one ring takes one thread, and as many go side \
-             by side as there are threads; one of many rings is given all of them, but for those of Appendix B.\n\n\
-             Nothing keeps walls apart, and the paper's equations have no contact either. The gap is how near the wall comes to itself \
-             along a meridian, the lumen how narrow it gets; where walls have **met**, in the states of those numbers, the state is not \
-             physical (one after them may be, though the way to it was not).\n",
-            self.took.len(),
+            "{} runs by plica {}, {seconds:.0} s in total. Axisymmetric runs, and small ones of Appendix B, take one thread each \
+             and run in parallel; other three-dimensional runs use all threads.\n\n\
+             Plica and the paper's equations have no contact. The gap is the smallest distance between parts of the wall along a \
+             meridian; the lumen is its smallest width. States in which walls have **met** are not physical (later ones may be, \
+             although the path to them was not).\n",
+            self.runs.len(),
             env!("CARGO_PKG_VERSION")
         );
         page += &table(&heads.map(String::from), &rows.collect::<Vec<_>>());
@@ -309,7 +309,7 @@ impl Page {
     }
 }
 
-/// Claims as a table.
+/// Formats claims as a table.
 pub(super) fn claims(claims: &[Claim]) -> String {
     let rows = claims.iter().map(|claim| {
         vec![
@@ -323,7 +323,7 @@ pub(super) fn claims(claims: &[Claim]) -> String {
     table(&heads, &rows.collect::<Vec<_>>())
 }
 
-/// In a word, loud where it differs.
+/// Formats the verdict of a claim; bold if it differs.
 pub(super) fn verdict(claim: &Claim) -> String {
     let word = claim.verdict.word();
     match claim.verdict {
@@ -332,7 +332,7 @@ pub(super) fn verdict(claim: &Claim) -> String {
     }
 }
 
-/// A table in Markdown.
+/// Formats a table in Markdown.
 fn table(heads: &[String], rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| {
         let cells = cells.iter().map(|cell| cell.replace('|', "\\|"));
@@ -343,23 +343,23 @@ fn table(heads: &[String], rows: &[Vec<String>]) -> String {
     line(heads) + &rule + &rows
 }
 
-/// How a state is told in a table: W with five digits.
+/// Formats W of a state with five digits.
 pub(super) fn energy(row: &Row) -> String {
     format!("{:.4e}", row.energy)
 }
 
-/// How states were found, as far as it differs from run to run.
-fn scheme(ran: &Ran) -> String {
+/// Describes the scheme of a run.
+fn scheme(ran: &CompletedRun) -> String {
     let scheme = &ran.plan.solver.scheme;
     match scheme {
         Scheme::Static => scheme.to_string(),
         Scheme::PseudoTime(p) => {
-            let settled = if p.equilibrate {
-                "settled"
+            let equilibrated = if p.equilibrate {
+                "equilibrated"
             } else {
-                "not settled"
+                "not equilibrated"
             };
-            format!("{scheme}, steps ramped over {}, {settled}", p.ramp)
+            format!("{scheme}, steps ramped over {}, {equilibrated}", p.ramp)
         }
     }
 }
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_hold_differs_and_counts() {
+    fn false_claims_and_incomplete_pages_count_as_failed() {
         let mut page = page();
         page.claim("3A", "it holds", "yes".into(), true);
         page.claim("3B", "it does not", "no".into(), false);
@@ -385,12 +385,12 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("| 3C | it cannot | for a reason | explained |"));
-        page.trouble = Some("a run is missing".into());
+        page.error = Some("a run is missing".into());
         assert_eq!(page.failed(), 2);
     }
 
     #[test]
-    fn walls_that_met_are_told_by_their_states() {
+    fn nearest_walls_are_described_by_their_states() {
         assert_eq!(spans([1, 2, 4].into_iter()), [[1, 2], [4, 4]]);
         assert!(spans(std::iter::empty()).is_empty());
         let nearest = |least, met: &[[usize; 2]]| Nearest {
@@ -398,10 +398,10 @@ mod tests {
             state: 7,
             met: met.to_vec(),
         };
-        assert_eq!(nearest(0.06, &[]).told(0.06), "–");
-        assert_eq!(nearest(0.02, &[]).told(0.06), "0.020 in state 7");
+        assert_eq!(nearest(0.06, &[]).describe(0.06), "–");
+        assert_eq!(nearest(0.02, &[]).describe(0.06), "0.020 in state 7");
         assert_eq!(
-            nearest(0.0, &[[1, 2], [4, 4]]).told(0.06),
+            nearest(0.0, &[[1, 2], [4, 4]]).describe(0.06),
             "**met** in 1 to 2, 4"
         );
     }

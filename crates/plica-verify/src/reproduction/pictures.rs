@@ -1,7 +1,7 @@
-//! Pictures in the manner of the paper's.
+//! Pictures in the style of the paper.
 
-use super::Trouble;
-use super::runs::Ran;
+use super::ReproductionError;
+use super::runs::CompletedRun;
 use plica::measure::{Face, Rotation, Wall};
 use plica::study::Row;
 use plica_view::draw::{Chart, Curve, Cutaway, Inset, Panel, Stroke};
@@ -10,8 +10,12 @@ use plica_view::report::open_tube_surfaces;
 /// Width of pictures, in pixels.
 const WIDTH: usize = 1000;
 
-/// A tube cut open at a state, for a [`tubes`] picture.
-pub fn panel(ran: &Ran, row: &Row, label: impl Into<String>) -> Result<Panel, Trouble> {
+/// Returns the tube cut open at a state, for [`tubes`].
+pub fn panel(
+    ran: &CompletedRun,
+    row: &Row,
+    label: impl Into<String>,
+) -> Result<Panel, ReproductionError> {
     let state = ran.state(row)?;
     let upwards = row.asymmetry_angle_deg.to_radians();
     Ok(Panel {
@@ -21,8 +25,8 @@ pub fn panel(ran: &Ran, row: &Row, label: impl Into<String>) -> Result<Panel, Tr
     })
 }
 
-/// Tubes cut open, one below the other, coloured by strain energy density.
-pub fn tubes(panels: Vec<Panel>) -> Result<Vec<u8>, Trouble> {
+/// Draws tubes cut open, one below the other, coloured by strain energy density.
+pub fn tubes(panels: Vec<Panel>) -> Result<Vec<u8>, ReproductionError> {
     let picture = Cutaway {
         panels,
         value_label: "strain energy density *w*/*E*".into(),
@@ -31,33 +35,33 @@ pub fn tubes(panels: Vec<Panel>) -> Result<Vec<u8>, Trouble> {
     Ok(picture.png(WIDTH)?)
 }
 
-/// Where small tubes stand in a chart of energies: parts of the frame.
-pub type Shown = (f64, f64);
+/// Position of a small tube in a chart, as fractions of the frame.
+pub type Place = (f64, f64);
 
-/// Strain energy against Lmax/L, with small tubes at states.
+/// Plots strain energy against Lmax/L, with small tubes at some states.
 pub fn energies(
     curves: Vec<Curve>,
-    ran: &Ran,
-    shown: &[(&Row, Shown)],
-    rules: Vec<plica_view::draw::VerticalLine>,
-) -> Result<Vec<u8>, Trouble> {
-    let inset = |&(row, shown): &(&Row, Shown)| -> Result<Inset, Trouble> {
+    ran: &CompletedRun,
+    shown: &[(&Row, Place)],
+    vertical_lines: Vec<plica_view::draw::VerticalLine>,
+) -> Result<Vec<u8>, ReproductionError> {
+    let inset = |&(row, place): &(&Row, Place)| -> Result<Inset, ReproductionError> {
         let Panel { surfaces, .. } = panel(ran, row, "")?;
         Ok(Inset {
             surfaces,
             at: (row.length_ratio, row.energy),
-            centre: shown,
+            centre: place,
             width: 0.27,
         })
     };
-    let insets: Result<Vec<Inset>, Trouble> = shown.iter().map(inset).collect();
+    let insets: Result<Vec<Inset>, ReproductionError> = shown.iter().map(inset).collect();
     let highest = curves.iter().flat_map(|curve| &curve.points).map(|p| p.1);
     let highest = highest.fold(0.0, f64::max);
     let chart = Chart {
         x_label: "*L*_{max}/*L*".into(),
         y_label: "strain energy *W*/(*E* *D*^{3})".into(),
         curves,
-        vertical_lines: rules,
+        vertical_lines,
         insets: insets?,
         y_range: Some((0.0, 1.15 * highest)),
         proportion: 0.6,
@@ -67,20 +71,23 @@ pub fn energies(
     Ok(chart.png(WIDTH)?)
 }
 
-/// A line of an outline: the wall, its name, a colour.
+/// A wall in a picture of outlines.
 pub struct Outline {
     /// The wall.
     pub wall: Wall,
-    /// What it is called; nothing for a wall that goes with the one before.
+    /// Label in the legend, or empty.
     pub label: String,
     /// Number of its colour.
     pub colour: usize,
-    /// How it is stroked.
+    /// Stroke.
     pub stroke: Stroke,
 }
 
-/// Outer walls over each other, and centres of rotation.
-pub fn outlines(outlines: Vec<Outline>, centres: &[Rotation]) -> Result<Vec<u8>, Trouble> {
+/// Draws walls over each other, and centres of rotation.
+pub fn outlines(
+    outlines: Vec<Outline>,
+    centres: &[Rotation],
+) -> Result<Vec<u8>, ReproductionError> {
     let curves: Vec<Curve> = outlines
         .into_iter()
         .map(|outline| Curve {
@@ -116,13 +123,17 @@ pub fn outlines(outlines: Vec<Outline>, centres: &[Rotation]) -> Result<Vec<u8>,
     Ok(chart.png(WIDTH)?)
 }
 
-/// The outer wall of an axisymmetric state; of another, that at its crest.
-pub fn outer(ran: &Ran, row: &Row) -> Result<Wall, Trouble> {
+/// Returns the outer wall at the angle of the largest asymmetry.
+pub fn outer(ran: &CompletedRun, row: &Row) -> Result<Wall, ReproductionError> {
     ran.wall(row, Face::Outer, row.asymmetry_angle_deg.to_radians())
 }
 
-/// A chart of curves, for what has no likeness in the paper.
-pub fn chart(x_label: &str, y_label: &str, curves: Vec<Curve>) -> Result<Vec<u8>, Trouble> {
+/// Draws a chart of curves.
+pub fn chart(
+    x_label: &str,
+    y_label: &str,
+    curves: Vec<Curve>,
+) -> Result<Vec<u8>, ReproductionError> {
     let chart = Chart {
         x_label: x_label.into(),
         y_label: y_label.into(),

@@ -1,7 +1,7 @@
-//! Doing what is not done yet, and looking at what is.
+//! Completed runs, and the execution of missing ones.
 
+use super::ReproductionError;
 use super::job::Job;
-use super::{Observer, Trouble};
 use plica::assembly::SplineTube;
 use plica::case::{self, InputFile};
 use plica::measure::{Face, Meridians, Wall};
@@ -17,70 +17,71 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::thread;
 
-/// Points per element along a wall that is looked at.
+/// Points per element along an evaluated wall.
 const POINTS_PER_ELEMENT: usize = 4;
 
-/// A run that is done.
-pub struct Ran {
-    /// What was run.
+/// A completed run.
+pub struct CompletedRun {
+    /// The job.
     pub job: Job,
-    /// What that means.
+    /// The checked case.
     pub plan: Plan,
     /// Its accepted states.
     pub rows: Vec<Row>,
-    /// `complete`, or `lost` if the tube could not be followed to the end.
+    /// `complete`, or `lost` if the path ended early.
     pub verdict: Verdict,
     tube: SplineTube,
     directory: PathBuf,
 }
 
-/// Runs by their names; and why some are not there.
+/// Completed runs by name, and the errors of failed ones.
 #[derive(Default)]
 pub struct Runs {
-    done: BTreeMap<String, Ran>,
+    done: BTreeMap<String, CompletedRun>,
     failed: BTreeMap<String, String>,
 }
 
 impl Runs {
-    /// A run.
+    /// Returns a run.
     ///
     /// # Errors
-    /// [`Trouble::Missing`] if it could not be done.
-    pub fn get(&self, name: &str) -> Result<&Ran, Trouble> {
-        self.done.get(name).ok_or_else(|| Trouble::Missing {
-            run: name.into(),
-            why: match self.failed.get(name) {
-                Some(why) => why.clone(),
-                None => "it is none of this figure's".into(),
-            },
-        })
+    /// [`ReproductionError::Missing`] if it failed.
+    pub fn get(&self, name: &str) -> Result<&CompletedRun, ReproductionError> {
+        self.done
+            .get(name)
+            .ok_or_else(|| ReproductionError::Missing {
+                run: name.into(),
+                why: match self.failed.get(name) {
+                    Some(why) => why.clone(),
+                    None => "it is not among the runs of this figure".into(),
+                },
+            })
     }
 
-    /// Opens what is done already in a folder, and does the rest: large ones with all threads, one after the other, in
-    /// the order given; the others before, side by side. A job may start from a state of one before it if that is not
-    /// one of those that run side by side.
+    /// Opens the completed runs in a folder and performs the others: first the small ones in parallel, those without a
+    /// parent before the rest, then the large ones one after the other in the given order.
     ///
     /// # Errors
-    /// [`Trouble::Stopped`] if the observer asked to stop. A run that fails is missing, and no trouble here.
+    /// [`ReproductionError::Cancelled`] if the monitor cancels. A failed run is recorded as missing.
     pub fn of(
         jobs: &[Job],
         folder: &Path,
-        observer: &mut (dyn Observer + Send),
-    ) -> Result<Self, Trouble> {
+        monitor: &mut (dyn Monitor + Send),
+    ) -> Result<Self, ReproductionError> {
         let mut runs = Self::default();
         let mut waves: Vec<Vec<&Job>> = vec![vec![]; 3];
-        let mut anew: Vec<&str> = vec![];
+        let mut repeated: Vec<&str> = vec![];
         for job in jobs {
-            // What starts from a run that is done again is done again too.
+            // Runs that start from a repeated run are repeated too.
             let parent = job.parent();
             let stale = parent
                 .as_ref()
-                .is_some_and(|name| anew.contains(&name.as_str()));
-            let there = if stale { None } else { opened(job, folder) };
-            if there.is_none() {
-                anew.push(&job.name);
+                .is_some_and(|name| repeated.contains(&name.as_str()));
+            let completed = if stale { None } else { opened(job, folder) };
+            if completed.is_none() {
+                repeated.push(&job.name);
             }
-            match there {
+            match completed {
                 Some(ran) => {
                     runs.done.insert(job.name.clone(), ran);
                 }
@@ -92,40 +93,40 @@ impl Runs {
         let of: usize = waves.iter().map(Vec::len).sum();
         let queue = Queue {
             folder,
-            monitor: Mutex::new(Shared {
-                observer,
+            shared: Mutex::new(Shared {
+                monitor,
                 done: 0,
                 of,
-                stopped: false,
+                cancelled: false,
             }),
             found: Mutex::new(runs),
         };
         let [first, second, large] = [&waves[0], &waves[1], &waves[2]];
-        queue.side_by_side(first);
-        queue.side_by_side(second);
+        queue.run_in_parallel(first);
+        queue.run_in_parallel(second);
         for job in large {
             queue.run(job);
         }
-        let stopped = lock(&queue.monitor).stopped;
-        if stopped {
-            return Err(Trouble::Stopped);
+        let cancelled = lock(&queue.shared).cancelled;
+        if cancelled {
+            return Err(ReproductionError::Cancelled);
         }
         Ok(queue.found.into_inner().unwrap_or_else(|e| e.into_inner()))
     }
 
-    /// Whether all jobs are done in a folder.
-    pub fn are_there(jobs: &[Job], folder: &Path) -> bool {
+    /// Returns whether all jobs are completed in a folder.
+    pub fn are_complete(jobs: &[Job], folder: &Path) -> bool {
         jobs.iter().all(|job| opened(job, folder).is_some())
     }
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    // What a thread that panicked left is looked at no more.
+    // After a panic of another thread the data are not evaluated.
     mutex.lock().unwrap_or_else(|e| e.into_inner())
 }
 
-/// A run of this very case by this very version that came to its end.
-fn opened(job: &Job, folder: &Path) -> Option<Ran> {
+/// Opens a completed run of the same case by the same version.
+fn opened(job: &Job, folder: &Path) -> Option<CompletedRun> {
     let directory = RunDirectory::open(&folder.join(&job.name)).ok()?;
     let text = job.text();
     let same = directory.case_hash() == blake3::hash(text.as_bytes()).to_string();
@@ -136,7 +137,7 @@ fn opened(job: &Job, folder: &Path) -> Option<Ran> {
     }
     let plan = plan(job, &text, folder).ok()?;
     let rows = directory.history().ok()?;
-    // Nor one of which something is gone.
+    // Runs with missing states are repeated.
     let saved = directory.numbered("states", "safetensors").ok()?;
     let every = plan.output.states_every;
     let is_saved =
@@ -144,7 +145,13 @@ fn opened(job: &Job, folder: &Path) -> Option<Ran> {
     if directory.state_count() != Some(rows.len()) || !rows.iter().all(is_saved) {
         return None;
     }
-    Some(Ran::new(job, plan, rows, verdict, directory.path()))
+    Some(CompletedRun::new(
+        job,
+        plan,
+        rows,
+        verdict,
+        directory.path(),
+    ))
 }
 
 fn plan(job: &Job, text: &str, folder: &Path) -> Result<Plan, case::CaseError> {
@@ -153,31 +160,31 @@ fn plan(job: &Job, text: &str, folder: &Path) -> Result<Plan, case::CaseError> {
     case::read_with(text, &job.name, &open)
 }
 
-/// Jobs that are done, and those who watch and wait.
+/// Data shared by the threads that perform jobs.
 struct Queue<'a> {
     folder: &'a Path,
-    monitor: Mutex<Shared<'a>>,
+    shared: Mutex<Shared<'a>>,
     found: Mutex<Runs>,
 }
 
-/// What threads share of the observer.
+/// The shared monitor and the progress.
 struct Shared<'a> {
-    observer: &'a mut (dyn Observer + Send),
+    monitor: &'a mut (dyn Monitor + Send),
     done: usize,
     of: usize,
-    stopped: bool,
+    cancelled: bool,
 }
 
 impl Queue<'_> {
-    /// Each with a thread of its own, as many at a time as there are threads.
-    fn side_by_side(&self, jobs: &[&Job]) {
+    /// Performs jobs in parallel, with one thread each.
+    fn run_in_parallel(&self, jobs: &[&Job]) {
         let next = Mutex::new(jobs.iter());
         let work = || {
             let Ok(pool) = ThreadPoolBuilder::new().num_threads(1).build() else {
                 return;
             };
             loop {
-                // Not held while it runs.
+                // The lock is released before the job runs.
                 let job = lock(&next).next();
                 match job {
                     Some(job) => pool.install(|| self.run(job)),
@@ -191,38 +198,40 @@ impl Queue<'_> {
                 scope.spawn(work);
             }
         });
-        // Where no pool could be built.
+        // Jobs that are left if no thread pool could be built.
         for job in next.into_inner().unwrap_or_else(|e| e.into_inner()) {
             self.run(job);
         }
     }
 
     fn run(&self, job: &Job) {
-        if lock(&self.monitor).stop() {
+        if lock(&self.shared).is_cancelled() {
             return;
         }
         let outcome = self.attempt(job);
-        let mut monitor = lock(&self.monitor);
-        monitor.done += 1;
-        let (done, of) = (monitor.done, monitor.of);
+        let mut shared = lock(&self.shared);
+        shared.done += 1;
+        let (done, of) = (shared.done, shared.of);
         let mut found = lock(&self.found);
         match outcome {
             Ok(Some(ran)) => {
-                monitor.observer.ran(&ran, done, of);
+                let progress = format!("{done:>4} of {of}  {}", ran.summary());
+                shared.monitor.notice(&progress);
                 found.done.insert(job.name.clone(), ran);
             }
-            Ok(None) => monitor.stopped = true,
+            Ok(None) => shared.cancelled = true,
             Err(why) => {
-                monitor.observer.failed(&job.name, &why);
+                let failure = format!("            {} FAILED: {why}", job.name);
+                shared.monitor.notice(&failure);
                 found.failed.insert(job.name.clone(), why);
             }
         }
     }
 
-    /// The run; none if someone asked to stop.
-    fn attempt(&self, job: &Job) -> Result<Option<Ran>, String> {
+    /// Performs a run; none if the monitor cancels.
+    fn attempt(&self, job: &Job) -> Result<Option<CompletedRun>, String> {
         let text = job.text();
-        // A state of another run is named from here on.
+        // Paths of states of other runs are relative to the directory of this run.
         let own = self.folder.join(&job.name);
         fs::create_dir_all(&own).map_err(|error| format!("{}: {error}", own.display()))?;
         let plan = plan(job, &text, self.folder).map_err(|error| {
@@ -231,13 +240,13 @@ impl Queue<'_> {
         })?;
         let path = self.folder.join(&job.name);
         let directory = RunDirectory::create(&path, &text, &plan.title, true);
-        let trouble = |error: RunError| error.to_string();
-        let mut directory = directory.map_err(trouble)?;
+        let message = |error: RunError| error.to_string();
+        let mut directory = directory.map_err(message)?;
         let mut relay = Relay {
-            monitor: &self.monitor,
+            shared: &self.shared,
             job,
         };
-        let summary = run_directory::run(&plan, &mut directory, &mut relay).map_err(trouble)?;
+        let summary = run_directory::run(&plan, &mut directory, &mut relay).map_err(message)?;
         if matches!(summary.ending(), Ending::Stopped) {
             return Ok(None);
         }
@@ -246,37 +255,37 @@ impl Queue<'_> {
             _ => Verdict::Lost,
         };
         let rows = summary.rows().to_vec();
-        Ok(Some(Ran::new(job, plan, rows, verdict, &path)))
+        Ok(Some(CompletedRun::new(job, plan, rows, verdict, &path)))
     }
 }
 
 impl Shared<'_> {
-    fn stop(&mut self) -> bool {
-        self.stopped = self.stopped || self.observer.stop();
-        self.stopped
+    fn is_cancelled(&mut self) -> bool {
+        self.cancelled = self.cancelled || self.monitor.is_cancelled();
+        self.cancelled
     }
 }
 
-/// Tells the observer of all what one run does.
+/// Forwards the progress of one run to the shared monitor.
 struct Relay<'a, 'b> {
-    monitor: &'a Mutex<Shared<'b>>,
+    shared: &'a Mutex<Shared<'b>>,
     job: &'a Job,
 }
 
 impl Monitor for Relay<'_, '_> {
     fn working(&mut self, activity: &dyn Display, fraction: f64) {
-        let mut monitor = lock(self.monitor);
-        let all = (monitor.done as f64 + fraction) / monitor.of.max(1) as f64;
-        let what = format!("{}: {activity}", self.job.name);
-        monitor.observer.working(&what, all);
+        let mut shared = lock(self.shared);
+        let all = (shared.done as f64 + fraction) / shared.of.max(1) as f64;
+        let activity = format_args!("{}: {activity}", self.job.name);
+        shared.monitor.working(&activity, all);
     }
 
     fn is_cancelled(&self) -> bool {
-        lock(self.monitor).stop()
+        lock(self.shared).is_cancelled()
     }
 }
 
-impl Ran {
+impl CompletedRun {
     fn new(job: &Job, plan: Plan, rows: Vec<Row>, verdict: Verdict, directory: &Path) -> Self {
         let rings = plan.mesh.rings(plan.symmetry);
         Self {
@@ -289,15 +298,30 @@ impl Ran {
         }
     }
 
-    /// The last state.
-    ///
-    /// # Errors
-    /// [`Trouble::State`] if there is none.
-    pub fn last(&self) -> Result<&Row, Trouble> {
-        self.rows.last().ok_or_else(|| self.lacks("a last state"))
+    /// Describes its size and cost in one line.
+    fn summary(&self) -> String {
+        let lost = match self.verdict {
+            Verdict::Complete => "",
+            _ => ", lost",
+        };
+        format!(
+            "{}: {} states, {} solves, {:.1} s{lost}",
+            self.job.name,
+            self.rows.len(),
+            self.solves(),
+            self.seconds()
+        )
     }
 
-    /// The states of a stage, the one that it begins at before them.
+    /// Returns the last state.
+    ///
+    /// # Errors
+    /// [`ReproductionError::State`] if there is none.
+    pub fn last(&self) -> Result<&Row, ReproductionError> {
+        self.rows.last().ok_or_else(|| self.missing("a last state"))
+    }
+
+    /// Returns the states of a stage, preceded by the state that it begins at.
     pub fn stage(&self, name: &str) -> &[Row] {
         let is = |row: &Row| row.stage == name;
         let first = self.rows.iter().position(is).unwrap_or(self.rows.len());
@@ -305,45 +329,45 @@ impl Ran {
         &self.rows[first.saturating_sub(1)..last]
     }
 
-    /// The state of the stage `relax` at a length ratio.
+    /// Returns the state of the stage `relax` at a length ratio.
     ///
     /// # Errors
-    /// [`Trouble::State`] if there is none.
-    pub fn at(&self, length_ratio: f64) -> Result<&Row, Trouble> {
+    /// [`ReproductionError::State`] if there is none.
+    pub fn at(&self, length_ratio: f64) -> Result<&Row, ReproductionError> {
         let here = |row: &&Row| (row.length_ratio - length_ratio).abs() < 1e-9;
         let found = self.stage("relax").iter().find(here);
-        found.ok_or_else(|| self.lacks(&format!("a state at Lmax/L = {length_ratio}")))
+        found.ok_or_else(|| self.missing(&format!("a state at Lmax/L = {length_ratio}")))
     }
 
-    fn lacks(&self, what: &str) -> Trouble {
-        Trouble::State(format!("{} has not {what}", self.job.name))
+    fn missing(&self, item: &str) -> ReproductionError {
+        ReproductionError::State(format!("{} does not have {item}", self.job.name))
     }
 
-    /// The tube.
+    /// Returns the tube.
     pub fn tube(&self) -> &SplineTube {
         &self.tube
     }
 
-    /// A state in full.
+    /// Reads a saved state.
     ///
     /// # Errors
-    /// [`Trouble::State`] if it was not saved, or cannot be read.
-    pub fn state(&self, row: &Row) -> Result<SavedState, Trouble> {
+    /// [`ReproductionError::State`] if it was not saved, or cannot be read.
+    pub fn state(&self, row: &Row) -> Result<SavedState, ReproductionError> {
         let file = self.directory.join(RunDirectory::name_of_state(row.step));
         SavedState::read(&file).map_err(|error| {
             let run = self.directory.display();
-            Trouble::State(format!(
-                "{}: {error}; remove {run}, and it is done again",
+            ReproductionError::State(format!(
+                "{}: {error}; remove {run} to repeat the run",
                 file.display()
             ))
         })
     }
 
-    /// The meridian of a state's face at an angle.
+    /// Returns the meridian of a face at an angle.
     ///
     /// # Errors
-    /// As [`Ran::state`].
-    pub fn wall(&self, row: &Row, face: Face, angle: f64) -> Result<Wall, Trouble> {
+    /// As [`CompletedRun::state`].
+    pub fn wall(&self, row: &Row, face: Face, angle: f64) -> Result<Wall, ReproductionError> {
         let state = self.state(row)?;
         let z = self
             .tube
@@ -353,17 +377,17 @@ impl Ran {
         Ok(meridians.walls(face, &[angle], &z).remove(0))
     }
 
-    /// Wall time, in seconds.
+    /// Returns the wall time in seconds.
     pub fn seconds(&self) -> f64 {
         self.rows.iter().map(|row| row.seconds).sum()
     }
 
-    /// Linear solves.
+    /// Returns the number of linear solves.
     pub fn solves(&self) -> usize {
         self.rows.iter().map(|row| row.iterations).sum()
     }
 
-    /// Iterations of conjugate gradients.
+    /// Returns the number of iterations of conjugate gradients.
     pub fn cg_iterations(&self) -> usize {
         self.rows.iter().map(|row| row.cg_iterations).sum()
     }

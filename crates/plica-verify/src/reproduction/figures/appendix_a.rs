@@ -1,10 +1,10 @@
-//! Meshes in all three directions, and the drag.
+//! Convergence with the mesh in all three directions, and the damping coefficient.
 
 use super::super::job::Job;
 use super::super::page::{Page, Verdict};
 use super::super::pictures::chart;
-use super::super::runs::{Ran, Runs};
-use super::super::{Figure, Fineness, Trouble};
+use super::super::runs::{CompletedRun, Runs};
+use super::super::{Figure, Fineness, ReproductionError};
 use super::{COARSE, mesh};
 use plica_view::draw::{Curve, Stroke};
 
@@ -12,15 +12,15 @@ pub(super) const FIGURE: Figure = Figure {
     name: "appendix-a",
     title: "Appendix A: meshes and the damping coefficient",
     paper: "The appendix tests the convergence of the mesh and chooses 305 × 60 × 8 control points, and finds the results \
-            independent of the damping coefficient (its figures are not at hand here).",
+            independent of the damping coefficient (its figures are not available here).",
     jobs,
-    tell,
+    describe,
 };
 
 /// Directions: along, around, through the wall.
 const DIRECTIONS: [&str; 3] = ["along", "around", "through the wall"];
 
-/// Where energies are compared: a V, the minimum, and a square; and after the fold.
+/// Values of Lmax/L at which energies are compared: a V, the minimum, a square, and a folded state.
 const LENGTHS: [f64; 4] = [1.0, 1.13, 1.18, 1.25];
 
 /// Control points in each direction, the last the reference of its direction.
@@ -39,12 +39,12 @@ fn points(fineness: Fineness) -> [&'static [usize]; 3] {
     )
 }
 
-/// Drags of the paper's scheme.
-fn drags(fineness: Fineness) -> &'static [f64] {
+/// Damping coefficients of the paper's scheme.
+fn dampings(fineness: Fineness) -> &'static [f64] {
     fineness.choose(&[10.0, 100.0], &[10.0, 30.0, 100.0, 300.0, 1000.0])
 }
 
-/// Rings around an oval, whose energy tells how many it takes; on fewer the relaxation into it hardly ends.
+/// Rings around an oval. With fewer rings the relaxation converges very slowly.
 const RINGS: [usize; 2] = [32, 48];
 
 fn at(direction: usize, count: usize, fineness: Fineness) -> Job {
@@ -54,19 +54,23 @@ fn at(direction: usize, count: usize, fineness: Fineness) -> Job {
     Job::of("invagination")
         .named(format!("invagination-{axial}x{around}x{thickness}"))
         .on(points)
-        .bare()
+        .history_only()
 }
 
-fn damped(damping: f64, settle: bool) -> Job {
-    let how = if settle { "settled" } else { "as-it-is" };
+fn damped(damping: f64, equilibrate: bool) -> Job {
+    let suffix = if equilibrate {
+        "equilibrated"
+    } else {
+        "as-accepted"
+    };
     Job::of("paper-scheme")
-        .named(format!("paper-scheme-damping-{damping}-{how}"))
+        .named(format!("paper-scheme-damping-{damping}-{suffix}"))
         .on(COARSE)
         .with("stages[2].steps", 13)
         .with("stages[2].drive.longitudinal.length_ratio", 1.13)
         .with("solver.pseudo_time.damping", format!("{damping:?}"))
-        .with("solver.pseudo_time.equilibrate", settle)
-        .bare()
+        .with("solver.pseudo_time.equilibrate", equilibrate)
+        .history_only()
 }
 
 fn oval(rings: usize) -> Job {
@@ -74,7 +78,7 @@ fn oval(rings: usize) -> Job {
     Job::of("collapse")
         .named(name)
         .on([105, rings, 5])
-        .bare()
+        .history_only()
         .large()
 }
 
@@ -83,8 +87,8 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
     for (direction, counts) in points(fineness).into_iter().enumerate() {
         jobs.extend(counts.iter().map(|&count| at(direction, count, fineness)));
     }
-    for &damping in drags(fineness) {
-        jobs.extend([true, false].map(|settle| damped(damping, settle)));
+    for &damping in dampings(fineness) {
+        jobs.extend([true, false].map(|equilibrate| damped(damping, equilibrate)));
     }
     if fineness == Fineness::Full {
         jobs.extend(RINGS.map(oval));
@@ -92,7 +96,7 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
     jobs
 }
 
-fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble> {
+fn describe(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), ReproductionError> {
     meshes(page, runs, fineness)?;
     damping(page, runs, fineness)?;
     if fineness == Fineness::Full {
@@ -101,26 +105,29 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
     Ok(())
 }
 
-/// The largest difference, and where.
+/// Largest difference, and its direction.
 #[derive(Default)]
 struct Worst {
-    off: f64,
+    difference: f64,
     direction: &'static str,
 }
 
 impl Worst {
-    fn take(&mut self, off: f64, direction: &'static str) {
-        if off > self.off {
-            *self = Self { off, direction };
+    fn update(&mut self, difference: f64, direction: &'static str) {
+        if difference > self.difference {
+            *self = Self {
+                difference,
+                direction,
+            };
         }
     }
 
-    fn told(&self) -> String {
-        format!("{:.0e} ({})", self.off, self.direction)
+    fn describe(&self) -> String {
+        format!("{:.0e} ({})", self.difference, self.direction)
     }
 }
 
-fn meshes(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble> {
+fn meshes(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), ReproductionError> {
     let own = mesh(fineness);
     let mut curves = vec![];
     let mut rows = vec![];
@@ -144,8 +151,8 @@ fn meshes(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troubl
                 largest.max(1e-12).log10(),
             ));
             if count == own[direction] {
-                before.take(largest, DIRECTIONS[direction]);
-                after.take(*folded, DIRECTIONS[direction]);
+                before.update(largest, DIRECTIONS[direction]);
+                after.update(*folded, DIRECTIONS[direction]);
             }
             let mut row = vec![DIRECTIONS[direction].to_owned(), count.to_string()];
             row.extend(off.iter().map(|off| format!("{off:.0e}")));
@@ -170,18 +177,18 @@ fn meshes(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troubl
         "the mesh has converged, before the fold",
         format!(
             "on {on}, W at Lmax/L = 1.00, 1.13 and 1.18 is within {} of that on the finest mesh of each direction",
-            before.told()
+            before.describe()
         ),
-        before.off > 0.0 && before.off < 1e-3,
+        before.difference > 0.0 && before.difference < 1e-3,
     );
     page.judge(
         "A",
         "the mesh has converged, after the fold",
         format!(
             "on {on}, W at 1.25 is within {} of that on the finest mesh of each direction",
-            after.told()
+            after.describe()
         ),
-        match after.off {
+        match after.difference {
             off if off < 0.01 => Verdict::Agrees,
             off if off < 0.1 => Verdict::Explained,
             _ => Verdict::Differs,
@@ -189,14 +196,14 @@ fn meshes(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troubl
     );
     page.text(
         "**Meshes.** W of the main case, one direction refined at a time, against the finest of that direction. An axisymmetric state is a state of the whole \
-         three-dimensional tube, so the points around matter to it only by the circle that they draw. After the fold the wall has a crease, which gets sharper \
-         the finer the mesh is, until the wall touches itself there: W at 1.25 settles slower (see `docs/verification.md`).",
+         three-dimensional tube, so the number of points around affects it only through the spline circle. After the fold the wall has a crease, \
+             which becomes sharper with a finer mesh until the wall touches itself there, so W at 1.25 converges more slowly (see `docs/verification.md`).",
     );
     page.table(
         &[
             "direction",
             "control points",
-            "W off at 1.00",
+            "difference of W at 1.00",
             "at 1.13",
             "at 1.18",
             "at 1.25",
@@ -206,31 +213,35 @@ fn meshes(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troubl
     );
     page.picture(
         "meshes",
-        chart("control points over those of the figures", "log_{10} of the largest difference of *W*", curves)?,
+        chart("control points relative to those of the figures", "log_{10} of the largest difference of *W*", curves)?,
         "Largest relative difference of W at Lmax/L = 1.00, 1.13 and 1.18 from the finest mesh of each direction, before the fold",
     );
     Ok(())
 }
 
-fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble> {
-    let get = |damping: f64, settle| runs.get(&damped(damping, settle).name);
-    let energy = |ran: &Ran| Ok::<f64, Trouble>(ran.last()?.energy);
+fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), ReproductionError> {
+    let get = |damping: f64, equilibrate| runs.get(&damped(damping, equilibrate).name);
+    let energy = |ran: &CompletedRun| Ok::<f64, ReproductionError>(ran.last()?.energy);
     let reference = energy(get(100.0, true)?)?;
-    let (mut settled, mut raw) = (0.0_f64, 0.0_f64);
+    let (mut equilibrated, mut raw) = (0.0_f64, 0.0_f64);
     let mut rows = vec![];
-    for &damping in drags(fineness) {
-        for settle in [true, false] {
-            let ran = get(damping, settle)?;
+    for &damping in dampings(fineness) {
+        for equilibrate in [true, false] {
+            let ran = get(damping, equilibrate)?;
             let last = ran.last()?;
             let off = (last.energy / reference - 1.0).abs();
-            let worst = if settle { &mut settled } else { &mut raw };
+            let worst = if equilibrate {
+                &mut equilibrated
+            } else {
+                &mut raw
+            };
             *worst = worst.max(off);
             rows.push(vec![
                 format!("{damping}"),
-                if settle {
-                    "settled without damping"
+                if equilibrate {
+                    "equilibrated without damping"
                 } else {
-                    "as the paper accepts it"
+                    "accepted by the paper's rule"
                 }
                 .into(),
                 format!("{:.6e}", last.energy),
@@ -241,8 +252,8 @@ fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troub
             ]);
         }
     }
-    // What the rule accepts is the further from equilibrium the more drag there is; equilibrium is the same.
-    let verdict = match (settled < 1e-6, raw < 1e-2) {
+    // States accepted by the rule are farther from equilibrium the larger the damping; the equilibrium is the same.
+    let verdict = match (equilibrated < 1e-6, raw < 1e-2) {
         (true, true) => Verdict::Agrees,
         (true, false) if raw < 0.1 => Verdict::Explained,
         _ => Verdict::Differs,
@@ -251,14 +262,15 @@ fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troub
         "A",
         "the result does not depend on the damping coefficient",
         format!(
-            "W(1.13) differs by {raw:.0e} at most as the paper accepts states (no control point moves 1e-5 D in a step); by {settled:.0e} if they are then settled without damping, as there is but one branch there"
+            "W(1.13) differs by at most {raw:.0e} with the paper's rule of acceptance (no control point moves by 1e-5 D in a \
+             step), and by {equilibrated:.0e} after equilibration without damping, because there is only one branch"
         ),
         verdict,
     );
     page.text(format!(
-        "**Drag.** The paper's scheme on {} × {} × {} control points to Lmax/L = 1.13. The residual is that without damping, over the forces in play. \
-         A state counts as final once no control point moves 1e-5 D in a step, and the more damping there is the further from equilibrium that is; settled \
-         without damping, all that are on one branch are the same state. The paper takes 100.",
+        "**Damping.** The paper's scheme on {} × {} × {} control points to Lmax/L = 1.13. The relative residual omits the damping forces. A state is accepted when no control point moves by 1e-5 D in a \
+             step, and it is farther from equilibrium the larger the damping. After equilibration without damping, all states of \
+             one branch are the same. The paper uses 100.",
         COARSE[0], COARSE[1], COARSE[2]
     ));
     page.table(
@@ -266,7 +278,7 @@ fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troub
             "ηD/(EΔτ)",
             "accepted",
             "W",
-            "off",
+            "difference",
             "residual",
             "solves",
             "seconds",
@@ -276,8 +288,9 @@ fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Troub
     Ok(())
 }
 
-fn ovals(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
-    let energy = |rings: usize| Ok::<f64, Trouble>(runs.get(&oval(rings).name)?.at(1.07)?.energy);
+fn ovals(page: &mut Page, runs: &Runs) -> Result<(), ReproductionError> {
+    let energy =
+        |rings: usize| Ok::<f64, ReproductionError>(runs.get(&oval(rings).name)?.at(1.07)?.energy);
     let finest = energy(RINGS[1])?;
     let mut rows = vec![];
     for rings in RINGS {
@@ -288,7 +301,7 @@ fn ovals(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
             format!("{:.0e}", (w / finest - 1.0).abs()),
         ]);
     }
-    page.text("**Around a tube that is not round.** W of the oval of Fig. 3B at Lmax/L = 1.07, on 105 points along and 5 through the wall.");
-    page.table(&["control points around", "W", "off"], rows);
+    page.text("**Control points around an oval.** W of the oval of Fig. 3B at Lmax/L = 1.07, on 105 points along and 5 through the wall.");
+    page.table(&["control points around", "W", "difference"], rows);
     Ok(())
 }

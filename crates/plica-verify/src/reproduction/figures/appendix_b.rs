@@ -3,8 +3,8 @@
 use super::super::job::Job;
 use super::super::page::{Page, Verdict, energy};
 use super::super::pictures::{panel, tubes};
-use super::super::runs::{Ran, Runs};
-use super::super::{Figure, Fineness, Trouble};
+use super::super::runs::{CompletedRun, Runs};
+use super::super::{Figure, Fineness, ReproductionError};
 use super::{FOLD, axisymmetric, side};
 use plica::measure::Shape;
 use plica::measure::{Face, Side};
@@ -14,26 +14,26 @@ use plica::study::Row;
 pub(super) const FIGURE: Figure = Figure {
     name: "appendix-b",
     title: "Appendix B: a perturbed boundary condition",
-    paper: "The tube still invaginates when the boundary condition is perturbed (how is told in an appendix that is not at hand \
-            here). Plica perturbs where an end is held, in several ways, and follows the tube in three dimensions to Lmax/L = 1.25.",
+    paper: "The tube still invaginates when the boundary condition is perturbed (the perturbation is described in an appendix that is not available here). Plica perturbs the support of an end in \
+             several ways and follows the tube in three dimensions to Lmax/L = 1.25.",
     jobs,
-    tell,
+    describe,
 };
 
-/// A perturbation: its name, in words, the direction and the shape of the displacement of the end.
+/// A kind of perturbation of the end.
 struct Kind {
     name: &'static str,
     words: &'static str,
     direction: &'static str,
     shape: &'static str,
-    /// Another imperfection beside it.
-    besides: &'static str,
+    /// Additional imperfection.
+    additional: &'static str,
 }
 
-/// What leads a tube sideways that would otherwise stay in balance there: along the short axis of its oval, as that is
-/// where it tilts to in the end. Led along the long one it tilts there first, and then turns, in a balance so nearly
-/// neutral that relaxation is lost on the way.
-const LED_ASIDE: &str = ", { of = \"ileum-end\", amplitude = 1e-4, shape = { wave = { mode = 1, phase_degrees = 90 } } }";
+/// A second imperfection that triggers the sideways branch of an oval tube, along the short axis of the oval: the tube
+/// finally tilts in this direction. Along the long axis it tilts there first and then rotates by a quarter, nearly neutrally,
+/// and relaxation does not converge.
+const SIDEWAYS: &str = ", { of = \"ileum-end\", amplitude = 1e-4, shape = { wave = { mode = 1, phase_degrees = 90 } } }";
 
 const KINDS: [Kind; 4] = [
     Kind {
@@ -41,36 +41,36 @@ const KINDS: [Kind; 4] = [
         words: "the colon end shifted sideways",
         direction: "across",
         shape: "{ wave = { mode = 1 } }",
-        besides: "",
+        additional: "",
     },
     Kind {
         name: "tilted",
         words: "the colon end tilted",
         direction: "axial",
         shape: "{ wave = { mode = 1 } }",
-        besides: "",
+        additional: "",
     },
     Kind {
         name: "oval",
-        words: "the colon end held on an oval (and the ileum end shifted by 1e-4 D)",
+        words: "the colon end made oval (and the ileum end shifted by 1e-4 D)",
         direction: "across",
         shape: "{ wave = { mode = 2 } }",
-        besides: LED_ASIDE,
+        additional: SIDEWAYS,
     },
     Kind {
         name: "uneven",
-        words: "the colon end held unevenly (random harmonics 0 to 4)",
+        words: "the colon end made uneven (random circumferential modes 0 to 4)",
         direction: "across",
         shape: "{ random = { seed = 7 } }",
-        besides: "",
+        additional: "",
     },
 ];
 
-/// An amplitude that is looked at of every kind, in D: a twelfth of the wall's thickness.
+/// Amplitude in D that is used for every kind: a twelfth of the thickness of the wall.
 const USUAL: f64 = 5e-3;
 
-/// The kinds, and the amplitudes of each in D. The last two are looked at once: little in the uneven end leads the tube
-/// off a path that is unstable sideways, so that it takes many minutes through the fold.
+/// Returns the kinds with their amplitudes in D. The last two have one amplitude: the uneven end hardly triggers the
+/// sideways branch, so that its run takes many minutes through the fold.
 fn perturbations(fineness: Fineness) -> [(&'static Kind, &'static [f64]); 4] {
     let [shifted, tilted, oval, uneven] = &KINDS;
     let several: &[f64] = fineness.choose(&[USUAL], &[1e-3, USUAL, 1.5e-2]);
@@ -90,7 +90,7 @@ fn job(kind: &Kind, amplitude: f64) -> Job {
     );
     Job::of("perturbed")
         .named(format!("perturbed-{}-{amplitude}", kind.name))
-        .with("imperfections", format!("[{own}{}]", kind.besides))
+        .with("imperfections", format!("[{own}{}]", kind.additional))
 }
 
 fn on_paper_mesh() -> Job {
@@ -98,7 +98,7 @@ fn on_paper_mesh() -> Job {
     job.on([305, 60, 8]).large()
 }
 
-/// The tube that nothing perturbs, on the same mesh.
+/// The unperturbed tube on the same mesh.
 fn unperturbed() -> Job {
     Job::of("perturbed")
         .named("perturbed-not-at-all")
@@ -118,18 +118,18 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
     jobs
 }
 
-/// How the two sides of a tube that leans fold: that which leans out, and that across from it.
+/// Folds of the two opposite sides of a tilted tube.
 struct Sides {
-    /// Overhang of each, in D, and the end that it is towards.
+    /// Overhang of each in D, and the end that it points to.
     folds: [(f64, Side); 2],
 }
 
 impl Sides {
-    fn of(ran: &Ran, row: &Row) -> Result<Self, Trouble> {
+    fn of(ran: &CompletedRun, row: &Row) -> Result<Self, ReproductionError> {
         let crest = row.asymmetry_angle_deg.to_radians();
         let across = crest + std::f64::consts::PI / row.asymmetry_mode.max(1) as f64;
         let fold = |angle| Ok(ran.wall(row, Face::Outer, angle)?.overhang());
-        let folds: Result<Vec<(f64, Side)>, Trouble> =
+        let folds: Result<Vec<(f64, Side)>, ReproductionError> =
             [crest, across].map(fold).into_iter().collect();
         let folds = folds?;
         Ok(Self {
@@ -137,10 +137,10 @@ impl Sides {
         })
     }
 
-    fn told(&self) -> String {
-        let [a, b] = self.folds.map(|(deep, side)| match side {
+    fn describe(&self) -> String {
+        let [a, b] = self.folds.map(|(overhang, side)| match side {
             Side::None => "does not overhang".into(),
-            side => format!("folds {deep:.3} D to the {side}"),
+            side => format!("folds {overhang:.3} D to the {side}"),
         });
         if self.to_one_end() {
             format!("all around: one side {a}, the other {b}")
@@ -149,16 +149,16 @@ impl Sides {
         }
     }
 
-    /// Whether it folds to the same end all around, as an axisymmetric tube does.
+    /// Returns whether it folds to the same end all around, as an axisymmetric tube does.
     fn to_one_end(&self) -> bool {
         let [(_, a), (_, b)] = self.folds;
         a == b && a != Side::None
     }
 }
 
-/// Whether a perturbed tube still invaginates: it does if it folds to one end all around; if it tilts, both of its sides
-/// fold, each to an end of its own, and that is told.
-fn verdict(ran: &Ran, row: &Row, sides: &Sides) -> Verdict {
+/// Returns whether a perturbed tube still invaginates: it agrees if it folds to one end all around; if it tilts, its sides
+/// fold to different ends, which is explained.
+fn verdict(ran: &CompletedRun, row: &Row, sides: &Sides) -> Verdict {
     let arrived = ran.verdict == run_directory::Verdict::Complete
         && row.shape == Shape::Invaginated
         && row.overhang > FOLD;
@@ -169,7 +169,7 @@ fn verdict(ran: &Ran, row: &Row, sides: &Sides) -> Verdict {
     }
 }
 
-fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble> {
+fn describe(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), ReproductionError> {
     let mut panels = vec![];
     let perfect = runs.get(&unperturbed().name)?.last()?;
     let mut rows = vec![vec![
@@ -193,15 +193,18 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
             let sides = Sides::of(ran, last)?;
             verdicts.push(verdict(ran, last, &sides));
             let end = match ran.verdict {
-                run_directory::Verdict::Complete => sides.told(),
-                _ => format!("lost after {:.3}; {}", last.length_ratio, sides.told()),
+                run_directory::Verdict::Complete => sides.describe(),
+                _ => format!("lost after {:.3}; {}", last.length_ratio, sides.describe()),
             };
             found.push(format!("{amplitude} D: {end}"));
             rows.push(vec![
                 kind.words.into(),
                 format!("{amplitude}"),
                 end,
-                format!("harmonic {}, {:.3} D", last.asymmetry_mode, last.asymmetry),
+                format!(
+                    "circumferential mode {}, {:.3} D",
+                    last.asymmetry_mode, last.asymmetry
+                ),
                 energy(last),
                 format!("{:.0}", ran.seconds()),
             ]);
@@ -228,8 +231,8 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
                 "on the paper's mesh, 439,200 unknowns, the colon end shifted sideways by 1e-4 D",
             ),
             format!(
-                "{}; W = {}, {:.3} D from axisymmetric (harmonic {})",
-                sides.told(),
+                "{}; W = {}, asymmetry {:.3} D (circumferential mode {})",
+                sides.describe(),
                 energy(last),
                 last.asymmetry,
                 last.asymmetry_mode
@@ -246,7 +249,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
             ));
         }
         page.text(format!(
-            "**Does the tilted tube store less?** On the paper's mesh, W of the tilted tube against that of the axisymmetric one: {}.",
+            "**Energy of the tilted tube.** On the paper's mesh, W of the tilted tube compared with that of the axisymmetric one: {}.",
             energies.join(", ")
         ));
         panels.push(panel(ran, last, "on the paper's mesh, shifted by 1e-4 D")?);
@@ -256,7 +259,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
             "perturbation",
             "amplitude, D",
             "at Lmax/L = 1.25",
-            "from axisymmetric",
+            "asymmetry",
             "W",
             "seconds",
         ],
@@ -265,19 +268,20 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
     page.picture(
         "tubes",
         tubes(panels)?,
-        "Perturbed tubes at Lmax/L = 1.25, cut open along the plane in which they lean, coloured by strain energy density",
+        "Perturbed tubes at Lmax/L = 1.25, cut open along the plane in which they tilt, coloured by strain energy density",
     );
     page.text(
-        "**Why it tilts.** The axisymmetric path of the main case is unstable to harmonic 1 between Lmax/L = 1.179 and 1.198 (`plica stability` of it on the paper's mesh; \
-         docs/stability.md), before its wall overhangs. A perturbation that has a part in harmonic 1 lets the tube tilt there, and it \
-         then folds to both ends at once: to one on the side that leans in, to the other across. The paper's symmetric fold is what is left where nothing leads the tube \
-         aside. Its own perturbation is told in an appendix that is not at hand.",
+        "**Why it tilts.** The axisymmetric path of the main case is unstable to circumferential mode 1 between Lmax/L = 1.179 and 1.198 (`plica stability` of it on the paper's mesh; \
+         docs/stability.md), before its wall overhangs. A perturbation with a component in mode 1 triggers the tilt there, and the tube then folds to both ends at once, to \
+             a different end on each side. Without such a component the tube keeps the symmetric fold of the paper. The paper's \
+             own perturbation is described in an appendix that is not available.",
     );
     if fineness == Fineness::Full {
         page.text(
-            "**Which way.** An oval end leaves the tube in balance sideways, so the ileum end leads it aside along the oval's short axis. Led along \
-             the long axis (`phase_degrees` 0 in place of 90) it tilts that way first and then has to turn by a quarter, with next to nothing to drive it: \
-             plica 0.1.0 was lost on that way, in relaxation at Lmax/L = 1.209 after eleven minutes (not run here).",
+            "**Direction of the tilt.** An oval end does not trigger the tilt, so the ileum end is shifted along the short axis \
+             of the oval. With a shift along the long axis (`phase_degrees` 0 instead of 90) the tube tilts in that direction \
+             first and then rotates by a quarter, almost without resistance: relaxation of plica 0.1.0 found no equilibrium at \
+             Lmax/L = 1.209 after eleven minutes (not run here).",
         );
     }
     Ok(())

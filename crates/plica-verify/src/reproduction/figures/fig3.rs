@@ -3,8 +3,8 @@
 use super::super::job::Job;
 use super::super::page::{Page, Verdict, energy};
 use super::super::pictures::{panel, tubes};
-use super::super::runs::{Ran, Runs};
-use super::super::{Figure, Fineness, Trouble};
+use super::super::runs::{CompletedRun, Runs};
+use super::super::{Figure, Fineness, ReproductionError};
 use super::{FOLD, axisymmetric, is_folded, side, unstable};
 use plica::equilibrium::UnstableMode;
 use plica::measure::{Shape, Side};
@@ -16,25 +16,25 @@ pub(super) const FIGURE: Figure = Figure {
     paper: "The paper's Fig. 3 shows three tubes: A contracts (Dmin/D = 0.25) and forms a V; B relaxes (Lmax/L = 1.2) and \
             collapses; C does both (Lmax/L = 1.25) and invaginates.",
     jobs,
-    tell,
+    describe,
 };
 
 /// Number of the last state of `cases/collapse.toml`, at Lmax/L = 1.08.
 const OVAL: usize = 8;
 
-/// The oval dragged on: each step until nothing moves 1e-3 D in a step of pseudo-time, and not settled, since it does not
-/// come to rest before its lumen is closed.
-fn dragged_on() -> Job {
-    let job = Job::of("collapse").named("collapse-damped-on").large();
+/// The oval continued with damping. Each state is accepted when no control point moves by 1e-3 D in a pseudo-time step and
+/// is not equilibrated, because no equilibrium is found before the lumen closes.
+fn continued_with_damping() -> Job {
+    let job = Job::of("collapse").named("collapse-with-damping").large();
     job.from("collapse", OVAL)
         .with("stages[1].steps", 12)
         .with("stages[1].drive.longitudinal.length_ratio", 1.2)
-        .with("solver.scheme", "\"damped\"")
+        .with("solver.scheme", "\"backward-euler\"")
         .with("solver.pseudo_time.tolerance", "1e-3")
         .with("solver.pseudo_time.equilibrate", false)
 }
 
-/// The axisymmetric tube on the mesh of the oval, to compare energies with.
+/// The axisymmetric tube on the mesh of the oval, for a comparison of energies.
 fn kept_round() -> Job {
     let job = Job::of("relaxation").named("relaxation-on-the-mesh-of-the-oval");
     job.on([105, 32, 5])
@@ -51,12 +51,12 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
     if fineness == Fineness::Full {
         let finer = Job::of("collapse").named("collapse-paper-mesh").large();
         jobs.push(finer.on([305, 60, 8]).from("collapse", OVAL - 1));
-        jobs.push(dragged_on());
+        jobs.push(continued_with_damping());
     }
     jobs
 }
 
-fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble> {
+fn describe(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), ReproductionError> {
     let [contraction, ring_buckled, both] =
         ["contraction", "relaxation", "invagination"].map(|name| runs.get(name));
     let (contraction, ring_buckled, both) = (contraction?, ring_buckled?, both?);
@@ -69,7 +69,7 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
         "3A",
         "contraction alone gives a V and no invagination",
         format!(
-            "{}, steepest wall {:.0}°, overhang of {overhang:.3} D in any state, at most",
+            "{}, steepest wall {:.0}°, overhang of at most {overhang:.3} D in any state",
             a.shape, a.max_wall_angle_deg
         ),
         a.shape == Shape::V
@@ -81,21 +81,21 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
         "3B",
         "relaxation alone makes the tube collapse, without invagination",
         format!(
-            "an oval at Lmax/L = {:.2}{}: harmonic {}, {:.3} D from round, the lumen {:.3} D wide at its narrowest, overhang {overhang:.3} D",
+            "an oval at Lmax/L = {:.2}{}: circumferential mode {}, asymmetry {:.3} D, narrowest lumen {:.3} D, overhang {overhang:.3} D",
             b.length_ratio,
-            fineness.choose(" (--full goes on to the paper's 1.2)", ""),
+            fineness.choose(" (--full continues to the paper's 1.2)", ""),
             b.asymmetry_mode,
             b.asymmetry,
             b.lumen
         ),
         b.asymmetry > 0.05
-            // Less than half of what it is at rest.
+            // Less than half of the lumen at rest.
             && b.lumen < collapse.plan.tube.inner_radius()
             && b.in_equilibrium
             && overhang < FOLD,
     );
     if fineness == Fineness::Full {
-        collapse_at_the_papers_length(page, runs.get(&dragged_on().name)?)?;
+        collapse_at_the_papers_length(page, runs.get(&continued_with_damping().name)?)?;
     }
     page.claim(
         "3C",
@@ -138,22 +138,26 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
         ])?,
         "Tubes cut open, coloured by strain energy density; B is cut through its widest meridians",
     );
-    instead(page, runs, ring_buckled)?;
+    axisymmetric_alternative(page, runs, ring_buckled)?;
     page.text(format!(
-        "**Stability.** A and C are axisymmetric states, those of the full tube as well; but a full tube leaves the path of C where it is \
-         unstable: at Lmax/L = {} (Appendix B).",
+        "**Stability.** A and C are axisymmetric and also equilibria of the whole tube; but the whole tube leaves the path of C where it is \
+             unstable: at Lmax/L = {} (Appendix B).",
         unstable(both.stage("relax"))
     ));
     Ok(())
 }
 
-fn largest_overhang(ran: &Ran) -> f64 {
+fn largest_overhang(ran: &CompletedRun) -> f64 {
     let overhangs = ran.rows.iter().map(|row| row.overhang);
     overhangs.fold(0.0, f64::max)
 }
 
-/// What the tube of 3B does in rings, and why it does not.
-fn instead(page: &mut Page, runs: &Runs, rings: &Ran) -> Result<(), Trouble> {
+/// Compares the oval of 3B with the axisymmetric tube.
+fn axisymmetric_alternative(
+    page: &mut Page,
+    runs: &Runs,
+    rings: &CompletedRun,
+) -> Result<(), ReproductionError> {
     let lost = rings.rows.iter().find(|row| row.stability.is_unstable());
     let oval_first = match lost {
         Some(row)
@@ -163,22 +167,24 @@ fn instead(page: &mut Page, runs: &Runs, rings: &Ran) -> Result<(), Trouble> {
                 .eq([UnstableMode::Circumferential(2)]) =>
         {
             format!(
-                "the first harmonic that its path loses is 2, an oval, by Lmax/L = {:.2}: this is what the run of B is started on, by an end \
-             that is held on an oval of 1e-4 D, and it is run as two halves that are alike",
+                "its path first loses stability to circumferential mode 2 (oval), by Lmax/L = {:.2}. An oval imperfection of 1e-4 D \
+             at one end starts the run of B on this mode, with two-fold symmetry",
                 row.length_ratio
             )
         }
         Some(row) => format!(
-            "its path first loses harmonics {} by Lmax/L = {:.2}; the run of B is started on an oval all the same",
+            "its path first loses stability to circumferential modes {} by Lmax/L = {:.2}; the run of B nevertheless starts from \
+             an oval",
             row.stability, row.length_ratio
         ),
         None => {
-            "its path loses no harmonic; the run of B is started on an oval all the same".into()
+            "its path is stable to all tested modes; the run of B nevertheless starts from an oval"
+                .into()
         }
     };
     let folds = match rings.rows.iter().find(|row| row.overhang > FOLD) {
         Some(row) => format!(
-            "at Lmax/L = {:.2} a ring has folded over itself outwards, {:.2} D deep{}",
+            "at Lmax/L = {:.2} a ring has folded over outwards, with an overhang of {:.2} D{}",
             row.length_ratio,
             row.overhang,
             if row.crosses_itself() {
@@ -193,8 +199,8 @@ fn instead(page: &mut Page, runs: &Runs, rings: &Ran) -> Result<(), Trouble> {
     let at = 1.08;
     let (oval, round) = (oval.at(at)?, round.at(at)?);
     page.text(format!(
-        "**B, told in full.** A tube that relaxes and cannot get longer is under compression. Kept axisymmetric (`cases/relaxation.toml`) it \
-         swells and buckles in rings; {folds}. In three dimensions it does not get there: {oval_first}. At Lmax/L = {at} the oval has \
+        "**B in detail.** A tube that relaxes between fixed ends is under compression. An axisymmetric tube \
+             (`cases/relaxation.toml`) swells and buckles in rings; {folds}. In three dimensions it collapses earlier: {oval_first}. At Lmax/L = {at} the oval has \
          W = {}, the axisymmetric tube on the same mesh {} E D³ ({:.0} % more).",
         energy(oval),
         energy(round),
@@ -203,13 +209,16 @@ fn instead(page: &mut Page, runs: &Runs, rings: &Ran) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// What becomes of 3B between 1.08 and Lmax/L = 1.2.
-fn collapse_at_the_papers_length(page: &mut Page, on: &Ran) -> Result<(), Trouble> {
+/// Describes the tube of 3B between Lmax/L = 1.08 and 1.2.
+fn collapse_at_the_papers_length(
+    page: &mut Page,
+    on: &CompletedRun,
+) -> Result<(), ReproductionError> {
     let last = on.last()?;
     let closed = on.rows.iter().find(|row| row.has_closed());
     let off = on.rows.iter().map(|row| row.residual).fold(0.0, f64::max);
     let reached = format!(
-        "damped on from 1.08, out of equilibrium by up to {off:.0e} of the forces in play, to {:.2}: {:.3} D from round, lumen {:.3} D",
+        "continued with damping from 1.08, with relative residuals up to {off:.0e}, to {:.2}: asymmetry {:.3} D, lumen {:.3} D",
         last.length_ratio, last.asymmetry, last.lumen
     );
     let overhang = largest_overhang(on);
@@ -219,7 +228,7 @@ fn collapse_at_the_papers_length(page: &mut Page, on: &Ran) -> Result<(), Troubl
     let (found, verdict) = match closed {
         Some(row) => (
             format!(
-                "{reached}; its lumen is closed from {:.2} on, where only contact could hold it",
+                "{reached}; its lumen is closed from {:.2} on, where an equilibrium would need contact",
                 row.length_ratio
             ),
             Verdict::Explained,
@@ -228,9 +237,10 @@ fn collapse_at_the_papers_length(page: &mut Page, on: &Ran) -> Result<(), Troubl
     };
     page.judge("3B", "it has collapsed at Lmax/L = 1.2", found, verdict);
     page.text(
-        "**3B at 1.2.** Past 1.08 the oval does not come to rest in the relaxation of the static scheme (200 solves), so it is followed with \
-         damping (backward Euler, ηD/(EΔτ) = 5), each state taken when nothing moves by 1e-3 D in a step of pseudo-time. The states are nearly, \
-         and not quite, in equilibrium. The paper accepts its own by such a rule too, with 1e-5 D.",
+        "**3B at 1.2.** Beyond 1.08 the relaxation of the static scheme finds no equilibrium of the oval (200 solves), so the path is \
+             continued with damping (backward Euler, ηD/(EΔτ) = 5). Each state is accepted when no control point moves by 1e-3 D \
+             in a pseudo-time step, so the states are only nearly in equilibrium. The paper accepts states by such a rule too, \
+             with 1e-5 D.",
     );
     Ok(())
 }

@@ -3,8 +3,8 @@
 use super::super::job::Job;
 use super::super::page::{Page, Verdict, energy};
 use super::super::pictures::{Outline, energies, outer, outlines};
-use super::super::runs::{Ran, Runs};
-use super::super::{Figure, Fineness, Trouble};
+use super::super::runs::{CompletedRun, Runs};
+use super::super::{Figure, Fineness, ReproductionError};
 use super::{COARSE, axisymmetric, first, is_folded, minimum, ratio, side, unstable};
 use plica::measure::{Face, Flank, Rotation, Shape, Side, Wall};
 use plica::run_directory;
@@ -17,16 +17,16 @@ pub(super) const FIGURE: Figure = Figure {
     paper: "With Dmin/D = 0.25 held, Lmax/L rises from 1.0 to 1.25. A: the total strain energy, with the tube's shapes. \
             B: the outer wall at Lmax/L = 1.0, 1.18 and 1.2, which rotates about a centre.",
     jobs,
-    tell,
+    describe,
 };
 
-/// The paper's scheme with states accepted as the paper accepts them.
-fn unsettled() -> Job {
-    let job = Job::of("paper-scheme").named("paper-scheme-not-settled");
+/// The paper's scheme with the paper's rule of acceptance, without equilibration.
+fn not_equilibrated() -> Job {
+    let job = Job::of("paper-scheme").named("paper-scheme-not-equilibrated");
     job.on(COARSE)
         .with("solver.pseudo_time.equilibrate", false)
         .with("solver.pseudo_time.max_steps", 20000)
-        .bare()
+        .history_only()
 }
 
 fn jobs(fineness: Fineness) -> Vec<Job> {
@@ -36,11 +36,11 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
             .named("invagination-coarse")
             .on(COARSE),
         Job::of("paper-scheme").on(COARSE),
-        unsettled(),
+        not_equilibrated(),
     ]
 }
 
-fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
+fn describe(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), ReproductionError> {
     let main = runs.get("invagination")?;
     let rows = main.stage("relax");
     let least = minimum(rows)?;
@@ -82,7 +82,7 @@ fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
         (1.18, (0.66, 0.8)),
         (1.25, (0.84, 0.18)),
     ];
-    let shown: Result<Vec<_>, Trouble> = shown
+    let shown: Result<Vec<_>, ReproductionError> = shown
         .iter()
         .map(|&(at, place)| Ok((main.at(at)?, place)))
         .collect();
@@ -95,7 +95,7 @@ fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
     schemes(page, runs)
 }
 
-/// V, U, square, invaginated: in this order.
+/// Checks the order of the shapes: V, U, square, invaginated.
 fn shapes(page: &mut Page, rows: &[Row]) {
     let mut shapes: Vec<Shape> = rows.iter().map(|row| row.shape).collect();
     shapes.dedup();
@@ -118,9 +118,9 @@ fn shapes(page: &mut Page, rows: &[Row]) {
     );
 }
 
-/// The energy's slope before and after the fold.
-fn slopes(page: &mut Page, rows: &[Row]) -> Result<(), Trouble> {
-    let none = || Trouble::State("no state before or after the fold".into());
+/// Checks the slopes of the energy before and after the fold.
+fn slopes(page: &mut Page, rows: &[Row]) -> Result<(), ReproductionError> {
+    let none = || ReproductionError::State("no state before or after the fold".into());
     let folded = rows
         .iter()
         .position(|row| row.shape == Shape::Invaginated)
@@ -140,12 +140,13 @@ fn slopes(page: &mut Page, rows: &[Row]) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Outer walls, how they turn, and which side is compressed.
-fn walls(page: &mut Page, main: &Ran) -> Result<(), Trouble> {
+/// Describes the outer walls, their rotation, and their compression.
+fn walls(page: &mut Page, main: &CompletedRun) -> Result<(), ReproductionError> {
     let at = [1.0, 1.18, 1.2];
-    let rows: Result<Vec<&Row>, Trouble> = at.iter().map(|&at| main.at(at)).collect();
+    let rows: Result<Vec<&Row>, ReproductionError> = at.iter().map(|&at| main.at(at)).collect();
     let rows = rows?;
-    let walls: Result<Vec<Wall>, Trouble> = rows.iter().map(|row| outer(main, row)).collect();
+    let walls: Result<Vec<Wall>, ReproductionError> =
+        rows.iter().map(|row| outer(main, row)).collect();
     let walls = walls?;
     let [v, square, folded] = [rows[0], rows[1], rows[2]];
     page.claim(
@@ -159,25 +160,26 @@ fn walls(page: &mut Page, main: &Ran) -> Result<(), Trouble> {
         .iter()
         .filter(|row| row.length_ratio < 1.2 + 1e-9)
         .collect();
-    let all: Result<Vec<Wall>, Trouble> = turning.iter().map(|row| outer(main, row)).collect();
+    let all: Result<Vec<Wall>, ReproductionError> =
+        turning.iter().map(|row| outer(main, row)).collect();
     let all = all?;
     let [colon, ileum] = [Side::Colon, Side::Ileum].map(|side| Turn::of(&walls, &all, side));
-    let told = |side: &str, turn: &Option<Turn>| match turn {
-        Some(turn) => format!("{side} flank {}", turn.told()),
-        None => format!("the {side} flank does not"),
+    let describe = |side: &str, turn: &Option<Turn>| match turn {
+        Some(turn) => format!("{side} flank {}", turn.describe()),
+        None => format!("the {side} flank does not rotate"),
     };
     page.claim(
         "4B",
         "the wall rotates about a centre",
         format!(
             "{}; {} ({} states from 1.00 to 1.20)",
-            told("colon", &colon),
-            told("ileum", &ileum),
+            describe("colon", &colon),
+            describe("ileum", &ileum),
             all.len()
         ),
         [&colon, &ileum].iter().all(|turn| {
             turn.as_ref().is_some_and(|turn| {
-                turn.most() > 10.0 && turn.rotation.max_distance < 0.5 * main.plan.tube.thickness
+                turn.largest() > 10.0 && turn.rotation.max_distance < 0.5 * main.plan.tube.thickness
             })
         }),
     );
@@ -202,11 +204,11 @@ fn walls(page: &mut Page, main: &Ran) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// How a flank turns.
+/// Rotation of a flank.
 struct Turn {
     /// Its angles in the states of the figure, in degrees.
     angles: Vec<f64>,
-    /// What it turns about through all states.
+    /// Centre of rotation through all states.
     rotation: Rotation,
 }
 
@@ -219,8 +221,8 @@ impl Turn {
         })
     }
 
-    /// How far it turns between two of the states shown, at most, in degrees.
-    fn most(&self) -> f64 {
+    /// Returns the largest rotation between two of the shown states, in degrees.
+    fn largest(&self) -> f64 {
         let ends = self
             .angles
             .iter()
@@ -228,7 +230,7 @@ impl Turn {
         ends.1 - ends.0
     }
 
-    fn told(&self) -> String {
+    fn describe(&self) -> String {
         let angles: Vec<String> = self.angles.iter().map(|a| format!("{a:.0}°")).collect();
         let Rotation {
             centre,
@@ -244,8 +246,8 @@ impl Turn {
     }
 }
 
-/// How much shorter each side of the zone has become: the middle of the wall, along itself.
-fn compression(page: &mut Page, main: &Ran, row: &Row) -> Result<(), Trouble> {
+/// Compares the compression of the middle of the wall on both sides of the zone.
+fn compression(page: &mut Page, main: &CompletedRun, row: &Row) -> Result<(), ReproductionError> {
     let [outer, inner] = [Face::Outer, Face::Inner].map(|face| main.wall(row, face, 0.0));
     let (outer, inner) = (outer?, inner?);
     let faces = outer.points.iter().zip(&inner.points);
@@ -275,27 +277,26 @@ fn compression(page: &mut Page, main: &Ran, row: &Row) -> Result<(), Trouble> {
         if colon > ileum && ileum > 0.0 { Verdict::Explained } else { Verdict::Differs },
     );
     page.text(
-        "**Which side is more compressed?** One axial force goes through the whole tube, so that neither side bears more of it. On average the \
-         colon side is the more compressed one, since the ileum side is longer and most of it is far from the zone, where the wall does not bend; \
-         over equal lengths beside the zone both are alike. So a greater compression does not explain the side. (The tubes of Fig. 5 have folds to both ends, of nearly \
-         the same energy.)",
+        "**Which side is more compressed?** The axial force is the same along the whole tube. On average the colon side is compressed more, because the ileum side is longer and most of it is far from the zone, \
+             where the wall does not bend. Over equal lengths beside the zone both are compressed alike, so compression does not \
+             explain the side. (The tubes of Fig. 5 have folds to both ends, of nearly the same energy.)",
     );
     Ok(())
 }
 
-/// The paper's scheme and relaxation: the same states, at what cost?
-fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
+/// Compares the states and the cost of the paper's scheme and of the static one.
+fn schemes(page: &mut Page, runs: &Runs) -> Result<(), ReproductionError> {
     let (ours, papers) = (runs.get("invagination-coarse")?, runs.get("paper-scheme")?);
-    let raw = runs.get(&unsettled().name)?;
+    let raw = runs.get(&not_equilibrated().name)?;
     let mut rows = vec![];
-    let (mut settled, mut as_accepted, mut alike) = (0.0_f64, 0.0_f64, true);
+    let (mut equilibrated, mut as_accepted, mut alike) = (0.0_f64, 0.0_f64, true);
     for at in [1.0, 1.05, 1.1, 1.13, 1.17, 1.2, 1.25] {
         let (a, b, c) = (ours.at(at)?, papers.at(at)?, raw.at(at)?);
         alike &= [b, c]
             .iter()
             .all(|row| a.shape == row.shape && a.side == row.side);
         let off = |row: &Row| (row.energy / a.energy - 1.0).abs();
-        (settled, as_accepted) = (settled.max(off(b)), as_accepted.max(off(c)));
+        (equilibrated, as_accepted) = (equilibrated.max(off(b)), as_accepted.max(off(c)));
         rows.push(vec![
             format!("{at:.2}"),
             format!("{:.6e}", a.energy),
@@ -309,7 +310,7 @@ fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
     }
     let ratio = papers.seconds() / ours.seconds().max(1e-9);
     let good = alike
-        && settled < 1e-5
+        && equilibrated < 1e-5
         && as_accepted < 1e-2
         && [papers, raw]
             .iter()
@@ -318,31 +319,32 @@ fn schemes(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
         "Fig. 2",
         "the paper's scheme (Newmark, ηD/(EΔτ) = 100) against Plica's",
         format!(
-            "{} solves and {:.0} s against {} and {:.1} s ({ratio:.0} times less); the energies of seven states from 1.00 to 1.25 differ by {settled:.0e} at most once \
-             settled without damping, by {as_accepted:.0e} as the paper accepts them",
+            "{} solves and {:.0} s against {} and {:.1} s ({ratio:.0} times less); the energies of seven states from 1.00 to 1.25 differ by at most {equilibrated:.0e} after equilibration without damping, and by {as_accepted:.0e} with the paper's rule \
+             of acceptance",
             papers.solves(), papers.seconds(), ours.solves(), ours.seconds()
         ),
         good,
     );
     page.text(
-        "**The two schemes**, on one mesh. A state of the pseudo-time is accepted when no control point moves 1e-5 D in a step, and then settled \
-         without damping (`solver.pseudo_time.equilibrate`), or not; the residual of the latter is that without damping, over the forces in play.",
+        "**The two schemes**, on one mesh. A state is accepted when no control point moves by 1e-5 D in a pseudo-time step. It is then equilibrated without \
+             damping (`solver.pseudo_time.equilibrate`), or not; the relative residual of the latter omits the damping forces.",
     );
     page.table(
         &[
             "Lmax/L",
             "W, static",
-            "Newmark, settled: off",
-            "not settled: off",
+            "Newmark, equilibrated: difference",
+            "not equilibrated: difference",
             "its residual",
             "static",
-            "Newmark, settled",
-            "not settled",
+            "Newmark, equilibrated",
+            "not equilibrated",
         ],
         rows,
     );
     page.text(format!(
-        "**Stability.** These are axisymmetric states, which the full tube has as well; it leaves their path where they are unstable: at Lmax/L = {} \
+        "**Stability.** These axisymmetric states are also equilibria of the whole tube, which leaves their path where it is unstable: at \
+             Lmax/L = {} \
          (Appendix B).",
         unstable(runs.get("invagination")?.stage("relax"))
     ));

@@ -1,10 +1,10 @@
-//! Relaxation on one side of the contraction: which way does it fold, and what decides?
+//! Relaxation on one side of the contraction, and the side of the fold.
 
 use super::super::job::Job;
 use super::super::page::{Page, energy};
 use super::super::pictures::{panel, tubes};
 use super::super::runs::Runs;
-use super::super::{Figure, Fineness, Trouble};
+use super::super::{Figure, Fineness, ReproductionError};
 use super::ramps::{self, Ramps, outcome};
 use super::{COARSE, COARSER, axisymmetric, first, is_folded, ratio, side};
 use plica::measure::{Shape, Side};
@@ -17,7 +17,7 @@ pub(super) const FIGURE: Figure = Figure {
             0.5, B at 1.75 to 2.25. At Lmax/L = 1.17 both are square; at 1.25 A has invaginated toward the colon, B toward \
             the ileum.",
     jobs,
-    tell,
+    describe,
 };
 
 /// The two cases, the panel of each, and its side.
@@ -32,13 +32,13 @@ const CONTRACTED: usize = 15;
 /// Number of the state at Lmax/L = 1.17, a square.
 const SQUARE: usize = 32;
 
-/// Drags, and pseudo-time steps from Lmax/L = 1.0 to 1.25.
+/// Damping coefficients, and pseudo-time steps from Lmax/L = 1.0 to 1.25.
 fn ramps(fineness: Fineness) -> Ramps {
     Ramps {
         panels: CASES,
-        drags: fineness.choose(&[1.0, 10.0, 100.0], &[0.1, 1.0, 10.0, 100.0, 1000.0]),
+        dampings: fineness.choose(&[1.0, 10.0, 100.0], &[0.1, 1.0, 10.0, 100.0, 1000.0]),
         steps: fineness.choose(&[25, 250], &[25, 250, 1000]),
-        way: (0.25, "L"),
+        range: (0.25, "L"),
     }
 }
 
@@ -51,7 +51,7 @@ fn newmark(case: &'static str, fineness: Fineness) -> Job {
         .with("stages[2].steps", 8)
         .with("solver.scheme", "\"newmark\"")
         .with("solver.pseudo_time.max_steps", 20000)
-        .bare()
+        .history_only()
 }
 
 fn coarse(case: &str) -> String {
@@ -65,7 +65,7 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
         jobs.push(Job::of(case).named(coarse(case)).on(COARSE));
         jobs.push(newmark(case, fineness));
     }
-    // In one ramp, from the contracted tube on.
+    // One ramp from the contracted tube.
     jobs.extend(ramps(fineness).jobs(|case| {
         let job = Job::of(case).on(COARSE).from(&coarse(case), CONTRACTED);
         job.with("stages[1].steps", 1).with("stages[2].steps", 1)
@@ -84,7 +84,7 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
     jobs
 }
 
-fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble> {
+fn describe(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), ReproductionError> {
     let mut panels = vec![];
     for (panel_name, case, towards) in CASES {
         let ran = runs.get(case)?;
@@ -122,13 +122,13 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
     branches(page, runs)
 }
 
-/// Which side is taken, over drags and ramps.
-fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble> {
+/// Tabulates the side of the fold over damping coefficients and rates.
+fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), ReproductionError> {
     page.text(
-        "**Which side, and what decides it.** The static scheme knows no damping. With one, the whole ramp of Lmax/L from 1.0 to 1.25 \
-         is done in so many pseudo-time steps of a backward Euler scheme, from the same contracted state, and then held. What counts is the \
-         product of damping and rate: where it is too large the wall cannot follow, and the relaxing zone buckles by itself. \
-         `reproduce` shows the static scheme in the figure.",
+        "**What decides the side.** The static scheme has no damping. With damping, Lmax/L rises from 1.0 to 1.25 in one \
+             ramp of pseudo-time steps (backward Euler) from the same contracted state, and then stays constant. The product of \
+             damping and rate decides: where it is too large, the wall cannot follow, and the relaxing zone buckles. The figure \
+             shows the static scheme.",
     );
     let without = [
         outcome(runs.get(&coarse(CASES[0].1))?)?,
@@ -136,7 +136,7 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
     ];
     let (papers, as_printed_by_it) =
         ramps::as_the_paper(CASES, runs, |case| newmark(case, fineness))?;
-    let [mut as_printed, mut otherwise, mut held, mut lost] = [0; 4];
+    let [mut as_printed, mut otherwise, mut buckled, mut lost] = [0; 4];
     ramps(fineness).table(page, runs, &without, |(_, case, towards), ran| {
         let last = ran.last()?;
         let by_itself = runs.get(&coarse(case))?.last()?;
@@ -146,7 +146,7 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
             return Ok(format!("lost after {:.2}", last.length_ratio));
         }
         if more > HIGHER {
-            held += 1;
+            buckled += 1;
             return Ok(format!("{}, *W* × {more:.1}", outcome(ran)?));
         }
         if is_folded(last, *towards) {
@@ -156,10 +156,10 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
         }
         outcome(ran)
     })?;
-    let all = as_printed + otherwise + held + lost;
+    let all = as_printed + otherwise + buckled + lost;
     page.text(format!(
-        "Of {all} ramps {as_printed} end as printed, {otherwise} on the other side, {held} with more than {HIGHER} times the energy of the static path (something \
-         besides the fold holds it: the zone that relaxes has buckled too), and {lost} were lost on the way."
+        "Of {all} ramps {as_printed} end as printed, {otherwise} on the other side, {buckled} with more than {HIGHER} times \
+             the energy of the static path (the relaxing zone has buckled too), and {lost} found no further equilibrium."
     ));
     page.claim(
         "5",
@@ -176,14 +176,15 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Trouble
     Ok(())
 }
 
-/// Energy over that of the static path's last state beyond which something else than the fold holds it.
+/// Energy, relative to the last state of the static path, above which the wall has buckled besides the fold.
 const HIGHER: f64 = 1.5;
 
-/// The energies of both branches.
-fn branches(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
+/// Compares the energies of both branches.
+fn branches(page: &mut Page, runs: &Runs) -> Result<(), ReproductionError> {
     page.text(
-        "**Both branches.** Pushed at the far end while it is square, each tube folds to the other side (`cases/other-side.toml`); let go \
-         at Lmax/L = 1.25 it keeps that fold. On the way the walls pass through each other; the states compared are those in the end.",
+        "**Both branches.** If the far end is pushed while the tube is square, each tube folds to the other side (`cases/other-side.toml`), and \
+             it keeps that fold when the end is released at Lmax/L = 1.25. The walls pass through each other during the push; \
+             only the final states are compared.",
     );
     let mut rows = vec![];
     let mut found = vec![];
@@ -212,7 +213,14 @@ fn branches(page: &mut Page, runs: &Runs) -> Result<(), Trouble> {
             && differ.abs() < 0.01;
     }
     page.table(
-        &["", "by itself", "W", "pushed and let go", "W", "differ by"],
+        &[
+            "",
+            "by itself",
+            "W",
+            "pushed and released",
+            "W",
+            "differ by",
+        ],
         rows,
     );
     page.add(

@@ -1,10 +1,10 @@
-//! The contracting regions of both cases of Fig. 5, laid over each other.
+//! The contracting regions of both cases of Fig. 5, superposed.
 
 use super::super::job::Job;
 use super::super::page::Page;
 use super::super::pictures::{Outline, outer, outlines};
 use super::super::runs::Runs;
-use super::super::{Figure, Fineness, Trouble};
+use super::super::{Figure, Fineness, ReproductionError};
 use super::axisymmetric;
 use plica::measure::Wall;
 use plica_view::draw::Stroke;
@@ -15,15 +15,15 @@ pub(super) const FIGURE: Figure = Figure {
     paper: "The outer walls of the contracting region at Lmax/L = 1.17 (A), 1.05 and 1.1 (B), of the tubes of Figs. 5A and \
             5B laid over each other: nearly the same before invagination.",
     jobs,
-    tell,
+    describe,
 };
 
 /// The contracting region, in D.
 const ZONE: [f64; 2] = [0.5, 1.75];
-/// How far walls that are nearly the same lie apart at most, in D: a third of the wall's thickness, and no more than
-/// a thick line in a printed figure.
+/// Largest distance of walls that count as nearly the same, in D: a third of the thickness of the wall, about a thick
+/// line in a printed figure.
 const NEARLY: f64 = 0.02;
-/// How far they may be shifted along the axis: the two relaxations push the region to opposite ends.
+/// Largest shift along the axis in D: the two relaxations push the region to opposite ends.
 const REACH: f64 = 1.0;
 
 fn jobs(fineness: Fineness) -> Vec<Job> {
@@ -32,7 +32,7 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
         .to_vec()
 }
 
-fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
+fn describe(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), ReproductionError> {
     let (a, b) = (runs.get("colon-side")?, runs.get("ileum-side")?);
     let [from, to] = ZONE;
     let (mut drawn, mut over) = (vec![], vec![]);
@@ -41,13 +41,13 @@ fn tell(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Trouble> {
         .into_iter()
         .enumerate()
     {
-        let walls: Result<Vec<Wall>, Trouble> = [a, b]
+        let walls: Result<Vec<Wall>, ReproductionError> = [a, b]
             .map(|ran| Ok(outer(ran, ran.at(at)?)?.between(from, to)))
             .into_iter()
             .collect();
         let walls = walls?;
         let straight = walls[0].align(&walls[1], REACH);
-        // A mirror image of the one is the other.
+        // One wall is the mirror image of the other.
         let mirrored = walls[0].align(&walls[1].mirrored(), 4.0);
         page.claim(
             panel,

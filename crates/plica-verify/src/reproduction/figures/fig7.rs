@@ -4,7 +4,7 @@ use super::super::job::Job;
 use super::super::page::{Page, energy};
 use super::super::pictures::{panel, tubes};
 use super::super::runs::Runs;
-use super::super::{Figure, Fineness, Trouble};
+use super::super::{Figure, Fineness, ReproductionError};
 use super::ramps::{self, Ramps, outcome};
 use super::{COARSE, COARSER, axisymmetric, is_folded, mesh, side};
 use plica::measure::Side;
@@ -16,7 +16,7 @@ pub(super) const FIGURE: Figure = Figure {
     paper: "From the tube of Fig. 5B at Lmax/L = 1.17, which is square, one end is pushed by 0.15 D towards the other. \
             A: pushed at the colon end it invaginates toward the colon; B: pushed at the ileum end, toward the ileum.",
     jobs,
-    tell,
+    describe,
 };
 
 /// Panel, case, and the end that is pushed.
@@ -28,17 +28,17 @@ const CASES: [ramps::Panel; 2] = [
 /// Number of the state of Fig. 5B at Lmax/L = 1.17.
 const SQUARE: usize = 32;
 
-/// Drags, and pseudo-time steps to a push of 0.15 D.
+/// Damping coefficients, and pseudo-time steps to a push of 0.15 D.
 fn ramps(fineness: Fineness) -> Ramps {
     Ramps {
         panels: CASES,
-        drags: fineness.choose(&[1.0, 10.0], &[0.1, 1.0, 10.0, 100.0]),
+        dampings: fineness.choose(&[1.0, 10.0], &[0.1, 1.0, 10.0, 100.0]),
         steps: fineness.choose(&[30, 150], &[30, 150, 600]),
-        way: (0.15, "D"),
+        range: (0.15, "D"),
     }
 }
 
-/// A push from the square that another run has led to already.
+/// Creates a run of a push that starts from the square state of another run.
 fn from(case: &'static str, run: &str) -> Job {
     let job = Job::of(case).from(run, SQUARE);
     job.with("stages[1].steps", 1).with("stages[2].steps", 1)
@@ -51,7 +51,7 @@ fn coarse(case: &'static str) -> Job {
 /// The paper's scheme: Newmark with ηD/(EΔτ) = 100, ten pseudo-time steps to each push of 0.01 D.
 fn newmark(case: &'static str, fineness: Fineness) -> Job {
     let job = from(case, "ileum-side-coarse").named(format!("{case}-newmark"));
-    let job = job.on(fineness.choose(COARSER, COARSE)).bare();
+    let job = job.on(fineness.choose(COARSER, COARSE)).history_only();
     job.with("solver.scheme", "\"newmark\"")
         .with("solver.pseudo_time.damping", "100.0")
 }
@@ -63,15 +63,15 @@ fn jobs(fineness: Fineness) -> Vec<Job> {
     ];
     for (_, case, _) in CASES {
         jobs.push(from(case, "ileum-side").on(mesh(fineness)));
-        let still = coarse(case).named(format!("{case}-static")).bare();
-        jobs.push(still.with("solver", "{ scheme = \"static\" }"));
+        let without_damping = coarse(case).named(format!("{case}-static")).history_only();
+        jobs.push(without_damping.with("solver", "{ scheme = \"static\" }"));
     }
     jobs.extend(CASES.map(|(_, case, _)| newmark(case, fineness)));
     jobs.extend(ramps(fineness).jobs(|case| coarse(case).with("stages[3].steps", 1)));
     jobs
 }
 
-fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble> {
+fn describe(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), ReproductionError> {
     let square = runs.get("ileum-side")?;
     let row = square.at(1.17)?;
     let mut panels = vec![panel(square, row, "5B at *L*_{max}/*L* = 1.17")?];
@@ -100,13 +100,13 @@ fn tell(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Trouble>
         "Tubes cut open, coloured by strain energy density: before the push, pushed at the colon end, pushed at the ileum end",
     );
     page.text(
-        "**Which side, and what decides it.** Without damping a push at one end is the same as a pull at the other but for a shift of the tube \
-         as a whole, so that both pushes must find the same side; the pushed end matters only to a tube that something holds in its place, and that \
-         is the damping. The figure's setting is backward Euler with ηD/(EΔτ) = 5 and a push of 0.001 D per pseudo-time step, settled without damping \
-         after every 0.01 D. Below, the whole push is one ramp.",
+        "**What decides the side.** Without damping, a push at one end differs from a push at the other only by a \
+             translation of the whole tube, so both must lead to the same side. The pushed end matters only if something resists \
+             the translation, which the damping does. The figure uses backward Euler with ηD/(EΔτ) = 5 and a push of 0.001 D per \
+             pseudo-time step, equilibrated without damping after every 0.01 D. In the table, the whole push is one ramp.",
     );
-    let still = |case| runs.get(&format!("{case}-static")).and_then(outcome);
-    let without = [still(CASES[0].1)?, still(CASES[1].1)?];
+    let static_outcome = |case| runs.get(&format!("{case}-static")).and_then(outcome);
+    let without = [static_outcome(CASES[0].1)?, static_outcome(CASES[1].1)?];
     let (mut as_printed, mut all) = (0, 0);
     ramps(fineness).table(page, runs, &without, |(_, _, towards), ran| {
         all += 1;

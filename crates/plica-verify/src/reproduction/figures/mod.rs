@@ -1,4 +1,4 @@
-//! The figures, each with its runs and what it tells of them.
+//! The figures, each with its runs and its evaluation.
 
 mod appendix_a;
 mod appendix_b;
@@ -10,7 +10,7 @@ mod fig7;
 mod ramps;
 
 use super::job::Job;
-use super::{Figure, Fineness, Trouble};
+use super::{Figure, Fineness, ReproductionError};
 use plica::measure::{Shape, Side};
 use plica::study::Row;
 
@@ -25,23 +25,23 @@ pub const FIGURES: &[Figure] = &[
     appendix_b::FIGURE,
 ];
 
-/// The mesh of axisymmetric tubes: of the paper, or coarser.
+/// Returns the mesh of axisymmetric tubes: that of the paper, or a coarser one.
 fn mesh(fineness: Fineness) -> [usize; 3] {
     fineness.choose([205, 60, 6], [305, 60, 8])
 }
 
-/// A mesh for what takes many runs.
+/// A mesh for series of many runs.
 const COARSE: [usize; 3] = [155, 60, 5];
 
-/// A mesh for what takes many solves, in a hurry.
+/// A mesh for runs of many solves in the quick reproduction.
 const COARSER: [usize; 3] = [105, 60, 4];
 
-/// A case on the mesh of axisymmetric tubes.
+/// Creates a run of a case on the mesh of axisymmetric tubes.
 fn axisymmetric(case: &'static str, fineness: Fineness) -> Job {
     Job::of(case).on(mesh(fineness))
 }
 
-/// Whether a wall overhangs, and towards which end: told of a state.
+/// Describes the shape of a state, with the end that it invaginates towards and the overhang.
 fn side(row: &Row) -> String {
     if row.shape == Shape::Invaginated {
         let crosses = if row.crosses_itself() {
@@ -50,7 +50,7 @@ fn side(row: &Row) -> String {
             ""
         };
         format!(
-            "invaginated toward the {}, {:.3} D deep{crosses}",
+            "invaginated toward the {}, overhang {:.3} D{crosses}",
             row.side, row.overhang
         )
     } else {
@@ -58,25 +58,25 @@ fn side(row: &Row) -> String {
     }
 }
 
-/// Overhang from which a wall counts as folded over, in D: its thickness.
+/// Overhang above which a wall counts as folded over, in D: its thickness.
 const FOLD: f64 = 0.06;
 
-/// Whether a state is invaginated toward an end, by more than its wall is thick.
+/// Returns whether a state is invaginated towards an end by more than the thickness of its wall.
 fn is_folded(row: &Row, side: Side) -> bool {
     row.shape == Shape::Invaginated && row.side == side && row.overhang > FOLD
 }
 
-/// In words, where an axisymmetric path is unstable, and to which harmonics: the whole tube would leave it there.
+/// Lists the unstable states of an axisymmetric path and their circumferential modes.
 fn unstable(rows: &[Row]) -> String {
     let mut places = vec![];
     for row in rows {
         let modes = row.stability.unstable_modes();
-        let harmonics: Vec<String> = modes.map(|mode| mode.to_string()).collect();
-        if !harmonics.is_empty() {
+        let modes: Vec<String> = modes.map(|mode| mode.to_string()).collect();
+        if !modes.is_empty() {
             places.push(format!(
                 "{:.2} (n = {})",
                 row.length_ratio,
-                harmonics.join(", ")
+                modes.join(", ")
             ));
         }
     }
@@ -87,23 +87,23 @@ fn unstable(rows: &[Row]) -> String {
     }
 }
 
-/// The first state of a shape.
+/// Returns the first state of a shape.
 fn first(rows: &[Row], shape: Shape) -> Option<&Row> {
     rows.iter().find(|row| row.shape == shape)
 }
 
-/// The state of least energy, if it lies inside.
-fn minimum(rows: &[Row]) -> Result<&Row, Trouble> {
+/// Returns the state of least energy inside the path.
+fn minimum(rows: &[Row]) -> Result<&Row, ReproductionError> {
     let least = (0..rows.len()).min_by(|&a, &b| rows[a].energy.total_cmp(&rows[b].energy));
     match least {
         Some(at) if at > 0 && at + 1 < rows.len() => Ok(&rows[at]),
-        _ => Err(Trouble::State(
+        _ => Err(ReproductionError::State(
             "the energy has no minimum inside the path".into(),
         )),
     }
 }
 
-/// A length ratio, or that there is none.
+/// Formats the length ratio of a state, or `none`.
 fn ratio(row: Option<&Row>) -> String {
     row.map_or("none".into(), |row| format!("{:.2}", row.length_ratio))
 }

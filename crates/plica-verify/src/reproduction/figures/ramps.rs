@@ -1,43 +1,43 @@
-//! Which side a tube folds to, over drags and rates: one ramp of pseudo-time each.
+//! Side of the fold over damping coefficients and rates, with one ramp of pseudo-time each.
 
-use super::super::Trouble;
+use super::super::ReproductionError;
 use super::super::job::Job;
 use super::super::page::Page;
-use super::super::runs::{Ran, Runs};
+use super::super::runs::{CompletedRun, Runs};
 use super::is_folded;
 use plica::measure::{Shape, Side};
 use plica::run_directory;
 
-/// A panel of a figure, its case, and the side that the paper has it fold to.
+/// A panel of a figure, its case, and the side of its fold in the paper.
 pub type Panel = (&'static str, &'static str, Side);
 
-/// Two panels, over drags and ramps.
+/// Runs of two panels over damping coefficients and rates.
 pub struct Ramps {
     /// The panels.
     pub panels: [Panel; 2],
-    /// Drags ηD/(EΔτ).
-    pub drags: &'static [f64],
+    /// Damping coefficients ηD/(EΔτ).
+    pub dampings: &'static [f64],
     /// Pseudo-time steps of the whole ramp.
     pub steps: &'static [usize],
-    /// What is ramped, in all, and its unit.
-    pub way: (f64, &'static str),
+    /// Total change of the ramped quantity, and its unit.
+    pub range: (f64, &'static str),
 }
 
-/// The name of a case's run with a drag, in so many steps.
+/// Returns the name of a run.
 fn name(case: &str, damping: f64, steps: usize) -> String {
     format!("{case}-damping-{damping}-ramp-{steps}")
 }
 
 impl Ramps {
-    /// The runs, each made of its case by `start`.
+    /// Returns the runs; `start` creates each from its case.
     pub fn jobs(&self, start: impl Fn(&'static str) -> Job) -> Vec<Job> {
         let mut jobs = vec![];
         for (_, case, _) in self.panels {
-            for &damping in self.drags {
+            for &damping in self.dampings {
                 for &steps in self.steps {
-                    let job = start(case).named(name(case, damping, steps)).bare();
+                    let job = start(case).named(name(case, damping, steps)).history_only();
                     jobs.push(
-                        job.with("solver.scheme", "\"damped\"")
+                        job.with("solver.scheme", "\"backward-euler\"")
                             .with("solver.pseudo_time.damping", format!("{damping:?}"))
                             .with("solver.pseudo_time.ramp", steps)
                             .with("solver.pseudo_time.tolerance", "1e-4")
@@ -49,31 +49,31 @@ impl Ramps {
         jobs
     }
 
-    /// The map as a table: what became of each panel without drag, then what `outcome` tells of each run.
+    /// Adds a table of the outcomes: first without damping, then of every run.
     ///
     /// # Errors
-    /// [`Trouble`] if a run is missing.
+    /// [`ReproductionError`] if a run is missing.
     pub fn table(
         &self,
         page: &mut Page,
         runs: &Runs,
         without: &[String; 2],
-        mut outcome: impl FnMut(&Panel, &Ran) -> Result<String, Trouble>,
-    ) -> Result<(), Trouble> {
-        let (way, unit) = self.way;
+        mut outcome: impl FnMut(&Panel, &CompletedRun) -> Result<String, ReproductionError>,
+    ) -> Result<(), ReproductionError> {
+        let (range, unit) = self.range;
         let mut heads = vec!["ηD/(EΔτ)".to_owned()];
         let mut first = vec!["none (static)".to_owned()];
         for ((panel, ..), without) in self.panels.iter().zip(without) {
             for &steps in self.steps {
                 heads.push(format!(
                     "{panel}, {:.1e} {unit} per step",
-                    way / steps as f64
+                    range / steps as f64
                 ));
                 first.push(without.clone());
             }
         }
         let mut rows = vec![first];
-        for &damping in self.drags {
+        for &damping in self.dampings {
             let mut row = vec![format!("{damping}")];
             for panel in &self.panels {
                 for &steps in self.steps {
@@ -88,8 +88,8 @@ impl Ramps {
     }
 }
 
-/// The side that a run folded to, or what became of it instead.
-pub fn outcome(ran: &Ran) -> Result<String, Trouble> {
+/// Returns the side of the fold of a run, or else its shape or `lost`.
+pub fn outcome(ran: &CompletedRun) -> Result<String, ReproductionError> {
     let row = ran.last()?;
     Ok(match ran.verdict {
         run_directory::Verdict::Complete if row.shape == Shape::Invaginated => row.side.to_string(),
@@ -98,17 +98,17 @@ pub fn outcome(ran: &Ran) -> Result<String, Trouble> {
     })
 }
 
-/// What becomes of each panel in a run of its own, in words; and whether all end as the paper has it.
+/// Describes the outcome of one run per panel, and whether all agree with the paper.
 pub fn as_the_paper(
     panels: [Panel; 2],
     runs: &Runs,
     run: impl Fn(&'static str) -> Job,
-) -> Result<(String, bool), Trouble> {
-    let (mut told, mut all) = (vec![], true);
+) -> Result<(String, bool), ReproductionError> {
+    let (mut outcomes, mut all) = (vec![], true);
     for (panel, case, towards) in panels {
         let ran = runs.get(&run(case).name)?;
-        told.push(format!("{panel}: {}", outcome(ran)?));
+        outcomes.push(format!("{panel}: {}", outcome(ran)?));
         all &= ran.verdict == run_directory::Verdict::Complete && is_folded(ran.last()?, towards);
     }
-    Ok((told.join(", "), all))
+    Ok((outcomes.join(", "), all))
 }
