@@ -59,7 +59,7 @@ impl Law for BlatzKo {
                     for i in 0..3 {
                         let mut entry = s * (G[j][l] * G[i][k] + (G[j][k] * G[i][l]).times(2.0));
                         if i == j && k == l {
-                            entry = entry + J.like(1.0);
+                            entry += J.like(1.0);
                         }
                         A[3 * k + j][3 * l + i] = entry.times(self.mu);
                     }

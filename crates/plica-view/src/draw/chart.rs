@@ -97,7 +97,7 @@ impl Chart {
 
     fn page(&self, width_px: usize) -> Result<Canvas, DrawError> {
         let legend = legend_rows(&self.curves, self.width_pt);
-        let (x, y) = self.ranges()?;
+        let [x, y] = self.ranges()?;
         let names = label_rows(&self.vertical_lines, x, self.width_pt);
         let shape = Shape {
             equal_aspect: self.equal_aspect,
@@ -132,7 +132,7 @@ impl Chart {
     }
 
     /// Returns the ranges of x and y: the given ones, or those of the data plus a margin.
-    fn ranges(&self) -> Result<((f64, f64), (f64, f64)), DrawError> {
+    fn ranges(&self) -> Result<[(f64, f64); 2], DrawError> {
         let curves = self.curves.iter().flat_map(|c| &c.points);
         let points = curves.chain(self.markers.iter().map(|m| &m.at));
         let finite: Vec<_> = points
@@ -143,7 +143,7 @@ impl Chart {
         }
         let x = axis_range(self.x_range, finite.iter().map(|p| p.0))?;
         let y = axis_range(self.y_range, finite.iter().map(|p| p.1))?;
-        Ok((x, y))
+        Ok([x, y])
     }
 
     fn draw_axes(

@@ -15,7 +15,7 @@ const FONTS: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
 impl Canvas {
     /// Returns the page as an SVG file with lengths in points. Overlays are multiplied with the primitives below, which makes
     /// their white transparent as in the rasterised page.
-    pub fn to_svg(self) -> Result<String, DrawError> {
+    pub fn to_svg(&self) -> Result<String, DrawError> {
         let (width, height) = self.size;
         let mut page = Document::new()
             .set("width", format!("{width:.2}pt"))

@@ -96,12 +96,12 @@ pub(super) const FIELDS: &[Field] = &[
 ];
 
 fn scalar(points: &Points, of: impl Fn(&PointData) -> f32) -> Vec<f32> {
-    points.map(|point, _| of(point)).collect()
+    points.evaluate(|point, _| of(point)).collect()
 }
 
 fn components<const N: usize>(
     points: &Points,
     of: impl Fn(&PointData, &Rotation) -> [f32; N],
 ) -> Vec<f32> {
-    points.map(of).flatten().collect()
+    points.evaluate(of).flatten().collect()
 }

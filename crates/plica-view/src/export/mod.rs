@@ -91,7 +91,7 @@ impl Exporter {
         };
         let points = Points::sample(tube, &state.load, &state.u, lattice);
         let positions: Vec<[f64; 3]> = points
-            .map(|point, rotation| rotation.vector(point.position))
+            .evaluate(|point, rotation| rotation.vector(point.position))
             .map(|x| x.map(|x| length * x))
             .collect();
         let mut file = match geometry {
@@ -131,7 +131,8 @@ impl Exporter {
         let lattice = boundary_lattice(&self.tube, FACETS);
         let points = Points::sample(&self.tube, &state.load, &state.u, lattice);
         let length = self.scale.length;
-        let positions = points.map(|p, rotation| rotation.vector(p.position).map(|x| length * x));
+        let positions =
+            points.evaluate(|p, rotation| rotation.vector(p.position).map(|x| length * x));
         let field = |field: &fields::Field| {
             let values = (field.values)(&points, &self.scale);
             (field.name, field.components.len().max(1), values)

@@ -77,7 +77,7 @@ impl Points {
 
     /// Applies a function to all points of the lattice in order. Its arguments are the sample within the first sector and the
     /// rotation to the point.
-    pub fn map<T, F: Fn(&PointData, &Rotation) -> T>(&self, of: F) -> impl Iterator<Item = T> {
+    pub fn evaluate<T, F: Fn(&PointData, &Rotation) -> T>(&self, of: F) -> impl Iterator<Item = T> {
         let [outwards, around, along] = self.lattice.points();
         (0..outwards * around * along).map(move |point| {
             let (i, j, k) = (
@@ -108,7 +108,7 @@ mod tests {
         // Wider along the tube, and twisted.
         let u = tube.control_values_from(|z, r, _| [0.1 * z * z, 0.2 * z * r, 0.3 * z * r]);
         let points = Points::sample(tube, &tube.tube.rest(), &u, lattice);
-        let rotated = points.map(|point, rotation| PointData {
+        let rotated = points.evaluate(|point, rotation| PointData {
             position: rotation.vector(point.position),
             displacement: rotation.vector_f32(point.displacement),
             stress: rotation.tensor(point.stress),

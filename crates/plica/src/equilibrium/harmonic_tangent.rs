@@ -435,7 +435,7 @@ mod tests {
             let coupled = tangent.state.low.as_ref().map(|low| low.highest);
             let mut b = wave(3.0);
             let solver = tangent.into_shifted(1.0).unwrap();
-            let solved = solver.solve(&mut b, 1e-6, &mut ()).unwrap();
+            let solved = solver.solve(&mut b, 1e-6, &()).unwrap();
             assert!(solved.converged);
             (coupled, solved.iterations, b)
         };

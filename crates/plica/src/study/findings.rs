@@ -85,12 +85,11 @@ impl<'a> Findings<'a> {
             ),
         };
         line("invaginates", side);
-        let unphysical: [(_, fn(&Row) -> bool); 2] = [
-            ("wall crosses itself", Row::crosses_itself),
-            ("lumen is closed", Row::has_closed),
-        ];
-        for (name, condition) in unphysical {
-            if let Some(states) = self.span_of(|row| condition(row)) {
+        for (name, states) in [
+            ("wall crosses itself", self.span_of(Row::crosses_itself)),
+            ("lumen is closed", self.span_of(Row::has_closed)),
+        ] {
+            if let Some(states) = states {
                 line(
                     name,
                     format!("{states}: not physical, as there is no contact"),

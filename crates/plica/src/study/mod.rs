@@ -16,22 +16,22 @@ mod findings;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod forecast;
+mod iterator;
 mod lost;
 mod plan;
 mod row;
 mod start;
 mod state;
-mod study;
 mod units;
 
 pub use changes::forbidden_changes;
 pub use error::StudyError;
 pub use findings::Findings;
 pub use forecast::{Forecast, check_memory, forecast};
+pub use iterator::{Continuation, Ending, Study};
 pub use lost::{Location, Lost, Phase};
 pub use plan::{LengthUnit, ModeShape, Output, Plan, Stage, Start, StressUnit, Units};
 pub use row::Row;
 pub use start::inverted_by_imperfections;
 pub use state::State;
-pub use study::{Continuation, Ending, Study};
 pub use units::Scale;
