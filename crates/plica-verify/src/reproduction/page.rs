@@ -7,7 +7,7 @@ use plica::solve::Scheme;
 use plica::study::Row;
 use std::fmt::Write;
 
-/// A statement of the paper beside what Plica finds.
+/// A statement of the paper with the result of Plica.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
     /// Panel of the figure, for example `3A`.

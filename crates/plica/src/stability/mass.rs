@@ -66,19 +66,19 @@ fn around(tube: &SplineTube, n: usize) -> [[f64; 3]; 3] {
     let one = Sector::new(tube.degree(), tube.sector.around, 1);
     let mut sum = [[0.0; 3]; 3];
     for (s, w) in gauss_legendre(tube.degree() + 1) {
-        let slot = one.at(s)[0];
-        let [(x, y), (dx, dy)] = slot.rotated;
+        let function = one.at(s)[0];
+        let [(x, y), (dx, dy)] = function.rotated;
         let area = w * tube.circle.control_radius.powi(2) * (x * dy - y * dx);
         let halves = match n {
-            0 => vec![Rotation::from(&slot)],
+            0 => vec![Rotation::from(&function)],
             n => one.harmonic_at(n, s).to_vec(),
         };
         for half in halves {
             let [[a, b, c, d], _] = half.plane;
-            let turn = [[half.axial[0], 0.0, 0.0], [0.0, a, b], [0.0, c, d]];
+            let map = [[half.axial[0], 0.0, 0.0], [0.0, a, b], [0.0, c, d]];
             for i in 0..3 {
                 for k in 0..3 {
-                    let product: f64 = turn.iter().map(|row| row[i] * row[k]).sum();
+                    let product: f64 = map.iter().map(|row| row[i] * row[k]).sum();
                     sum[i][k] += area * product;
                 }
             }

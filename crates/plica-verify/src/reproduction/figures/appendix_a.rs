@@ -197,7 +197,7 @@ fn meshes(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Reprod
     page.text(
         "**Meshes.** W of the main case, one direction refined at a time, against the finest of that direction. An axisymmetric state is a state of the whole \
          three-dimensional tube, so the number of points around affects it only through the spline circle. After the fold the wall has a crease, \
-             which becomes sharper with a finer mesh until the wall touches itself there, so W at 1.25 converges more slowly (see `docs/verification.md`).",
+         which becomes sharper with a finer mesh until the wall touches itself there, so W at 1.25 converges more slowly (see `docs/verification.md`).",
     );
     page.table(
         &[
@@ -269,8 +269,8 @@ fn damping(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Repro
     );
     page.text(format!(
         "**Damping.** The paper's scheme on {} × {} × {} control points to Lmax/L = 1.13. The relative residual omits the damping forces. A state is accepted when no control point moves by 1e-5 D in a \
-             step, and it is farther from equilibrium the larger the damping. After equilibration without damping, all states of \
-             one branch are the same. The paper uses 100.",
+         step, and it is farther from equilibrium the larger the damping. After equilibration without damping, all states of \
+         one branch are the same. The paper uses 100.",
         COARSE[0], COARSE[1], COARSE[2]
     ));
     page.table(

@@ -14,8 +14,9 @@ use plica::study::Row;
 pub(super) const FIGURE: Figure = Figure {
     name: "appendix-b",
     title: "Appendix B: a perturbed boundary condition",
-    paper: "The tube still invaginates when the boundary condition is perturbed (the perturbation is described in an appendix that is not available here). Plica perturbs the support of an end in \
-             several ways and follows the tube in three dimensions to Lmax/L = 1.25.",
+    paper: "The tube still invaginates when the boundary condition is perturbed (the perturbation is described in an appendix \
+            that is not available here). Plica perturbs the support of an end in several ways and follows the tube in three \
+            dimensions to Lmax/L = 1.25.",
     jobs,
     describe,
 };
@@ -273,8 +274,8 @@ fn describe(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Repr
     page.text(
         "**Why it tilts.** The axisymmetric path of the main case is unstable to circumferential mode 1 between Lmax/L = 1.179 and 1.198 (`plica stability` of it on the paper's mesh; \
          docs/stability.md), before its wall overhangs. A perturbation with a component in mode 1 triggers the tilt there, and the tube then folds to both ends at once, to \
-             a different end on each side. Without such a component the tube keeps the symmetric fold of the paper. The paper's \
-             own perturbation is described in an appendix that is not available.",
+         a different end on each side. Without such a component the tube keeps the symmetric fold of the paper. The paper's \
+         own perturbation is described in an appendix that is not available.",
     );
     if fineness == Fineness::Full {
         page.text(

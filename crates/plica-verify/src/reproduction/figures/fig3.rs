@@ -141,7 +141,7 @@ fn describe(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Repr
     axisymmetric_alternative(page, runs, ring_buckled)?;
     page.text(format!(
         "**Stability.** A and C are axisymmetric and also equilibria of the whole tube; but the whole tube leaves the path of C where it is \
-             unstable: at Lmax/L = {} (Appendix B).",
+         unstable: at Lmax/L = {} (Appendix B).",
         unstable(both.stage("relax"))
     ));
     Ok(())
@@ -168,7 +168,7 @@ fn axisymmetric_alternative(
         {
             format!(
                 "its path first loses stability to circumferential mode 2 (oval), by Lmax/L = {:.2}. An oval imperfection of 1e-4 D \
-             at one end starts the run of B on this mode, with two-fold symmetry",
+                 at one end starts the run of B on this mode, with two-fold symmetry",
                 row.length_ratio
             )
         }
@@ -200,7 +200,7 @@ fn axisymmetric_alternative(
     let (oval, round) = (oval.at(at)?, round.at(at)?);
     page.text(format!(
         "**B in detail.** A tube that relaxes between fixed ends is under compression. An axisymmetric tube \
-             (`cases/relaxation.toml`) swells and buckles in rings; {folds}. In three dimensions it collapses earlier: {oval_first}. At Lmax/L = {at} the oval has \
+         (`cases/relaxation.toml`) swells and buckles in rings; {folds}. In three dimensions it collapses earlier: {oval_first}. At Lmax/L = {at} the oval has \
          W = {}, the axisymmetric tube on the same mesh {} E D³ ({:.0} % more).",
         energy(oval),
         energy(round),
@@ -238,9 +238,9 @@ fn collapse_at_the_papers_length(
     page.judge("3B", "it has collapsed at Lmax/L = 1.2", found, verdict);
     page.text(
         "**3B at 1.2.** Beyond 1.08 the relaxation of the static scheme finds no equilibrium of the oval (200 solves), so the path is \
-             continued with damping (backward Euler, ηD/(EΔτ) = 5). Each state is accepted when no control point moves by 1e-3 D \
-             in a pseudo-time step, so the states are only nearly in equilibrium. The paper accepts states by such a rule too, \
-             with 1e-5 D.",
+         continued with damping (backward Euler, ηD/(EΔτ) = 5). Each state is accepted when no control point moves by 1e-3 D \
+         in a pseudo-time step, so the states are only nearly in equilibrium. The paper accepts states by such a rule too, \
+         with 1e-5 D.",
     );
     Ok(())
 }

@@ -278,8 +278,8 @@ fn compression(page: &mut Page, main: &CompletedRun, row: &Row) -> Result<(), Re
     );
     page.text(
         "**Which side is more compressed?** The axial force is the same along the whole tube. On average the colon side is compressed more, because the ileum side is longer and most of it is far from the zone, \
-             where the wall does not bend. Over equal lengths beside the zone both are compressed alike, so compression does not \
-             explain the side. (The tubes of Fig. 5 have folds to both ends, of nearly the same energy.)",
+         where the wall does not bend. Over equal lengths beside the zone both are compressed alike, so compression does not \
+         explain the side. (The tubes of Fig. 5 have folds to both ends, of nearly the same energy.)",
     );
     Ok(())
 }
@@ -327,7 +327,7 @@ fn schemes(page: &mut Page, runs: &Runs) -> Result<(), ReproductionError> {
     );
     page.text(
         "**The two schemes**, on one mesh. A state is accepted when no control point moves by 1e-5 D in a pseudo-time step. It is then equilibrated without \
-             damping (`solver.pseudo_time.equilibrate`), or not; the relative residual of the latter omits the damping forces.",
+         damping (`solver.pseudo_time.equilibrate`), or not; the relative residual of the latter omits the damping forces.",
     );
     page.table(
         &[
@@ -344,7 +344,7 @@ fn schemes(page: &mut Page, runs: &Runs) -> Result<(), ReproductionError> {
     );
     page.text(format!(
         "**Stability.** These axisymmetric states are also equilibria of the whole tube, which leaves their path where it is unstable: at \
-             Lmax/L = {} \
+         Lmax/L = {} \
          (Appendix B).",
         unstable(runs.get("invagination")?.stage("relax"))
     ));

@@ -126,9 +126,9 @@ fn describe(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Repr
 fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), ReproductionError> {
     page.text(
         "**What decides the side.** The static scheme has no damping. With damping, Lmax/L rises from 1.0 to 1.25 in one \
-             ramp of pseudo-time steps (backward Euler) from the same contracted state, and then stays constant. The product of \
-             damping and rate decides: where it is too large, the wall cannot follow, and the relaxing zone buckles. The figure \
-             shows the static scheme.",
+         ramp of pseudo-time steps (backward Euler) from the same contracted state, and then stays constant. The product of \
+         damping and rate decides: where it is too large, the wall cannot follow, and the relaxing zone buckles. The figure \
+         shows the static scheme.",
     );
     let without = [
         outcome(runs.get(&coarse(CASES[0].1))?)?,
@@ -159,7 +159,7 @@ fn sides(page: &mut Page, runs: &Runs, fineness: Fineness) -> Result<(), Reprodu
     let all = as_printed + otherwise + buckled + lost;
     page.text(format!(
         "Of {all} ramps {as_printed} end as printed, {otherwise} on the other side, {buckled} with more than {HIGHER} times \
-             the energy of the static path (the relaxing zone has buckled too), and {lost} found no further equilibrium."
+         the energy of the static path (the relaxing zone has buckled too), and {lost} found no further equilibrium."
     ));
     page.claim(
         "5",
@@ -183,8 +183,8 @@ const HIGHER: f64 = 1.5;
 fn branches(page: &mut Page, runs: &Runs) -> Result<(), ReproductionError> {
     page.text(
         "**Both branches.** If the far end is pushed while the tube is square, each tube folds to the other side (`cases/other-side.toml`), and \
-             it keeps that fold when the end is released at Lmax/L = 1.25. The walls pass through each other during the push; \
-             only the final states are compared.",
+         it keeps that fold when the end is released at Lmax/L = 1.25. The walls pass through each other during the push; \
+         only the final states are compared.",
     );
     let mut rows = vec![];
     let mut found = vec![];

@@ -101,9 +101,9 @@ fn describe(runs: &Runs, fineness: Fineness, page: &mut Page) -> Result<(), Repr
     );
     page.text(
         "**What decides the side.** Without damping, a push at one end differs from a push at the other only by a \
-             translation of the whole tube, so both must lead to the same side. The pushed end matters only if something resists \
-             the translation, which the damping does. The figure uses backward Euler with ηD/(EΔτ) = 5 and a push of 0.001 D per \
-             pseudo-time step, equilibrated without damping after every 0.01 D. In the table, the whole push is one ramp.",
+         translation of the whole tube, so both must lead to the same side. The pushed end matters only if something resists \
+         the translation, which the damping does. The figure uses backward Euler with ηD/(EΔτ) = 5 and a push of 0.001 D per \
+         pseudo-time step, equilibrated without damping after every 0.01 D. In the table, the whole push is one ramp.",
     );
     let static_outcome = |case| runs.get(&format!("{case}-static")).and_then(outcome);
     let without = [static_outcome(CASES[0].1)?, static_outcome(CASES[1].1)?];
