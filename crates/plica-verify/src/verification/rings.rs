@@ -168,11 +168,7 @@ pub fn mooney_rivlin(recorder: &mut Recorder<'_>) -> Result<(), VerificationErro
         .with_uniform_muscle(Direction::Longitudinal);
     model.tube.material = Material::MooneyRivlin(MooneyRivlin::new(1.0, NU, share));
     let problem = model.problem(1);
-    for (growth, p) in [
-        ([1.0, 0.8], 0.01),
-        ([1.0, 0.8], 0.03),
-        ([0.75, 0.8], 0.0),
-    ] {
+    for (growth, p) in [([1.0, 0.8], 0.01), ([1.0, 0.8], 0.03), ([0.75, 0.8], 0.0)] {
         let pressures = [p, 0.0];
         let wall = Wall {
             growth,

@@ -60,9 +60,9 @@ fn describe(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Reproductio
     slopes(page, rows)?;
     let squares = first(rows, Shape::Square);
     let overhang = first(rows, Shape::Invaginated);
-    let mut rules = vec![];
+    let mut vertical_lines = vec![];
     for (row, label) in [(squares, "square"), (overhang, "overhang")] {
-        rules.extend(row.map(|row| VerticalLine {
+        vertical_lines.extend(row.map(|row| VerticalLine {
             at: row.length_ratio,
             label: label.into(),
         }));
@@ -88,7 +88,7 @@ fn describe(runs: &Runs, _: Fineness, page: &mut Page) -> Result<(), Reproductio
         .collect();
     page.picture(
         "energy",
-        energies(vec![curve], main, &shown?, rules)?,
+        energies(vec![curve], main, &shown?, vertical_lines)?,
         "Total strain energy along the relaxation, with the tube cut open at Lmax/L = 1.00, 1.13, 1.18 and 1.25",
     );
     walls(page, main)?;
