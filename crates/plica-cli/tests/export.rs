@@ -55,7 +55,7 @@ fn export_refuses_missing_and_damaged_states() {
     refuses(
         &["export", "run", "--state", "9"],
         2,
-        "these are: 0, 1, 2, 3",
+        "choose from 0, 1, 2, 3",
     );
     refuses(
         &["export", "run", "--state", "1", "--all"],

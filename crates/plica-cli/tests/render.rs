@@ -78,7 +78,7 @@ fn columns_and_walls_are_plotted_as_svg_and_png() {
         (&["inner_pressure"], "not a column of this run"),
         (&["energy", "walls", "--out", "x.svg"], "plot one at a time"),
         (&["energy", "--out", "x.pdf"], "must end in .svg or .png"),
-        (&["walls", "--state", "9"], "these are: 0, 1, 2, 3"),
+        (&["walls", "--state", "9"], "choose from 0, 1, 2, 3"),
     ] {
         let stderr = fail(&directory, &[&["plot", "run"], arguments].concat(), 2);
         assert!(stderr.contains(what), "{arguments:?}: {stderr}");
@@ -97,7 +97,7 @@ fn render_refuses_invalid_appearances() {
         (&["--range", "1,0"], "LOW < HIGH"),
         (&["--range", "nan,1"], "LOW < HIGH"),
         (&["--width", "9"], "600..=8000"),
-        (&["--state", "7"], "these are: 0, 1, 2, 3"),
+        (&["--state", "7"], "choose from 0, 1, 2, 3"),
     ] {
         let stderr = fail(&directory, &[&["render", "run"], arguments].concat(), 2);
         assert!(stderr.contains(what), "{arguments:?}: {stderr}");

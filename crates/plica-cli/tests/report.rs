@@ -157,7 +157,7 @@ fn damaged_states_and_rows_are_skipped_and_reported() {
         assert!(stderr.contains(what), "{stderr}");
     }
     let page = fs::read_to_string(run.join("report.html")).unwrap();
-    assert!(page.contains("state-0001.safetensors: ") && page.contains("Not read: "));
+    assert!(page.contains("state-0001.safetensors: ") && page.contains("Could not read: "));
     assert!(page.contains("history.csv beyond state 2"));
     let data = &page_data(&run.join("report.html"))["runs"][0];
     // The last state has lost its row and is not shown.

@@ -230,7 +230,7 @@ fn a_damaged_checkpoint_is_detected_and_the_previous_one_used() {
     let before = contents(&run);
     let stderr = fail(&directory, &["resume", "cut"], 3);
     assert!(
-        stderr.contains("nothing to go on from") && stderr.contains("--overwrite"),
+        stderr.contains("cannot be resumed") && stderr.contains("--overwrite"),
         "{stderr}"
     );
     assert_contents("", &before, &run);
@@ -277,7 +277,7 @@ fn later_stages_of_a_case_may_change() {
             2,
         );
         assert!(
-            stderr.contains(what) && stderr.contains("must stay"),
+            stderr.contains(what) && stderr.contains("must not change"),
             "{stderr}"
         );
         assert_contents("", &expected, &directory.join("cut"));
@@ -318,7 +318,7 @@ fn a_complete_run_stays_unchanged() {
         &["run", "case.toml", "--out", "whole", "--resume"],
     ] {
         let stdout = succeed(&directory, arguments);
-        assert!(stdout.contains("nothing to go on with"));
+        assert!(stdout.contains("there is nothing to resume"));
         assert_contents("", &expected, &directory.join("whole"));
     }
     // The steps of a completed stage must not change.
@@ -433,8 +433,9 @@ fn a_run_resumes_with_its_original_start_state() {
     assert_eq!(code, Some(2), "{stderr}");
     let difference = "start.state: \"start.safetensors\" -> \"other.safetensors\"";
     assert!(
-        stderr.contains("the state that it starts from (`other.safetensors` is another) must stay")
-            && stderr.contains(difference),
+        stderr.contains(
+            "must not change the state to start from (`other.safetensors` holds another)"
+        ) && stderr.contains(difference),
         "{stderr}"
     );
     assert_contents("", &before, &run);

@@ -40,8 +40,8 @@ fn a_lost_run_reports_the_place_and_a_remedy_that_works() {
         "newton:",
         "relaxation: not in equilibrium after 4 solves",
         "the last good state is kept",
-        "farthest off at z = ",
-        "strained hardest at z = ",
+        "largest residual at z = ",
+        "largest strain energy density at z = ",
         "θ = ",
         "wall",
         "solver.max_step_halvings",
@@ -49,11 +49,13 @@ fn a_lost_run_reports_the_place_and_a_remedy_that_works() {
         assert!(last.contains(word), "{word}: {last}");
     }
     // The residual is largest near the muscle.
-    let z = last.split("farthest off at z = ").nth(1).unwrap();
+    let z = last.split("largest residual at z = ").nth(1).unwrap();
     let z: f64 = z.split(' ').next().unwrap().parse().unwrap();
     assert!((0.4..1.1).contains(&z), "{last}");
     let manifest = fs::read_to_string(directory.join("run/manifest.json")).unwrap();
-    assert!(manifest.contains(r#""verdict": "lost""#) && manifest.contains("farthest off at z = "));
+    assert!(
+        manifest.contains(r#""verdict": "lost""#) && manifest.contains("largest residual at z = ")
+    );
     assert!(directory.join("run/states/state-0002.safetensors").exists());
     // Follow the advice.
     fs::write(
@@ -86,7 +88,7 @@ fn a_run_without_a_first_state_reports_that() {
     assert!(text(&output.stdout).ends_with("no state was accepted\n"));
     let last = stderr.lines().last().unwrap();
     for word in [
-        "not brought to rest",
+        "no equilibrium of the tube at rest",
         "no first state",
         "smaller imperfection",
     ] {

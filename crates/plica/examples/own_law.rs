@@ -87,11 +87,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut plan = case::read(&text, "own law")?;
     plan.tube.material = Material::Custom(CustomLaw::new(law));
     let mut study = Study::new(&plan)?;
-    let last = study.by_ref().last().ok_or("no state")??;
-    let meridians = Meridians::of(study.tube(), &last.load, &last.unknowns);
-    let wall = &meridians.walls(Face::Inner, &[0.0], &[0.1])[0];
+    let mut radii = vec![];
+    while let Some(state) = study.next() {
+        let state = state?;
+        let meridians = Meridians::of(study.tube(), &state.load, &state.unknowns);
+        radii.push(meridians.walls(Face::Inner, &[0.0], &[0.1])[0].points[0].1);
+    }
+    // The spline circle is round to 3e-7 only, so the radius at rest is subtracted.
+    let found = (radii[1] - radii[0]) / pressure;
     let (A, B) = (plan.tube.inner_radius(), 0.5);
-    let found = (wall.points[0].1 - A) / pressure;
     let lame = (1.0 + NU) * A * A / (B * B - A * A) * ((1.0 - 2.0 * NU) * A + B * B / A);
     println!("u/p = {found:.5} (expected {lame:.5})");
     Ok(())

@@ -53,17 +53,71 @@ pub fn edited<K: AsRef<str>, V: AsRef<str>>(
         };
         DeValue::parse(value).map_err(syntax)?;
         let root = DeTable::parse(&text).map_err(syntax)?;
-        let (place, written) =
-            find(&text, &root, key, value).map_err(|step| EditError::NotATable {
-                key: key.into(),
-                step,
-            })?;
-        let mut changed = text.clone();
-        changed.replace_range(place, &written);
+        let changed = match without_tables(&text, root.get_ref(), key) {
+            Some(others) => format!("{key} = {value}\n{others}"),
+            None => {
+                let (place, written) =
+                    find(&text, &root, key, value).map_err(|step| EditError::NotATable {
+                        key: key.into(),
+                        step,
+                    })?;
+                let mut changed = text.clone();
+                changed.replace_range(place, &written);
+                changed
+            }
+        };
         DeTable::parse(&changed).map_err(syntax)?;
         text = changed;
     }
     Ok(text)
+}
+
+/// Returns the text without the tables that have a header with the key or a key below it; none if there is no such table.
+fn without_tables(text: &str, root: &DeTable, key: &str) -> Option<String> {
+    let mut headers = vec![];
+    collect_headers(text, root, "", &mut headers);
+    headers.sort_unstable();
+    headers.dedup_by_key(|(start, _)| *start);
+    let is_removed = |path: &str| {
+        let below = path.strip_prefix(key);
+        below.is_some_and(|below| below.is_empty() || below.starts_with('.'))
+    };
+    if !headers.iter().any(|(_, path)| is_removed(path)) {
+        return None;
+    }
+    let first = headers.first().map_or(text.len(), |(start, _)| *start);
+    let mut others = text[..first].to_owned();
+    for (i, (start, path)) in headers.iter().enumerate() {
+        let end = headers.get(i + 1).map_or(text.len(), |(start, _)| *start);
+        if !is_removed(path) {
+            others += &text[*start..end];
+        }
+    }
+    Some(others)
+}
+
+/// Collects the places and the dotted keys of all headers of tables.
+fn collect_headers(text: &str, table: &DeTable, path: &str, headers: &mut Vec<(usize, String)>) {
+    for (name, value) in table {
+        let path = match path {
+            "" => name.get_ref().to_string(),
+            _ => format!("{path}.{}", name.get_ref()),
+        };
+        let one = std::slice::from_ref(value);
+        let members = value.get_ref().as_array().map_or(one, |list| list);
+        for member in members {
+            let start = member.span().start;
+            let Some(table) = member.get_ref().as_table() else {
+                continue;
+            };
+            if text[start..].starts_with('[') {
+                headers.push((start, path.clone()));
+            }
+            if !text[start..].starts_with('{') {
+                collect_headers(text, table, &path, headers);
+            }
+        }
+    }
 }
 
 /// Returns the place where the value of a key belongs, and the text to write there.
@@ -192,6 +246,16 @@ drive.circular.diameter_ratio = 0.25 # narrow";
         assert!(
             points.contains("control_points = { axial = 8 }\n"),
             "{points}"
+        );
+    }
+
+    #[test]
+    fn a_value_replaces_a_table_with_a_header_and_the_tables_below_it() {
+        let text = "a = [[1], [2]]\n[solver]\nscheme = 'newmark'\n[solver.pseudo_time]\nramp = 3\n[mesh]\ndegree = 2\n";
+        let changed = edited(text, &[("solver", "{ scheme = 'static' }")]);
+        assert_eq!(
+            changed.unwrap(),
+            "solver = { scheme = 'static' }\na = [[1], [2]]\n[mesh]\ndegree = 2\n"
         );
     }
 
