@@ -1,6 +1,6 @@
 //! A law of your own: three methods, checked, and run in a tube.
 //!
-//! The law is that of Blatz and Ko (1962) for foams with ν = 1/3, here with a shear modulus of 3/8, so that E = 1:
+//! The law is that of Blatz and Ko (1962) with f = 1 and ν = 1/3, here with a shear modulus of 3/8, so that E = 1:
 //!
 //! w = μ/2 (I₁ + J⁻² − 4),  P = μ (Fe − J⁻² Fe⁻ᵀ),  I₁ = tr(FeᵀFe),  J = det Fe.
 //!

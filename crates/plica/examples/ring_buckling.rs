@@ -1,8 +1,8 @@
 //! A ring under external pressure loses stability to an oval.
 //!
 //! A short tube whose ends slide between two plates is a ring in plane strain. A follower pressure p acts on its outer wall.
-//! The perfect ring stays round; the tangent of the whole tube, block by block for each circumferential mode n, tells where it
-//! becomes unstable. The limit for thin rings is p = (n² − 1) E h³ / (12 (1 − ν²) R³), with R the radius of the middle
+//! The perfect ring stays round; the tangent of the whole tube, block by block for each circumferential mode n, shows at which
+//! pressure it becomes unstable. The limit for thin rings is p = (n² − 1) E h³ / (12 (1 − ν²) R³), with R the radius of the middle
 //! of the wall: 6.9e-4 E for n = 2.
 //!
 //! Expected (H = 0.06 D, ν = 0.495): p = 6.94351e-4 E for mode 2 and 1.883913e-3 E for mode 3, from an eigenvalue

@@ -3,7 +3,7 @@
 //!
 //! The wall is hyperelastic, its muscles change its stress-free shape (growth, F = Fe Fp), and its displacements are
 //! B-splines (isogeometric analysis). Plica follows the equilibria of a tube while its load changes, through snaps, and
-//! tests each for stability against every circumferential mode.
+//! tests axisymmetric states for stability against the lowest circumferential modes.
 //!
 //! # Quick start
 //!
@@ -27,7 +27,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The programs in `examples/` continue from here, by subject. [`run_directory`] writes the states of a study to disk; the crate `plica-view`
+//! The programs in `examples/`, named by subject, show more. [`run_directory`] writes the states of a study to disk; the crate `plica-view`
 //! draws them and exports them to VTK; the crate `plica-cli` is the program `plica`.
 //!
 //! # Modules

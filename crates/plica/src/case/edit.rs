@@ -25,7 +25,8 @@ pub enum EditError {
     },
 }
 
-/// Returns the text of a case with keys changed or added; comments and everything else stay. A key is
+/// Returns the text of a case with keys changed or added; comments and everything else stay, but a table with
+/// a header that is replaced is removed with all text up to the next header. A key is
 /// dotted, with members of lists counted from one, as in messages (`stages[2].steps`). A value is
 /// written as in TOML (`0.25`, `"newmark"`). The result is not checked as a case.
 ///

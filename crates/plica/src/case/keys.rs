@@ -384,9 +384,9 @@ table! {
         /// most this (or at most 1e-6 where rounding allows no better).
         tolerance: f64 = default("1e-8").above(0.0).to(1e-6)
             .because("a looser state is not an equilibrium");
-        /// Newton iterations before a step is passed on to relaxation.
+        /// Newton iterations allowed for a step. If they do not suffice, the step is halved up to five times, then relaxed.
         newton_iterations: usize = default("12").from(1.0).to(1000.0);
-        /// Relaxation steps before a load step is halved.
+        /// Linear solves allowed for a relaxation. If they do not suffice, the load step is halved further.
         relaxation_steps: usize = default("200").from(1.0).to(1e6);
         /// Initial damping of the relaxation, per unit volume.
         relaxation_damping: f64 = default("1.0").unit("E/D²").above(0.0).to(1e6);

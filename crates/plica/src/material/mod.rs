@@ -79,8 +79,8 @@ impl Material {
         }
     }
 
-    /// Splits the law into the part that resists a change of shape and the part that resists a
-    /// change of volume; their sum is the law. A custom law has no such parts.
+    /// Splits the law into the part without and the part with its volumetric constant λ, to which
+    /// reduced integration applies; their sum is the law. A custom law has no such parts.
     pub fn parts(&self) -> Option<[Self; 2]> {
         match self {
             Self::NeoHookean(law) => Some(law.parts().map(Self::NeoHookean)),

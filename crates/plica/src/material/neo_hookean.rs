@@ -45,7 +45,7 @@ impl NeoHookean {
         }
     }
 
-    /// Returns the isochoric and the volumetric part, with λ = 0 and with μ = 0.
+    /// Returns the part in μ and the part in λ.
     pub(super) fn parts(self) -> [Self; 2] {
         [
             Self {

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 
 /// A study and the run directory that its states are written to.
 ///
-/// Every accepted state is on disk when [`Run::next_row`] returns it, together with a checkpoint from which the run can be
-/// resumed.
+/// When [`Run::next_row`] returns, the row of the state is on disk, with the files that the case asks for and a checkpoint. A
+/// state at which the run is cancelled or lost has no checkpoint; resuming computes it again.
 pub struct Run<'a> {
     plan: &'a Plan,
     study: Study,

@@ -5,7 +5,7 @@ use crate::tube::Load;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// An accepted state without its numbers.
+/// Load and unknowns of an accepted state, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
     /// Its load.

@@ -43,7 +43,7 @@ pub struct ContinuationState {
 }
 
 impl ContinuationState {
-    /// Returns that of the start of a segment.
+    /// Returns the continuation state at the start of a segment.
     pub(super) fn at_start(velocity: Vec<f64>) -> Self {
         Self {
             reached: 0.0,

@@ -16,8 +16,9 @@ const INACCURATE_SOLVES: usize = 2;
 
 /// Solves R(u) = 0 by K Δu = −R (Okino et al. 2025, Eq. (14)), from a `u` that satisfies the supports.
 ///
-/// Every step must lower the energy, and the tangent must be positive definite as far as the solver
-/// finds out, so the solution is a minimum. The required accuracy of an iterative linear solver
+/// Every step must lower the energy, and the tangent must be positive definite, as far as the solver
+/// finds out, at every iterate from which a step is taken. The tangent at the solution itself is not
+/// tested; [`Path`](super::Path) does that. The required accuracy of an iterative linear solver
 /// follows the residual.
 ///
 /// # Errors

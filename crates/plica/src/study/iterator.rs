@@ -43,7 +43,7 @@ pub enum Ending {
     Lost(Box<Lost>),
 }
 
-/// What it takes to resume a study after one of its states, bit for bit.
+/// Data from which a study is resumed after one of its states, bit for bit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Continuation {
     /// Number of the state.
@@ -54,7 +54,7 @@ pub struct Continuation {
     pub load: Load,
     /// Unknowns of the state.
     pub unknowns: Vec<f64>,
-    /// What the path remembers of the steps before.
+    /// State of the path beside its accepted state: position, halving level, previous point, velocity.
     pub path: ContinuationState,
 }
 
@@ -140,8 +140,8 @@ impl Study {
         self.ending.get_or_insert(Ending::Stopped);
     }
 
-    /// Returns what it takes to resume the study after its last state; none before the first and once the study has
-    /// ended early.
+    /// Returns the data from which the study is resumed after its last state; none before the first state and after the
+    /// study has ended early.
     pub fn continuation(&self) -> Option<Continuation> {
         if !matches!(self.ending, None | Some(Ending::Complete)) {
             return None;

@@ -13,7 +13,7 @@ pub struct State {
     pub number: usize,
     /// Name of the stage; `rest` or `start` for state 0.
     pub stage: String,
-    /// Whether the state is the last of its stage, as planned or because the tube could not be followed further.
+    /// Whether the state is the last of its stage, or the last before the study ended early.
     pub ends_stage: bool,
     /// Fraction of the stage that is completed, 0 to 1.
     pub stage_fraction: f64,

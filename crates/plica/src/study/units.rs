@@ -20,7 +20,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Of a case with units, or the dimensionless one.
+    /// Returns the scale of a case with units, or the dimensionless scale.
     pub fn of(units: Option<&Units>) -> Self {
         let Some(units) = units else {
             return Self {
