@@ -91,7 +91,9 @@ fn the_example_of_every_key_is_valid() {
 #[test]
 fn a_key_that_is_left_out_has_its_default() {
     for (pattern, key) in keys() {
-        if matches!(key.rule.default, Default::Value(_))
+        // The base case has muscles.
+        if pattern != "muscles"
+            && matches!(key.rule.default, Default::Value(_))
             && let Some(text) = written(&pattern, &key.example())
         {
             let (with, without) = (read_case(&text), read_case(&base(&pattern)));
