@@ -473,8 +473,8 @@ Examples:
   plica plot runs/tube overhang --along length_ratio
   plica plot runs/tube walls --state 15 --state 30 --out walls.svg
 
-Columns, where the run has them: length_ratio, diameter_ratio, colon_displacement, ileum_displacement, colon_twist_deg, \
-ileum_twist_deg, inner_pressure, outer_pressure, inner_dead_load, outer_dead_load, energy, potential, \
+Columns, where the run has them: length_ratio, diameter_ratio, displacement_colon, displacement_ileum, twist_deg_colon, \
+twist_deg_ileum, inner_pressure, outer_pressure, inner_dead_load, outer_dead_load, energy, potential, \
 max_wall_angle_deg, overhang, outer_radius_min, flatness, gap, lumen, asymmetry, min_det_fe, damping_work, residual, \
 iterations. docs/run-directory.md defines them.
 

@@ -76,10 +76,10 @@ pub fn of_state(state: &SavedState) -> Parts {
 /// Returns the load of a row of the history, which does not contain all muscles.
 pub fn of_row(row: &Row, scale: &Scale) -> Parts {
     let ends = [
-        row.colon_displacement / scale.length,
-        row.ileum_displacement / scale.length,
-        row.colon_twist_deg.to_radians(),
-        row.ileum_twist_deg.to_radians(),
+        row.ends[0].displacement / scale.length,
+        row.ends[1].displacement / scale.length,
+        row.ends[0].twist_deg.to_radians(),
+        row.ends[1].twist_deg.to_radians(),
     ];
     let pressures = [
         row.inner_pressure,

@@ -1,8 +1,7 @@
 //! Columns of numbers for tables and plots.
 
 use super::labels::unit;
-use super::selection::Abscissa;
-use plica::study::{Row, Scale};
+use plica::study::{Cell, Quantity, Row, Scale};
 
 /// Use of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,10 +27,58 @@ pub struct Column {
     pub values: Vec<Option<f64>>,
 }
 
-/// Reads a property of an end from a row.
-type OfEnd = fn(&Row) -> f64;
-/// Reads a pressure on a wall from a row.
-type OfWall = fn(&Row) -> Option<f64>;
+/// The columns that come first, in this order: name, words, use.
+const FIRST: [(&str, &str, Role); 16] = [
+    ("length_ratio", "*L*_{max}/*L*", Role::Load),
+    ("diameter_ratio", "*D*_{min}/*D*", Role::Load),
+    ("energy", "strain energy *W*", Role::Table),
+    (
+        "potential",
+        "strain energy plus potential of the pressures",
+        Role::Other,
+    ),
+    ("max_wall_angle_deg", "steepest wall angle", Role::Table),
+    ("overhang", "overhang", Role::Table),
+    (
+        "outer_radius_min",
+        "smallest radius of the outer wall",
+        Role::Table,
+    ),
+    ("flatness", "flatness", Role::Other),
+    (
+        "gap",
+        "smallest distance between parts of the wall",
+        Role::Table,
+    ),
+    ("lumen", "smallest width of the lumen", Role::Table),
+    ("asymmetry", "asymmetry", Role::Table),
+    ("min_det_fe", "smallest det *F*_{e}", Role::Other),
+    ("damping_work", "work of damping", Role::Other),
+    ("residual", "relative residual", Role::Other),
+    ("iterations", "linear solves", Role::Other),
+    ("step", "state", Role::Other),
+];
+
+/// Columns of the load whose names are fixed: name and words.
+const LOADS: [(&str, &str); 4] = [
+    ("inner_pressure", "pressure on the inner wall"),
+    ("outer_pressure", "pressure on the outer wall"),
+    ("inner_dead_load", "dead load on the inner wall"),
+    ("outer_dead_load", "dead load on the outer wall"),
+];
+
+/// Columns of muscles and ends: prefix of the name, words before the name, words after it, use.
+const NAMED: [(&str, &str, &str, Role); 4] = [
+    ("displacement_", "displacement of the ", " end", Role::Load),
+    ("twist_deg_", "twist of the ", " end", Role::Load),
+    ("target_", "target of the muscle ", "", Role::Other),
+    (
+        "stretch_",
+        "extreme growth stretch of the muscle ",
+        "",
+        Role::Other,
+    ),
+];
 
 impl Column {
     /// Creates a column; values that are not finite become `None`.
@@ -49,137 +96,67 @@ impl Column {
         }
     }
 
-    /// Returns the columns of a path, the most important ones first, without those that do not occur.
-    pub fn of(rows: &[Row], scale: &Scale) -> Vec<Self> {
-        let length = |what: &str| format!("{what} ({})", unit(&scale.length_name));
-        let energy = |what: &str| format!("{what} ({})", unit(&scale.energy_name));
-        let stress = |what: &str| format!("{what} ({})", unit(&scale.stress_name));
-        let mut columns = vec![];
-        let mut add = |name: &str, label: String, role: Role, of: &dyn Fn(&Row) -> Option<f64>| {
-            if rows.iter().any(|row| of(row).is_some()) {
-                let values = rows.iter().map(|row| of(row).unwrap_or(f64::NAN));
-                columns.push(Self::new(name, &label, role, values));
-            }
+    /// Returns every column of numbers of a path, the most important ones first.
+    pub fn all(rows: &[Row], scale: &Scale) -> Vec<Self> {
+        let cells: Vec<Vec<Cell>> = rows.iter().map(Row::cells).collect();
+        let Some(first) = cells.first() else {
+            return vec![];
         };
-        let length_ratio = Abscissa::LengthRatio.label(scale);
-        let diameter_ratio = Abscissa::DiameterRatio.label(scale);
-        add("length_ratio", length_ratio, Role::Load, &|row| {
-            Some(row.length_ratio)
-        });
-        add("diameter_ratio", diameter_ratio, Role::Load, &|row| {
-            Some(row.diameter_ratio)
-        });
-        let ends: [(&str, String, OfEnd); 4] = [
-            (
-                "colon_displacement",
-                length("displacement of the colon end"),
-                |row| row.colon_displacement,
-            ),
-            (
-                "ileum_displacement",
-                length("displacement of the ileum end"),
-                |row| row.ileum_displacement,
-            ),
-            (
-                "colon_twist_deg",
-                "twist of the colon end (°)".into(),
-                |row| row.colon_twist_deg,
-            ),
-            (
-                "ileum_twist_deg",
-                "twist of the ileum end (°)".into(),
-                |row| row.ileum_twist_deg,
-            ),
-        ];
-        for (name, label, of) in ends {
-            if rows.iter().any(|row| of(row) != 0.0) {
-                add(name, label, Role::Load, &|row| Some(of(row)));
+        let numbers = first.iter().zip(0..);
+        let numbers = numbers.filter(|(cell, _)| cell.quantity != Quantity::Text);
+        let mut columns: Vec<(usize, Self)> = numbers
+            .map(|(cell, i)| {
+                let (rank, words, role) = meaning(&cell.name);
+                let label = match scale.unit(cell.quantity) {
+                    Some(name) => format!("{words} ({})", unit(name)),
+                    None => words,
+                };
+                let values = cells.iter().map(|cells| cells[i].number());
+                let values = values.map(|x| x.unwrap_or(f64::NAN));
+                (rank, Self::new(&cell.name, &label, role, values))
+            })
+            .collect();
+        columns.sort_by_key(|(rank, _)| *rank);
+        columns.into_iter().map(|(_, column)| column).collect()
+    }
+
+    /// Returns the columns of a path, the most important ones first, without those that are zero throughout and add nothing:
+    /// motions of ends, pressures and the asymmetry.
+    pub fn of(rows: &[Row], scale: &Scale) -> Vec<Self> {
+        let mut columns = Self::all(rows, scale);
+        let asymmetric = rows.iter().any(|row| row.asymmetry_mode > 0);
+        columns.retain(|column| {
+            let zero = || column.values.iter().all(|x| *x == Some(0.0));
+            let ratio = ["length_ratio", "diameter_ratio"].contains(&column.name.as_str());
+            match column.name.as_str() {
+                name if name.starts_with("asymmetry") => asymmetric,
+                "step" => false,
+                _ => column.role != Role::Load || ratio || !zero(),
             }
-        }
-        let pressures: [(&str, &str, OfWall); 4] = [
-            ("inner_pressure", "pressure on the inner wall", |row| {
-                row.inner_pressure
-            }),
-            ("outer_pressure", "pressure on the outer wall", |row| {
-                row.outer_pressure
-            }),
-            ("inner_dead_load", "dead load on the inner wall", |row| {
-                row.inner_dead_load
-            }),
-            ("outer_dead_load", "dead load on the outer wall", |row| {
-                row.outer_dead_load
-            }),
-        ];
-        for (name, words, of) in pressures {
-            if rows.iter().any(|row| of(row).is_some_and(|p| p != 0.0)) {
-                add(name, stress(words), Role::Load, &of);
-            }
-        }
-        add("energy", energy("strain energy *W*"), Role::Table, &|row| {
-            Some(row.energy)
-        });
-        add(
-            "potential",
-            energy("strain energy plus potential of the pressures"),
-            Role::Other,
-            &|row| row.potential,
-        );
-        add(
-            "max_wall_angle_deg",
-            "steepest wall angle (°)".into(),
-            Role::Table,
-            &|row| Some(row.max_wall_angle_deg),
-        );
-        add("overhang", length("overhang"), Role::Table, &|row| {
-            Some(row.overhang)
-        });
-        add(
-            "outer_radius_min",
-            length("smallest radius of the outer wall"),
-            Role::Table,
-            &|row| Some(row.outer_radius_min),
-        );
-        add("flatness", "flatness".into(), Role::Other, &|row| {
-            Some(row.flatness)
-        });
-        add(
-            "gap",
-            length("smallest distance between parts of the wall"),
-            Role::Table,
-            &|row| Some(row.gap),
-        );
-        add(
-            "lumen",
-            length("smallest width of the lumen"),
-            Role::Table,
-            &|row| Some(row.lumen),
-        );
-        if rows.iter().any(|row| row.asymmetry_mode > 0) {
-            add("asymmetry", length("asymmetry"), Role::Table, &|row| {
-                Some(row.asymmetry)
-            });
-        }
-        add(
-            "min_det_fe",
-            "smallest det *F*_{e}".into(),
-            Role::Other,
-            &|row| Some(row.min_det_fe),
-        );
-        add(
-            "damping_work",
-            energy("work of damping"),
-            Role::Other,
-            &|row| Some(row.damping_work),
-        );
-        add(
-            "residual",
-            "relative residual".into(),
-            Role::Other,
-            &|row| Some(row.residual),
-        );
-        add("iterations", "linear solves".into(), Role::Other, &|row| {
-            Some(row.iterations as f64)
         });
         columns
     }
+}
+
+/// Returns rank, words and use of a column.
+fn meaning(name: &str) -> (usize, String, Role) {
+    if let Some(i) = FIRST.iter().position(|(first, ..)| *first == name) {
+        let (_, words, role) = FIRST[i];
+        // The other columns of the load come after the second.
+        return (if i < 2 { 0 } else { 2 + i }, words.into(), role);
+    }
+    if let Some((_, words)) = LOADS.iter().find(|(load, _)| *load == name) {
+        return (2, (*words).into(), Role::Load);
+    }
+    for (prefix, before, after, role) in NAMED {
+        if let Some(of) = name.strip_prefix(prefix) {
+            let rank = if role == Role::Load {
+                1
+            } else {
+                2 + FIRST.len()
+            };
+            return (rank, format!("{before}{of}{after}"), role);
+        }
+    }
+    (3 + FIRST.len(), name.replace('_', " "), Role::Other)
 }

@@ -29,7 +29,7 @@ impl Abscissa {
         match self {
             Self::LengthRatio => row.length_ratio,
             Self::DiameterRatio => row.diameter_ratio,
-            Self::Stretch => row.ileum_displacement - row.colon_displacement,
+            Self::Stretch => row.ends[1].displacement - row.ends[0].displacement,
             Self::InnerPressure => row.inner_pressure.unwrap_or(0.0),
             Self::OuterPressure => row.outer_pressure.unwrap_or(0.0),
             Self::Step => row.step as f64,

@@ -59,6 +59,11 @@ impl Muscle {
         }
     }
 
+    /// Returns the θ in the zone that is furthest from one, for a target ratio.
+    pub fn extreme_stretch(&self, ratio: f64, length: f64) -> f64 {
+        1.0 + self.amplitude(ratio, length) * self.profile.largest()
+    }
+
     /// Returns the smallest θ in the zone for a target ratio.
     pub fn smallest_stretch(&self, ratio: f64, length: f64) -> f64 {
         1.0 + (self.amplitude(ratio, length) * self.profile.largest()).min(0.0)

@@ -3,6 +3,7 @@
 //! A checkpoint is a saved state with the state of the continuation: stage, completed fraction, previous point, pseudo-time
 //! velocity. It carries a digest of the history up to its row, so that it is never used with another history.
 
+use super::write::table_of;
 use crate::saved_state::{Array, SavedState, SavedStateError};
 use crate::solve::{ContinuationState, PreviousPoint};
 use crate::study::{Continuation, Plan, Row};
@@ -182,10 +183,9 @@ impl Digest {
             seconds: 0.0,
             ..row.clone().with_pressures()
         };
-        let mut line = csv::Writer::from_writer(vec![]);
         // Writing to memory cannot fail.
-        let _ = line.serialize(row);
-        self.0.update(&line.into_inner().unwrap_or_default());
+        let table = table_of(&[row]).unwrap_or_default();
+        self.0.update(&table);
     }
 
     /// Returns the digest.

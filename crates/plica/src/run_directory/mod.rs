@@ -17,7 +17,7 @@ pub use error::RunError;
 pub use run::{Run, run};
 pub use summary::{Snapshot, Summary};
 
-use crate::study::Row;
+use crate::study::{Row, RowReader};
 use clear::{clear, files, modes, remove, stability_files};
 use lock::{LOCK, Lock};
 use serde::{Deserialize, Serialize};
@@ -291,12 +291,23 @@ impl RunDirectory {
             return Err(error_at(what.into()));
         }
         let mut table = csv::Reader::from_path(&path).map_err(error_at)?;
+        let reader = RowReader::new(table.headers().map_err(error_at)?);
+        let reader = reader.map_err(|error| error_at(std::io::Error::other(error).into()))?;
         let mut rows: Vec<Row> = vec![];
-        for row in table.deserialize() {
-            match row {
+        for record in table.records() {
+            let row = record.map_err(|error| error.to_string());
+            let number = rows.len();
+            let read = |record| {
+                reader
+                    .row(&record)
+                    .map_err(|e| format!("row {number}: {e}"))
+            };
+            match row.and_then(read) {
                 Ok(row) => rows.push(row),
-                Err(error) if rows.is_empty() => return Err(error_at(error)),
-                Err(error) => return Ok((rows, Some(error.to_string()))),
+                Err(error) if rows.is_empty() => {
+                    return Err(error_at(std::io::Error::other(error).into()));
+                }
+                Err(error) => return Ok((rows, Some(error))),
             }
         }
         Ok((rows, None))

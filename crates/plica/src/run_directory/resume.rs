@@ -1,6 +1,7 @@
 //! Files for resuming a run: the truncated history, checkpoints, and temporary states for pictures.
 
 use super::clear::{modes, remove};
+use super::write::table_of;
 use super::{
     CHECKPOINTS, Checkpoint, HISTORY, IMPERFECTIONS, OF_STATES, RunDirectory, RunError, START,
     STATE_ENDING, TEMPORARY, Verdict, name_of_temporary_state,
@@ -41,13 +42,7 @@ impl RunDirectory {
                     .collect(),
             );
         }
-        let mut table = csv::Writer::from_writer(vec![]);
-        for row in rows {
-            let written = table.serialize(row);
-            written.map_err(|e| error_at(std::io::Error::other(e)))?;
-        }
-        let bytes = table.into_inner().map_err(|e| error_at(e.into_error()))?;
-        self.write(HISTORY, &bytes)?;
+        self.write(HISTORY, &table_of(rows).map_err(error_at)?)?;
         let file = File::options().append(true).open(&path);
         self.history = Some(file.map_err(error_at)?);
         Ok(())

@@ -40,10 +40,7 @@ impl RunDirectory {
             path: path.clone(),
             source,
         };
-        let mut table = csv::Writer::from_writer(vec![]);
-        let written = table.serialize(row);
-        written.map_err(|e| error_at(std::io::Error::other(e)))?;
-        let table = table.into_inner().map_err(|e| error_at(e.into_error()))?;
+        let table = table_of(std::slice::from_ref(row)).map_err(error_at)?;
         self.check_finite(HISTORY, &table)?;
         let header = table.iter().position(|byte| *byte == b'\n').unwrap_or(0) + 1;
         let (history, begin) = match &mut self.history {
@@ -185,6 +182,16 @@ impl RunDirectory {
         }
         written.map_err(error_at)
     }
+}
+
+/// Returns rows as the bytes of a table with a header; nothing without rows.
+pub(super) fn table_of(rows: &[Row]) -> std::io::Result<Vec<u8>> {
+    let mut table = csv::Writer::from_writer(vec![]);
+    let header = rows.first().map(Row::header);
+    for record in header.into_iter().chain(rows.iter().map(Row::record)) {
+        table.write_record(record)?;
+    }
+    table.into_inner().map_err(csv::IntoInnerError::into_error)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 //! - [`Plan`]: the checked, dimensionless content of a case;
 //! - [`Study`] and [`State`]: the iterator and its items; [`Continuation`] resumes a study after a state;
 //! - [`Lost`]: where and why a tube could not be followed further;
-//! - [`Row`]: a state as a row of `history.csv`, in the units of the case;
+//! - [`Row`]: a state as a row of `history.csv`, in the units of the case; [`RowReader`] reads one back;
 //! - [`Findings`]: statements about a whole path;
 //! - [`forecast`]: size and cost of a study before it runs.
 
@@ -22,6 +22,7 @@ mod plan;
 mod row;
 mod start;
 mod state;
+mod table;
 mod units;
 
 pub use changes::forbidden_changes;
@@ -31,7 +32,8 @@ pub use forecast::{Forecast, check_memory, forecast};
 pub use iterator::{Continuation, Ending, Study};
 pub use lost::{Location, Lost, Phase};
 pub use plan::{LengthUnit, ModeShape, Output, Plan, Stage, Start, StressUnit, Units};
-pub use row::Row;
+pub use row::{EndRow, MuscleRow, Row};
 pub use start::inverted_by_imperfections;
-pub use state::State;
+pub use state::{MuscleState, State};
+pub use table::{Cell, Quantity, RowReader};
 pub use units::Scale;

@@ -1,6 +1,7 @@
 //! An accepted state of a study.
 
 use super::Plan;
+use crate::activation::Muscle;
 use crate::equilibrium::{Stability, TubeProblem};
 use crate::measure::Measures;
 use crate::solve::{Method, Step};
@@ -19,6 +20,8 @@ pub struct State {
     pub stage_fraction: f64,
     /// The load.
     pub load: Load,
+    /// The muscles, in the order of the tube.
+    pub muscles: Vec<MuscleState>,
     /// Displacements of the control points of the cyclic sector, in D; [`crate::saved_state::Layout::shape`] has
     /// the order of the indices.
     pub unknowns: Vec<f64>,
@@ -52,6 +55,17 @@ pub struct State {
     pub(super) sector_damping_work: f64,
     /// Number of cyclic sectors of the tube.
     pub(super) sectors: f64,
+}
+
+/// A muscle in a state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MuscleState {
+    /// Its name in the case.
+    pub name: String,
+    /// Its target, Dmin/D or Lmax/L.
+    pub target: f64,
+    /// Its growth stretch where it is furthest from one.
+    pub stretch: f64,
 }
 
 /// A point of a stage at which a state is accepted.
@@ -103,6 +117,7 @@ impl State {
             number: at.number,
             stage: at.stage.to_owned(),
             ends_stage: at.ends_stage,
+            muscles: muscles(plan, &accepted.load),
             stage_fraction: at.stage_fraction,
             energy: above_rounding(forces.energy),
             energy_ungrown_volume: above_rounding(forces.energy_ungrown),
@@ -124,4 +139,15 @@ impl State {
             unknowns: accepted.u.clone(),
         }
     }
+}
+
+/// Returns the muscles of a plan under a load.
+fn muscles(plan: &Plan, load: &Load) -> Vec<MuscleState> {
+    let muscles = plan.tube.muscles.iter().zip(&load.muscles);
+    let state = |(muscle, &target): (&Muscle, &f64)| MuscleState {
+        name: muscle.name.clone(),
+        target,
+        stretch: muscle.extreme_stretch(target, plan.tube.length),
+    };
+    muscles.map(state).collect()
 }

@@ -1,6 +1,6 @@
 //! Real units, at the border only.
 
-use super::Units;
+use super::{Quantity, Units};
 
 /// Factors from the dimensionless numbers inside to those of a table, and their names.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +49,31 @@ impl Scale {
             length_name: units.length.to_string(),
             energy_name: energy_name.into(),
             stress_name: units.stress.to_string(),
+        }
+    }
+}
+
+impl Scale {
+    /// Returns the factor from the dimensionless numbers inside to those of a table.
+    pub fn factor(&self, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::Length => self.length,
+            Quantity::Stress => self.stress,
+            Quantity::Energy => self.energy,
+            Quantity::Text | Quantity::Count | Quantity::Ratio => 1.0,
+            Quantity::Degrees | Quantity::Seconds => 1.0,
+        }
+    }
+
+    /// Returns the name of the unit of a quantity; none for numbers without unit.
+    pub fn unit(&self, quantity: Quantity) -> Option<&str> {
+        match quantity {
+            Quantity::Length => Some(&self.length_name),
+            Quantity::Stress => Some(&self.stress_name),
+            Quantity::Energy => Some(&self.energy_name),
+            Quantity::Degrees => Some("°"),
+            Quantity::Seconds => Some("s"),
+            Quantity::Text | Quantity::Count | Quantity::Ratio => None,
         }
     }
 }
