@@ -188,11 +188,11 @@ fn text(value: &impl Serialize) -> String {
         .quote_style(csv::QuoteStyle::Never)
         .buffer_capacity(64)
         .from_writer(vec![]);
-    // Writing to memory cannot fail.
-    let _ = writer.serialize((value,));
+    // Writing to memory cannot fail. With a second cell an empty text needs no quotation marks.
+    let _ = writer.serialize((value, 0));
     let bytes = writer.into_inner().unwrap_or_default();
     let text = String::from_utf8_lossy(&bytes);
-    text.strip_suffix('\n').unwrap_or(&text).to_owned()
+    text.strip_suffix(",0\n").unwrap_or(&text).to_owned()
 }
 
 #[cfg(test)]
