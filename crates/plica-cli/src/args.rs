@@ -167,8 +167,8 @@ pub struct PlotArguments {
     #[arg(value_name = "WHAT", default_value = "energy")]
     pub what: Vec<String>,
     /// Column for the horizontal axis [default: the number of the state]
-    #[arg(long, value_name = "COLUMN")]
-    pub along: Option<String>,
+    #[arg(long, alias = "along", value_name = "COLUMN")]
+    pub against: Option<String>,
     /// For walls: state to plot; may be repeated [default: the last saved state]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     pub state: Vec<usize>,
@@ -470,13 +470,12 @@ Ctrl-C or SIGTERM stops the export after the current file.";
 
 const PLOT_EPILOGUE: &str = "\
 Examples:
-  plica plot runs/tube overhang --along length_ratio
+  plica plot runs/tube lumen_volume --against inner_pressure
   plica plot runs/tube walls --state 15 --state 30 --out walls.svg
 
-Columns, where the run has them: length_ratio, diameter_ratio, displacement_colon, displacement_ileum, twist_deg_colon, \
-twist_deg_ileum, inner_pressure, outer_pressure, inner_dead_load, outer_dead_load, energy, potential, \
-max_wall_angle_deg, overhang, outer_radius_min, flatness, gap, lumen, asymmetry, min_det_fe, damping_work, residual, \
-iterations. docs/run-directory.md defines them.
+Every column of numbers in history.csv can be plotted, against any other: energy, overhang, lumen_volume, outer_radius_mid, \
+inner_pressure, axial_force_END, torque_END, target_MUSCLE, work_MUSCLE and so on. docs/run-directory.md defines them; the \
+message for an unknown name lists those of the run.
 
 The SVG keeps text as text.";
 

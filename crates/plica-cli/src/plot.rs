@@ -31,9 +31,9 @@ pub fn plot(arguments: &PlotArguments) -> Result<(), Failure> {
     };
     let walls = arguments.what.iter().any(|what| what == WALLS);
     let columns = arguments.what.iter().any(|what| what != WALLS);
-    if arguments.along.is_some() && !columns {
+    if arguments.against.is_some() && !columns {
         return Err(Failure::Usage(
-            "--along applies to columns, not to walls".into(),
+            "--against applies to columns, not to walls".into(),
         ));
     }
     if !arguments.state.is_empty() && !walls {
@@ -85,22 +85,23 @@ fn chart(
         let name = format!("walls-state-{}", names.join("-"));
         return Ok((name, report::plot_walls(&run.plan, &states?)));
     }
-    let along = arguments.along.as_deref();
-    let chart = report::plot(&run.plan, &run.rows, what, along);
+    let against = arguments.against.as_deref();
+    let chart = report::plot(&run.plan, &run.rows, what, against);
     let chart = chart.ok_or_else(|| {
-        let columns = Column::of(&run.rows, &Scale::of(run.plan.units.as_ref()));
+        let columns = Column::all(&run.rows, &Scale::of(run.plan.units.as_ref()));
         let names: Vec<String> = columns.into_iter().map(|column| column.name).collect();
-        let unknown = along
-            .filter(|along| names.iter().any(|n| n == what) && !names.iter().any(|n| n == along));
+        let exists = |name: &str| names.iter().any(|n| n == name);
+        let unknown = against.filter(|against| exists(what) && !exists(against));
         Failure::Usage(format!(
-            "{}: not a column of this run that can be plotted; choose one of {WALLS}, {}",
+            "{}: not a column of this run that can be plotted; choose one of {}{}",
             unknown.unwrap_or(what),
+            if unknown.is_none() { "walls, " } else { "" },
             names.join(", ")
         ))
     })?;
-    let name = match along {
+    let name = match against {
         None => format!("{what}-path"),
-        Some(along) => format!("{what}-along-{along}-path"),
+        Some(against) => format!("{what}-against-{against}-path"),
     };
     Ok((name, chart))
 }

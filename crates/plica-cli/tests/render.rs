@@ -60,13 +60,23 @@ fn columns_and_walls_are_plotted_as_svg_and_png() {
     let run = short_run(&directory);
     succeed(&directory, &["plot", "run"]);
     assert_eq!(dimensions(&run.join("pictures/energy-path.png")).0, 1800);
-    let along = ["--along", "diameter_ratio"];
-    let arguments = [&["plot", "run", "outer_radius_min", "walls"], &along[..]].concat();
+    let against = ["--against", "diameter_ratio"];
+    let arguments = [&["plot", "run", "outer_radius_min", "walls"], &against[..]].concat();
     succeed(&directory, &arguments);
     let svg = |name: &str| fs::read_to_string(run.join("pictures").join(name)).unwrap();
-    let plot = svg("outer_radius_min-along-diameter_ratio-path.svg");
+    let plot = svg("outer_radius_min-against-diameter_ratio-path.svg");
     assert!(plot.contains("smallest radius of the outer wall (") && plot.contains("<path d="));
     assert!(svg("walls-state-0003.svg").contains("inner wall"));
+    // Any column against any other, also those that the page leaves out.
+    let columns = [
+        "lumen_volume",
+        "work_circular",
+        "--against",
+        "axial_force_ileum",
+    ];
+    succeed(&directory, &[&["plot", "run"], &columns[..]].concat());
+    let plot = svg("work_circular-against-axial_force_ileum-path.svg");
+    assert!(plot.contains("axial force at the ileum end ("));
     let arguments = [
         "plot", "run", "walls", "--state", "0", "--state", "2", "--out", "two.svg",
     ];
@@ -74,7 +84,10 @@ fn columns_and_walls_are_plotted_as_svg_and_png() {
     assert!(directory.join("two.svg").exists() && !directory.join("two.png").exists());
     for (arguments, what) in [
         (&["beauty"][..], "choose one of walls, length_ratio"),
-        (&["energy", "--along", "beauty"], "beauty: not a column"),
+        (
+            &["energy", "--against", "beauty"],
+            "choose one of length_ratio",
+        ),
         (&["inner_pressure"], "not a column of this run"),
         (&["energy", "walls", "--out", "x.svg"], "plot one at a time"),
         (&["energy", "--out", "x.pdf"], "must end in .svg or .png"),

@@ -59,6 +59,18 @@ pub(super) const FIELDS: &[Field] = &[
             })
         },
     ),
+    field("axial_stress", &[], |points, scale| {
+        let stress = scale.stress as f32;
+        scalar(points, |point| stress * point.wall_stresses[0])
+    }),
+    field("radial_stress", &[], |points, scale| {
+        let stress = scale.stress as f32;
+        scalar(points, |point| stress * point.wall_stresses[1])
+    }),
+    field("hoop_stress", &[], |points, scale| {
+        let stress = scale.stress as f32;
+        scalar(points, |point| stress * point.wall_stresses[2])
+    }),
     field("von_mises_stress", &[], |points, scale| {
         let stress = scale.stress as f32;
         scalar(points, |point| stress * point.von_mises)

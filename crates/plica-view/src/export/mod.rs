@@ -11,6 +11,7 @@
 //! | `theta_zeta`, `theta_eta` | longitudinal and circumferential growth stretch |
 //! | `strain_energy_density` | w, per volume after growth |
 //! | `cauchy_stress` | σ in (x, y, z): xx, yy, zz, xy, yz, xz |
+//! | `axial_stress`, `radial_stress`, `hoop_stress` | normal components of σ along the meridian, through the wall and along the circle of the deformed wall |
 //! | `von_mises_stress` | √(3/2 s : s) with the deviator s of σ |
 //! | `elastic_stretch` | principal stretches of Fe, largest first |
 //! | `elastic_direction_1` to `_3` | unit vectors of the principal directions in the deformed wall |

@@ -19,6 +19,8 @@ pub(super) struct PointData {
     pub energy_density: f32,
     /// Cauchy stress σ in units of E: xx, yy, zz, xy, yz, xz.
     pub stress: [f32; 6],
+    /// Cauchy stress along the meridian, through the wall and along the circle of the deformed wall, in units of E.
+    pub wall_stresses: [f32; 3],
     /// Von Mises stress in units of E.
     pub von_mises: f32,
     /// Principal stretches of Fe, largest first.
@@ -106,6 +108,7 @@ impl PointData {
             grown: sample.grown.map(|x| x as f32),
             energy_density: existing(sample.energy_density) as f32,
             stress: tensor(&Tensor2(sample.stress.0.map(|row| row.map(existing)))),
+            wall_stresses: sample.wall_stresses().map(|x| existing(x) as f32),
             von_mises: existing(sample.von_mises()) as f32,
             stretches: stretches.map(|(stretch, _)| stretch as f32),
             directions: stretches.map(|(_, v)| vector(oriented(v)).map(|x| x as f32)),
@@ -173,6 +176,10 @@ mod tests {
                         let stresses = [
                             point.stress,
                             [point.von_mises; 6],
+                            [point.wall_stresses, point.wall_stresses]
+                                .concat()
+                                .try_into()
+                                .unwrap(),
                             [point.energy_density; 6],
                         ];
                         let all = stresses.as_flattened();

@@ -28,7 +28,7 @@ pub struct Column {
 }
 
 /// The columns that come first, in this order: name, words, use.
-const FIRST: [(&str, &str, Role); 16] = [
+const FIRST: [(&str, &str, Role); 21] = [
     ("length_ratio", "*L*_{max}/*L*", Role::Load),
     ("diameter_ratio", "*D*_{min}/*D*", Role::Load),
     ("energy", "strain energy *W*", Role::Table),
@@ -44,6 +44,16 @@ const FIRST: [(&str, &str, Role); 16] = [
         "smallest radius of the outer wall",
         Role::Table,
     ),
+    (
+        "outer_radius_max",
+        "largest radius of the outer wall",
+        Role::Other,
+    ),
+    (
+        "outer_radius_mid",
+        "radius of the outer wall at mid-length",
+        Role::Other,
+    ),
     ("flatness", "flatness", Role::Other),
     (
         "gap",
@@ -51,9 +61,16 @@ const FIRST: [(&str, &str, Role); 16] = [
         Role::Table,
     ),
     ("lumen", "smallest width of the lumen", Role::Table),
+    ("lumen_volume", "volume of the lumen", Role::Other),
+    (
+        "lumen_area_min",
+        "smallest cross-section of the lumen",
+        Role::Other,
+    ),
     ("asymmetry", "asymmetry", Role::Table),
     ("min_det_fe", "smallest det *F*_{e}", Role::Other),
     ("damping_work", "work of damping", Role::Other),
+    ("released_energy", "energy set free in jumps", Role::Other),
     ("residual", "relative residual", Role::Other),
     ("iterations", "linear solves", Role::Other),
     ("step", "state", Role::Other),
@@ -68,7 +85,7 @@ const LOADS: [(&str, &str); 4] = [
 ];
 
 /// Columns of muscles and ends: prefix of the name, words before the name, words after it, use.
-const NAMED: [(&str, &str, &str, Role); 4] = [
+const NAMED: [(&str, &str, &str, Role); 9] = [
     ("displacement_", "displacement of the ", " end", Role::Load),
     ("twist_deg_", "twist of the ", " end", Role::Load),
     ("target_", "target of the muscle ", "", Role::Other),
@@ -78,6 +95,16 @@ const NAMED: [(&str, &str, &str, Role); 4] = [
         "",
         Role::Other,
     ),
+    ("axial_force_", "axial force at the ", " end", Role::Other),
+    ("shear_force_", "shear force at the ", " end", Role::Other),
+    (
+        "bending_moment_",
+        "bending moment at the ",
+        " end",
+        Role::Other,
+    ),
+    ("torque_", "torque at the ", " end", Role::Other),
+    ("work_", "work of ", "", Role::Other),
 ];
 
 impl Column {

@@ -32,6 +32,15 @@ pub(super) fn unit(name: &str) -> String {
     match name {
         "E D^3" => "*E* *D*^{3}".into(),
         "E" | "D" => format!("*{name}*"),
-        other => other.replace('u', "µ"),
+        "E D^2" => "*E* *D*^{2}".into(),
+        "D^2" => "*D*^{2}".into(),
+        "D^3" => "*D*^{3}".into(),
+        other => {
+            let name = other.replace('u', "µ");
+            match name.split_once('^') {
+                Some((base, power)) => format!("{base}^{{{power}}}"),
+                None => name,
+            }
+        }
     }
 }

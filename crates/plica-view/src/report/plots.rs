@@ -8,11 +8,11 @@ use plica::assembly::SplineTube;
 use plica::study::{Plan, Row, Scale};
 
 /// Plots a column against another one or against the number of the state; `None` if a column does not exist.
-pub fn plot(plan: &Plan, rows: &[Row], name: &str, along: Option<&str>) -> Option<Chart> {
-    let columns = Column::of(rows, &Scale::of(plan.units.as_ref()));
+pub fn plot(plan: &Plan, rows: &[Row], name: &str, against: Option<&str>) -> Option<Chart> {
+    let columns = Column::all(rows, &Scale::of(plan.units.as_ref()));
     let find = |name: &str| columns.iter().find(|column| column.name == name);
     let y = find(name)?;
-    let (x_label, x): (&str, Vec<Option<f64>>) = match along {
+    let (x_label, x): (&str, Vec<Option<f64>>) = match against {
         Some(name) => {
             let x = find(name)?;
             (&x.label, x.values.clone())
@@ -42,7 +42,7 @@ pub fn plot(plan: &Plan, rows: &[Row], name: &str, along: Option<&str>) -> Optio
             ..Curve::default()
         }],
         vertical_lines: vertical_lines
-            .take(if along.is_none() { usize::MAX } else { 0 })
+            .take(if against.is_none() { usize::MAX } else { 0 })
             .collect(),
         ..Chart::default()
     })

@@ -51,6 +51,7 @@ mod ring_damping;
 mod sample;
 mod spline_tube;
 mod stress_free;
+mod surface;
 mod tables;
 mod tangent;
 #[cfg(test)]
@@ -64,3 +65,4 @@ pub use reference::{ReferenceForces, ReferenceTube};
 pub(crate) use ring_damping::RingDamping;
 pub use sample::{Point, Sample};
 pub use spline_tube::SplineTube;
+pub use surface::SurfacePoint;

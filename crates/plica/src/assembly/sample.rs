@@ -59,6 +59,25 @@ impl Sample {
             .map(|(square, direction)| (square.max(0.0).sqrt(), direction))
     }
 
+    /// Returns the normal components of the Cauchy stress in the directions of the deformed wall, in E: along its meridian
+    /// (the line that runs along the tube at rest), through the wall (normal to that line and to the circle), and along its
+    /// circle. Without stress-free shape imperfections these lines are the columns of Fe.
+    pub fn wall_stresses(&self) -> [f64; 3] {
+        let column = |j: usize| [0, 1, 2].map(|i| self.elastic.0[i][j]);
+        let (along, around) = (column(0), column(2));
+        let across = |i: usize, j: usize| around[i] * along[j] - around[j] * along[i];
+        let through = [across(1, 2), across(2, 0), across(0, 1)];
+        let s = self.stress.0;
+        [along, through, around].map(|a| {
+            let (mut normal, mut square) = (0.0, 0.0);
+            for i in 0..3 {
+                square += a[i] * a[i];
+                (0..3).for_each(|j| normal += a[i] * s[i][j] * a[j]);
+            }
+            normal / square
+        })
+    }
+
     /// Returns the von Mises stress √(3/2 s : s), s the deviator of σ, in E.
     pub fn von_mises(&self) -> f64 {
         let mut s = self.stress;

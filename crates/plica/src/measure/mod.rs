@@ -26,14 +26,18 @@
 //! | asymmetry | amplitude √(aᶻ² + aᵨ²) of the largest wave cos n(φ − φ₀), n ≥ 1, in z and ρ around the outer face |
 
 mod alignment;
+mod dimensions;
 mod gap;
 mod meridians;
+mod reactions;
 mod rotation;
 mod shape;
 mod wall;
 
 pub use alignment::Alignment;
+pub use dimensions::Dimensions;
 pub use meridians::{Asymmetry, Meridians};
+pub use reactions::Reaction;
 pub use rotation::{Flank, Rotation};
 pub use shape::{Shape, Side};
 pub use wall::{Face, Wall};

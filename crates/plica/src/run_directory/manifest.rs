@@ -30,6 +30,10 @@ pub(super) struct Manifest {
     pub energy_unit: String,
     /// Unit of pressures in the tables.
     pub stress_unit: String,
+    /// Unit of forces in the tables.
+    pub force_unit: String,
+    /// Unit of moments in the tables.
+    pub moment_unit: String,
     /// Seconds since 1970 at the start.
     pub started_unix: u64,
     /// Time, version and machine of every resumption.
@@ -67,6 +71,8 @@ impl Manifest {
             length_unit: scale.length_name,
             energy_unit: scale.energy_name,
             stress_unit: scale.stress_name,
+            force_unit: scale.force_name,
+            moment_unit: scale.moment_name,
             started_unix: now(),
             resumed: vec![],
             ended_unix: None,

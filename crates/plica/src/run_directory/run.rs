@@ -211,7 +211,7 @@ impl<'a> Run<'a> {
 
     /// Writes the row, the walls and the unknowns of a state.
     fn write(&mut self, state: &State) -> Result<(), RunError> {
-        let row = Row::new(state, &self.scale, self.has_pressures);
+        let row = Row::new(state, &self.scale, self.has_pressures, self.rows.last());
         self.directory.append_row(&row)?;
         let output = &self.plan.output;
         let is_due =

@@ -2,6 +2,7 @@
 
 use super::start::equilibrate;
 use super::state::Milestone;
+use super::work::WorkPoint;
 use super::{Lost, Phase, Plan, State, StudyError, check_memory};
 use crate::assembly::SplineTube;
 use crate::equilibrium::{TubeProblem, test_stability};
@@ -20,6 +21,8 @@ pub struct Study {
     problem: TubeProblem,
     /// The path at the last accepted state; none before the first.
     path: Option<Path<TubeProblem>>,
+    /// The last accepted state for the work to the next; none before the first.
+    work_point: Option<WorkPoint>,
     /// Stage that the path is in; none before the first.
     stage: Option<usize>,
     /// Completed steps of that stage.
@@ -83,6 +86,7 @@ impl Study {
             plan: plan.clone(),
             problem: TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings)),
             path: None,
+            work_point: None,
             stage: None,
             completed_steps: 0,
             next_number: 0,
@@ -114,6 +118,10 @@ impl Study {
         if let Some(stage) = from.stage {
             study.completed_steps = completed_steps(plan.stages[stage].steps, path.reached());
         }
+        let forces = study.tube().forces(&path.state().load, &path.state().u);
+        let forces = forces.map_err(|error| StudyError::Resume(error.to_string()))?;
+        let (load, u) = (&path.state().load, &path.state().u);
+        study.work_point = Some(WorkPoint::of(plan, study.tube(), load, u, &forces));
         study.stage = from.stage;
         study.next_number = from.number + 1;
         study.path = Some(path);
@@ -330,15 +338,16 @@ impl Study {
             stage_fraction: path.reached(),
         };
         let seconds = self.since.elapsed().as_secs_f64();
-        let state = State::evaluate(
-            &self.plan,
-            &self.problem,
+        let (state, work_point) = State::evaluate(
+            (&self.plan, &self.problem),
+            self.work_point.as_ref(),
             &milestone,
             path.state(),
             step,
             stability,
             seconds,
         );
+        self.work_point = Some(work_point);
         self.next_number += 1;
         self.since = Instant::now();
         state

@@ -24,6 +24,7 @@ mod start;
 mod state;
 mod table;
 mod units;
+mod work;
 
 pub use changes::forbidden_changes;
 pub use error::StudyError;
@@ -37,3 +38,4 @@ pub use start::inverted_by_imperfections;
 pub use state::{MuscleState, State};
 pub use table::{Cell, Quantity, RowReader};
 pub use units::Scale;
+pub use work::Work;

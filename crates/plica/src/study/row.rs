@@ -23,7 +23,7 @@ pub struct Row {
     pub muscles: Vec<MuscleRow>,
     /// The ends at z = 0 and z = L.
     pub ends: [EndRow; 2],
-    /// Follower pressure on the inner wall; this and the next four columns exist only in runs with pressures.
+    /// Follower pressure on the inner wall; this and the next six columns exist only in runs with pressures.
     pub inner_pressure: Option<f64>,
     /// Follower pressure on the outer wall.
     pub outer_pressure: Option<f64>,
@@ -33,6 +33,10 @@ pub struct Row {
     pub outer_dead_load: Option<f64>,
     /// Strain energy plus the potential of the pressures, which is zero at rest.
     pub potential: Option<f64>,
+    /// Work done so far by the pressures on the inner wall; also exists only in runs with pressures.
+    pub inner_wall_work: Option<f64>,
+    /// Work done so far by the pressures on the outer wall; likewise.
+    pub outer_wall_work: Option<f64>,
     /// Strain energy W = ∫ w det Fp dV₀, over the grown volume.
     pub energy: f64,
     /// Strain energy ∫ w dV₀, over the ungrown volume, as some other programs report it.
@@ -41,6 +45,8 @@ pub struct Row {
     pub residual: f64,
     /// Work done against damping since the previous state.
     pub damping_work: f64,
+    /// Work done so far by muscles, pressures and ends, less the damping work so far and the gain of strain energy.
+    pub released_energy: f64,
     /// Method by which the state was found: rest, newton, relaxation or pseudo-time.
     pub method: Method,
     /// Whether the state is in equilibrium: yes or no.
@@ -53,6 +59,10 @@ pub struct Row {
     pub seconds: f64,
     /// Smallest radius of the outer wall, about the axis of the deformed tube.
     pub outer_radius_min: f64,
+    /// Largest distance of the outer wall from the centre of its material ring.
+    pub outer_radius_max: f64,
+    /// Radius of the outer wall at the middle of the length at rest, the mean over the circumference.
+    pub outer_radius_mid: f64,
     /// Axial position of the smallest radius.
     pub z_at_min: f64,
     /// Steepest angle of the outer wall to the axis; past 90 it overhangs.
@@ -67,6 +77,10 @@ pub struct Row {
     pub gap: f64,
     /// Narrowest width of the lumen; negative where walls have passed through each other.
     pub lumen: f64,
+    /// Volume of the lumen between flat ends.
+    pub lumen_volume: f64,
+    /// Smallest cross-section of the lumen.
+    pub lumen_area_min: f64,
     /// Shape of the contracting region: V, U, square, invaginated, swollen, collapsed or straight.
     pub shape: Shape,
     /// Asymmetry amplitude: amplitude of the largest circumferential wave of the outer wall.
@@ -90,6 +104,8 @@ pub struct MuscleRow {
     pub target: f64,
     /// Its growth stretch where it is furthest from one.
     pub stretch: f64,
+    /// Work that it has done so far.
+    pub work: f64,
 }
 
 /// The numbers of an end in a row.
@@ -101,11 +117,27 @@ pub struct EndRow {
     pub displacement: f64,
     /// Prescribed twist about the axis, in degrees.
     pub twist_deg: f64,
+    /// Axial force of the support, positive if it pulls the end outwards.
+    pub axial_force: f64,
+    /// Magnitude of the force of the support across the axis.
+    pub shear_force: f64,
+    /// Magnitude of the moment of the support about axes across the tube's.
+    pub bending_moment: f64,
+    /// Moment of the support about the axis, positive counterclockwise as seen from outside.
+    pub torque: f64,
+    /// Work that the support has done so far.
+    pub work: f64,
 }
 
 impl Row {
-    /// Converts a state to the units of its case. The columns of pressures are written only if the case has pressures.
-    pub fn new(state: &State, scale: &Scale, has_pressures: bool) -> Self {
+    /// Converts a state to the units of its case; totals continue those of the row of the previous state. The columns of
+    /// pressures are written only if the case has pressures.
+    pub fn new(state: &State, scale: &Scale, has_pressures: bool, previous: Option<&Self>) -> Self {
+        let row = Self::without_totals(state, scale, has_pressures);
+        row.with_totals(state, scale, previous)
+    }
+
+    fn without_totals(state: &State, scale: &Scale, has_pressures: bool) -> Self {
         let (length, energy, measures) = (scale.length, scale.energy, &state.measures);
         let [inner, outer] = state.load.pressures;
         let pressure = |p: f64| has_pressures.then_some(scale.stress * p);
@@ -113,11 +145,17 @@ impl Row {
             name: muscle.name.clone(),
             target: muscle.target,
             stretch: muscle.stretch,
+            work: 0.0,
         });
         let end = |i: usize| EndRow {
             name: ["colon", "ileum"][i].into(),
             displacement: length * state.load.ends[i].displacement,
             twist_deg: state.load.ends[i].twist.to_degrees(),
+            axial_force: scale.force * state.reactions[i].axial_force(),
+            shear_force: scale.force * state.reactions[i].shear_force(),
+            bending_moment: scale.moment * state.reactions[i].bending_moment(),
+            torque: scale.moment * state.reactions[i].torque(),
+            work: 0.0,
         };
         Self {
             step: state.number,
@@ -131,16 +169,21 @@ impl Row {
             inner_dead_load: pressure(inner.dead),
             outer_dead_load: pressure(outer.dead),
             potential: has_pressures.then_some(energy * state.potential),
+            inner_wall_work: has_pressures.then_some(0.0),
+            outer_wall_work: has_pressures.then_some(0.0),
             energy: energy * state.energy,
             energy_ungrown_volume: energy * state.energy_ungrown_volume,
             residual: state.relative_residual,
             damping_work: energy * state.sectors * state.sector_damping_work,
+            released_energy: 0.0,
             method: state.method,
             in_equilibrium: state.in_equilibrium,
             iterations: state.linear_solves,
             cg_iterations: state.inner_iterations,
             seconds: state.seconds,
             outer_radius_min: length * measures.outer_radius_min,
+            outer_radius_max: length * state.dimensions.outer_radius_max,
+            outer_radius_mid: length * state.dimensions.outer_radius_mid,
             z_at_min: length * measures.z_at_min,
             max_wall_angle_deg: measures.max_wall_angle_deg,
             overhang: length * measures.overhang,
@@ -148,6 +191,8 @@ impl Row {
             flatness: measures.flatness,
             gap: length * measures.gap,
             lumen: length * measures.lumen,
+            lumen_volume: scale.volume() * state.dimensions.lumen_volume,
+            lumen_area_min: length * length * state.dimensions.lumen_area_min,
             shape: measures.shape,
             asymmetry: length * measures.asymmetry.amplitude,
             asymmetry_mode: measures.asymmetry.harmonic,
@@ -155,6 +200,43 @@ impl Row {
             min_det_fe: state.min_det_fe,
             stability: state.stability.clone(),
         }
+    }
+
+    /// Adds the work since the previous state to its totals.
+    fn with_totals(mut self, state: &State, scale: &Scale, previous: Option<&Self>) -> Self {
+        let (Some(previous), work) = (previous, &state.work) else {
+            return self;
+        };
+        let mut sum = 0.0;
+        let mut total = |before: f64, work: f64| {
+            sum += scale.energy * work;
+            before + scale.energy * work
+        };
+        for (i, muscle) in self.muscles.iter_mut().enumerate() {
+            muscle.work = total(previous.muscles[i].work, work.muscles[i]);
+        }
+        for (i, end) in self.ends.iter_mut().enumerate() {
+            end.work = total(previous.ends[i].work, work.ends[i]);
+        }
+        for (now, before, work) in [
+            (
+                &mut self.inner_wall_work,
+                previous.inner_wall_work,
+                work.walls[0],
+            ),
+            (
+                &mut self.outer_wall_work,
+                previous.outer_wall_work,
+                work.walls[1],
+            ),
+        ] {
+            if let Some(now) = now {
+                *now = total(before.unwrap_or(0.0), work);
+            }
+        }
+        let gained = self.energy - previous.energy;
+        self.released_energy = previous.released_energy + (sum - self.damping_work - gained);
+        self
     }
 
     /// Adds the columns of pressures, with zeros, to a row without them.
@@ -165,6 +247,8 @@ impl Row {
             &mut self.outer_pressure,
             &mut self.inner_dead_load,
             &mut self.outer_dead_load,
+            &mut self.inner_wall_work,
+            &mut self.outer_wall_work,
         ] {
             pressure.get_or_insert(0.0);
         }
@@ -203,16 +287,21 @@ impl Row {
             inner_dead_load: None,
             outer_dead_load: None,
             potential: None,
+            inner_wall_work: None,
+            outer_wall_work: None,
             energy: 0.0,
             energy_ungrown_volume: 0.0,
             residual: 0.0,
             damping_work: 0.0,
+            released_energy: 0.0,
             method: Method::Rest,
             in_equilibrium: true,
             iterations: 0,
             cg_iterations: 0,
             seconds: 0.0,
             outer_radius_min: 0.0,
+            outer_radius_max: 0.0,
+            outer_radius_mid: 0.0,
             z_at_min: 0.0,
             max_wall_angle_deg: 0.0,
             overhang: 0.0,
@@ -220,6 +309,8 @@ impl Row {
             flatness: 0.0,
             gap: 0.0,
             lumen: 0.0,
+            lumen_volume: 0.0,
+            lumen_area_min: 0.0,
             shape: Shape::Straight,
             asymmetry: 0.0,
             asymmetry_mode: 0,
@@ -232,28 +323,32 @@ impl Row {
     /// Visits the columns in the order of `history.csv`. A column of a muscle or an end is named by its quantity, an
     /// underscore and the name in the case.
     pub(super) fn visit(&mut self, visitor: &mut impl Visitor) {
-        use Quantity::{Count, Degrees, Energy, Length, Ratio, Seconds, Stress, Text};
+        use Quantity::{
+            Area, Count, Degrees, Energy, Force, Length, Moment, Ratio, Seconds, Stress, Text,
+            Volume,
+        };
         let v = visitor;
         v.cell("step", Count, &mut self.step);
         v.cell("stage", Text, &mut self.stage);
         v.cell("length_ratio", Ratio, &mut self.length_ratio);
         v.cell("diameter_ratio", Ratio, &mut self.diameter_ratio);
-        for MuscleRow {
-            name,
-            target,
-            stretch,
-        } in &mut self.muscles
-        {
-            v.cell(&format!("target_{name}"), Ratio, target);
-            v.cell(&format!("stretch_{name}"), Ratio, stretch);
+        for muscle in &mut self.muscles {
+            let name = &muscle.name;
+            v.cell(&format!("target_{name}"), Ratio, &mut muscle.target);
+            v.cell(&format!("stretch_{name}"), Ratio, &mut muscle.stretch);
         }
-        for end in &mut self.ends {
-            let name = format!("displacement_{}", end.name);
-            v.cell(&name, Length, &mut end.displacement);
-        }
-        for end in &mut self.ends {
-            let name = format!("twist_deg_{}", end.name);
-            v.cell(&name, Degrees, &mut end.twist_deg);
+        for (quantity, of, field) in [
+            ("displacement", Length, displacement as OfEnd),
+            ("twist_deg", Degrees, |end| &mut end.twist_deg),
+            ("axial_force", Force, |end| &mut end.axial_force),
+            ("shear_force", Force, |end| &mut end.shear_force),
+            ("bending_moment", Moment, |end| &mut end.bending_moment),
+            ("torque", Moment, |end| &mut end.torque),
+        ] {
+            for end in &mut self.ends {
+                let name = format!("{quantity}_{}", end.name);
+                v.cell(&name, of, field(end));
+            }
         }
         v.optional("inner_pressure", Stress, &mut self.inner_pressure);
         v.optional("outer_pressure", Stress, &mut self.outer_pressure);
@@ -265,6 +360,18 @@ impl Row {
         v.cell("energy_ungrown_volume", Energy, ungrown);
         v.cell("residual", Ratio, &mut self.residual);
         v.cell("damping_work", Energy, &mut self.damping_work);
+        for muscle in &mut self.muscles {
+            let name = format!("work_{}", muscle.name);
+            v.cell(&name, Energy, &mut muscle.work);
+        }
+        // The names that a case has for the walls; no muscle has them.
+        v.optional("work_inner-wall", Energy, &mut self.inner_wall_work);
+        v.optional("work_outer-wall", Energy, &mut self.outer_wall_work);
+        for end in &mut self.ends {
+            let name = format!("work_{}", end.name);
+            v.cell(&name, Energy, &mut end.work);
+        }
+        v.cell("released_energy", Energy, &mut self.released_energy);
         v.cell("method", Text, &mut self.method);
         let mut answer = YesOrNo::from(self.in_equilibrium);
         v.cell("equilibrium", Text, &mut answer);
@@ -273,6 +380,8 @@ impl Row {
         v.cell("cg_iterations", Count, &mut self.cg_iterations);
         v.cell("seconds", Seconds, &mut self.seconds);
         v.cell("outer_radius_min", Length, &mut self.outer_radius_min);
+        v.cell("outer_radius_max", Length, &mut self.outer_radius_max);
+        v.cell("outer_radius_mid", Length, &mut self.outer_radius_mid);
         v.cell("z_at_min", Length, &mut self.z_at_min);
         v.cell("max_wall_angle_deg", Degrees, &mut self.max_wall_angle_deg);
         v.cell("overhang", Length, &mut self.overhang);
@@ -280,6 +389,8 @@ impl Row {
         v.cell("flatness", Ratio, &mut self.flatness);
         v.cell("gap", Length, &mut self.gap);
         v.cell("lumen", Length, &mut self.lumen);
+        v.cell("lumen_volume", Volume, &mut self.lumen_volume);
+        v.cell("lumen_area_min", Area, &mut self.lumen_area_min);
         v.cell("shape", Text, &mut self.shape);
         v.cell("asymmetry", Length, &mut self.asymmetry);
         v.cell("asymmetry_mode", Count, &mut self.asymmetry_mode);
@@ -288,6 +399,13 @@ impl Row {
         v.cell("min_det_fe", Ratio, &mut self.min_det_fe);
         v.cell("unstable_modes", Text, &mut self.stability);
     }
+}
+
+/// A number of an end.
+type OfEnd = fn(&mut EndRow) -> &mut f64;
+
+fn displacement(end: &mut EndRow) -> &mut f64 {
+    &mut end.displacement
 }
 
 /// A truth value in a table.

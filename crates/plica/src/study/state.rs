@@ -1,9 +1,10 @@
 //! An accepted state of a study.
 
-use super::Plan;
+use super::work::WorkPoint;
+use super::{Plan, Work};
 use crate::activation::Muscle;
 use crate::equilibrium::{Stability, TubeProblem};
-use crate::measure::Measures;
+use crate::measure::{Dimensions, Measures, Reaction};
 use crate::solve::{Method, Step};
 use crate::tube::Load;
 
@@ -45,6 +46,12 @@ pub struct State {
     pub seconds: f64,
     /// Measures of the deformed walls.
     pub measures: Measures,
+    /// Sizes of the lumen and of the outer wall.
+    pub dimensions: Dimensions,
+    /// Reactions at z = 0 and z = L.
+    pub reactions: [Reaction; 2],
+    /// Work since the previous state.
+    pub work: Work,
     /// Smallest det Fe at any quadrature point.
     pub min_det_fe: f64,
     /// Stability of the state.
@@ -92,16 +99,16 @@ impl State {
         self.sectors * self.sector_damping_work
     }
 
-    /// Evaluates an equilibrium that the solver has accepted.
+    /// Evaluates an equilibrium that the solver has accepted. Returns what the work to the next state is computed from, too.
     pub(super) fn evaluate(
-        plan: &Plan,
-        problem: &TubeProblem,
+        (plan, problem): (&Plan, &TubeProblem),
+        previous: Option<&WorkPoint>,
         at: &Milestone<'_>,
         accepted: &crate::solve::State<Load>,
         step: &Step,
         stability: Stability,
         seconds: f64,
-    ) -> Self {
+    ) -> (Self, WorkPoint) {
         let tube = &problem.tube;
         // The solver has evaluated the energy of this state already.
         let Ok(forces) = tube.forces(&accepted.load, &accepted.u) else {
@@ -113,7 +120,10 @@ impl State {
                 1e-15 * tube.material.longitudinal_modulus() * tube.thickness * tube.length;
             if energy.abs() < rounding { 0.0 } else { energy }
         };
-        Self {
+        let (load, u) = (&accepted.load, &accepted.u);
+        let point = WorkPoint::of(plan, tube, load, u, &forces);
+        let none = || Work::none(load.muscles.len());
+        let state = Self {
             number: at.number,
             stage: at.stage.to_owned(),
             ends_stage: at.ends_stage,
@@ -128,7 +138,10 @@ impl State {
             linear_solves: step.effort.linear_solves,
             inner_iterations: step.effort.inner_iterations,
             seconds,
-            measures: Measures::of(tube, &accepted.load, &accepted.u),
+            measures: Measures::of(tube, load, u),
+            dimensions: Dimensions::of(tube, u),
+            reactions: Reaction::of(tube, load, u, &forces.residual),
+            work: previous.map_or_else(none, |previous| previous.to(&point)),
             min_det_fe: forces.smallest_jacobian,
             stability,
             length_ratio: plan.tube.length_ratio(&accepted.load),
@@ -137,7 +150,8 @@ impl State {
             sectors: tube.sector.repeats(),
             load: accepted.load.clone(),
             unknowns: accepted.u.clone(),
-        }
+        };
+        (state, point)
     }
 }
 

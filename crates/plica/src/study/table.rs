@@ -20,6 +20,14 @@ pub enum Quantity {
     Seconds,
     /// A length.
     Length,
+    /// An area.
+    Area,
+    /// A volume.
+    Volume,
+    /// A force.
+    Force,
+    /// A moment.
+    Moment,
     /// A stress or a pressure.
     Stress,
     /// An energy.

@@ -11,12 +11,24 @@ pub struct Scale {
     pub energy: f64,
     /// Stress: E in the unit of the case.
     pub stress: f64,
+    /// Force: E·D² in newtons times a power of ten.
+    pub force: f64,
+    /// Moment: E·D³ in newton metres times a power of ten.
+    pub moment: f64,
     /// Name of the unit of length.
     pub length_name: String,
     /// Name of the unit of energy.
     pub energy_name: String,
     /// Name of the unit of stress.
     pub stress_name: String,
+    /// Name of the unit of area.
+    pub area_name: String,
+    /// Name of the unit of volume.
+    pub volume_name: String,
+    /// Name of the unit of force.
+    pub force_name: String,
+    /// Name of the unit of moment.
+    pub moment_name: String,
 }
 
 impl Scale {
@@ -27,29 +39,55 @@ impl Scale {
                 length: 1.0,
                 energy: 1.0,
                 stress: 1.0,
+                force: 1.0,
+                moment: 1.0,
                 length_name: "D".into(),
                 energy_name: "E D^3".into(),
                 stress_name: "E".into(),
+                area_name: "D^2".into(),
+                volume_name: "D^3".into(),
+                force_name: "E D^2".into(),
+                moment_name: "E D^3".into(),
             };
         };
-        // The power of ten of a joule: pascals times cubic metres.
-        let power = units.stress.power() + 3 * units.length.power();
-        let (named, energy_name) = match power {
-            -18..=-13 => (-15, "fJ"),
-            -12..=-10 => (-12, "pJ"),
-            -9..=-7 => (-9, "nJ"),
-            -6..=-4 => (-6, "uJ"),
-            -3..=-1 => (-3, "mJ"),
-            _ => (0, "J"),
+        // The powers of ten of a newton and of a joule, which is a newton metre.
+        let (stress, length) = (units.stress.power(), units.length.power());
+        let (force, work) = (stress + 2 * length, stress + 3 * length);
+        let [(of_force, newton), (of_work, joule)] = [force, work].map(prefix);
+        let size = |cubed: i32, power: i32| {
+            units.youngs_modulus * units.diameter.powi(cubed) * 10_f64.powi(power)
         };
         Self {
             length: units.diameter,
-            energy: units.youngs_modulus * units.diameter.powi(3) * 10_f64.powi(power - named),
+            energy: size(3, work - of_work),
             stress: units.youngs_modulus,
+            force: size(2, force - of_force),
+            moment: size(3, work - of_work),
             length_name: units.length.to_string(),
-            energy_name: energy_name.into(),
+            energy_name: format!("{joule}J"),
             stress_name: units.stress.to_string(),
+            area_name: format!("{}^2", units.length),
+            volume_name: format!("{}^3", units.length),
+            force_name: format!("{newton}N"),
+            moment_name: format!("{joule}N m"),
         }
+    }
+
+    /// Returns the factor of volumes, D³.
+    pub(super) fn volume(&self) -> f64 {
+        self.length.powi(3)
+    }
+}
+
+/// Returns the power of ten of the nearest prefix, and its letter.
+fn prefix(power: i32) -> (i32, &'static str) {
+    match power {
+        -18..=-13 => (-15, "f"),
+        -12..=-10 => (-12, "p"),
+        -9..=-7 => (-9, "n"),
+        -6..=-4 => (-6, "u"),
+        -3..=-1 => (-3, "m"),
+        _ => (0, ""),
     }
 }
 
@@ -58,6 +96,10 @@ impl Scale {
     pub fn factor(&self, quantity: Quantity) -> f64 {
         match quantity {
             Quantity::Length => self.length,
+            Quantity::Area => self.length * self.length,
+            Quantity::Volume => self.volume(),
+            Quantity::Force => self.force,
+            Quantity::Moment => self.moment,
             Quantity::Stress => self.stress,
             Quantity::Energy => self.energy,
             Quantity::Text | Quantity::Count | Quantity::Ratio => 1.0,
@@ -69,6 +111,10 @@ impl Scale {
     pub fn unit(&self, quantity: Quantity) -> Option<&str> {
         match quantity {
             Quantity::Length => Some(&self.length_name),
+            Quantity::Area => Some(&self.area_name),
+            Quantity::Volume => Some(&self.volume_name),
+            Quantity::Force => Some(&self.force_name),
+            Quantity::Moment => Some(&self.moment_name),
             Quantity::Stress => Some(&self.stress_name),
             Quantity::Energy => Some(&self.energy_name),
             Quantity::Degrees => Some("°"),

@@ -30,7 +30,7 @@ use super::kinematics::{Vector, to_element_frame, to_ring_frame};
 use super::tables::{AxialBatch, CircumferentialPoint};
 use crate::matrix::BlockBanded;
 use crate::rings::Rotation;
-use crate::tube::{Load, Tube};
+use crate::tube::{Load, Pressure, Tube};
 use rayon::prelude::*;
 use volume::{Surface, product, sum, volume_blocks, volume_change, volume_slopes};
 
@@ -73,16 +73,10 @@ impl SplineTube {
         let mut squares = forces.residual_scale * forces.residual_scale;
         for wall in self.loaded_walls(load) {
             let parts = self.integrate_over_wall(&wall, [u], |[moved], point| {
-                let rest = wall.at_rest(point);
-                let position = sum(&rest, &moved);
+                let position = sum(&wall.at_rest(point), &moved);
                 let volume = volume_slopes(&position);
-                let area = [
-                    0.0,
-                    wall.radius * point.circle_slope.1,
-                    -wall.radius * point.circle_slope.0,
-                ];
-                let dead = moved[2][1] * area[1] + moved[2][2] * area[2];
-                let potential = -wall.follower * volume_change(&rest, &moved) - wall.dead * dead;
+                let area = wall.area_at_rest(point);
+                let potential = wall.potential(&moved, point);
                 let mut slopes = volume.map(|v| v.map(|x| -wall.follower * x));
                 for i in 0..3 {
                     slopes[2][i] -= wall.dead * area[i];
@@ -96,6 +90,28 @@ impl SplineTube {
             self.add_wall_forces(&wall, &parts, 1.0, &mut forces.residual);
             forces.residual_scale = squares.sqrt();
         }
+    }
+
+    /// Returns the work since rest, on the whole tube, of a unit follower pressure and of a unit
+    /// dead load on the inner wall and on the outer wall.
+    pub(crate) fn work_of_unit_pressures(&self, u: &[f64]) -> [[f64; 2]; 2] {
+        let unit = |follower: f64, dead: f64| Pressure { follower, dead };
+        let [follower, dead] = [unit(1.0, 0.0), unit(0.0, 1.0)].map(|pressure| {
+            let load = Load {
+                pressures: [pressure; 2],
+                ..self.tube.rest()
+            };
+            let work = |wall: &LoadedWall| {
+                let parts = self.integrate_over_wall(wall, [u], |[moved], point| {
+                    (wall.potential(&moved, point), [[0.0; 3]; 3])
+                });
+                let potential: f64 = parts.iter().map(|part| part.potential).sum();
+                -self.sector.repeats() * potential
+            };
+            let walls = self.loaded_walls(&load);
+            [work(&walls[0]), work(&walls[1])]
+        });
+        [0, 1].map(|wall| [follower[wall], dead[wall]])
     }
 
     /// Returns the contribution of pressure to the tangent at a state; none without follower
@@ -377,6 +393,19 @@ impl LoadedWall {
             across(point.circle_slope),
             across(point.circle),
         ]
+    }
+
+    /// Returns the potential of the pressures at a point that has moved, per dζ ds.
+    fn potential(&self, moved: &Surface, point: &CircumferentialPoint) -> f64 {
+        let area = self.area_at_rest(point);
+        let dead = moved[2][1] * area[1] + moved[2][2] * area[2];
+        -self.follower * volume_change(&self.at_rest(point), moved) - self.dead * dead
+    }
+
+    /// Returns the outward element of area at rest, per dζ ds.
+    fn area_at_rest(&self, point: &CircumferentialPoint) -> Vector<f64> {
+        let (re, im) = point.circle_slope;
+        [0.0, self.radius * im, -self.radius * re]
     }
 }
 

@@ -1,0 +1,292 @@
+//! Work between two states: done by the muscles, by the pressures on the walls, and by the supports of the ends.
+//!
+//! Along a path of equilibria
+//!
+//! dW = Σ ∂W/∂t dt + p_i dV_i − p_o dV_o + (the same of dead loads) + Σ R · du,
+//!
+//! where t is the target of a muscle, at fixed displacements, and R is the residual at the prescribed displacements u of
+//! the ends. The trapezoidal rule between accepted states integrates each term with an error of second order in the step.
+
+use super::Plan;
+use crate::assembly::{Forces, SplineTube};
+use crate::tube::Load;
+
+/// Work of one step on the whole tube, in E·D³.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Work {
+    /// By each muscle, in the order of the tube.
+    pub muscles: Vec<f64>,
+    /// By the pressures on the inner and on the outer wall.
+    pub walls: [f64; 2],
+    /// By the supports of the ends at z = 0 and z = L.
+    pub ends: [f64; 2],
+}
+
+impl Work {
+    /// Returns no work, of a number of muscles.
+    pub(super) fn none(muscles: usize) -> Self {
+        Self {
+            muscles: vec![0.0; muscles],
+            ..Self::default()
+        }
+    }
+}
+
+/// What a state contributes to the work of the steps before and after it.
+#[derive(Clone, Debug)]
+pub(super) struct WorkPoint {
+    load: Load,
+    /// ∂W/∂t of each muscle; 0 for a muscle whose target never changes.
+    muscle_forces: Vec<f64>,
+    /// For each wall, the work of a unit follower pressure and of a unit dead load since rest.
+    unit_work: [[f64; 2]; 2],
+    /// Displacement and residual at the prescribed unknowns of each end, of one sector.
+    ends: [Vec<[f64; 2]>; 2],
+    sectors: f64,
+}
+
+/// Change of the extreme stretch of a muscle, relative to its smallest stretch, in central differences: their error is
+/// about 1e-8, and the rounding of the energy adds about 1e-12.
+const STRETCH_STEP: f64 = 1e-4;
+
+impl WorkPoint {
+    /// Evaluates a state, whose forces are known.
+    pub fn of(plan: &Plan, tube: &SplineTube, load: &Load, u: &[f64], forces: &Forces) -> Self {
+        let k = tube.sector.rings;
+        let at_ends = tube.prescribed_at_ends();
+        let row = tube.row_size();
+        let end = |first: usize| {
+            let unknowns = (first..first + row).filter(|unknown| at_ends[unknown / k]);
+            unknowns.map(|i| [u[i], forces.residual[i]]).collect()
+        };
+        let muscle_forces = (0..load.muscles.len()).map(|m| match is_driven(plan, m) {
+            true => muscle_force(tube, load, u, m),
+            false => 0.0,
+        });
+        Self {
+            muscle_forces: muscle_forces.collect(),
+            unit_work: match plan.has_pressures() {
+                true => tube.work_of_unit_pressures(u),
+                false => [[0.0; 2]; 2],
+            },
+            ends: [end(0), end(u.len() - row)],
+            load: load.clone(),
+            sectors: tube.sector.repeats(),
+        }
+    }
+
+    /// Returns the work on the way to another state.
+    pub fn to(&self, next: &Self) -> Work {
+        let trapezoid = |force: [f64; 2], change: f64| 0.5 * (force[0] + force[1]) * change;
+        let muscle = |m: usize| {
+            let change = next.load.muscles[m] - self.load.muscles[m];
+            trapezoid([self.muscle_forces[m], next.muscle_forces[m]], change)
+        };
+        let wall = |i: usize| {
+            let change = [0, 1].map(|kind| next.unit_work[i][kind] - self.unit_work[i][kind]);
+            let [from, to] = [self, next].map(|point| point.load.pressures[i]);
+            trapezoid([from.follower, to.follower], change[0])
+                + trapezoid([from.dead, to.dead], change[1])
+        };
+        let end = |i: usize| {
+            let pairs = self.ends[i].iter().zip(&next.ends[i]);
+            let work = |([u, r], [next_u, next_r]): (&[f64; 2], &[f64; 2])| {
+                trapezoid([*r, *next_r], next_u - u)
+            };
+            self.sectors * pairs.map(work).sum::<f64>()
+        };
+        Work {
+            muscles: (0..self.muscle_forces.len()).map(muscle).collect(),
+            walls: [0, 1].map(wall),
+            ends: [0, 1].map(end),
+        }
+    }
+}
+
+/// Returns whether the target of a muscle changes in any stage.
+fn is_driven(plan: &Plan, m: usize) -> bool {
+    let first = plan.first_load().muscles[m];
+    plan.stages
+        .iter()
+        .any(|stage| stage.load.muscles[m] != first)
+}
+
+/// Returns the derivative of the strain energy of the whole tube by the target of a muscle, at fixed displacements.
+fn muscle_force(tube: &SplineTube, load: &Load, u: &[f64], m: usize) -> f64 {
+    let (muscle, target, length) = (&tube.tube.muscles[m], load.muscles[m], tube.tube.length);
+    let slope = muscle.extreme_stretch(1.0, length) - muscle.extreme_stretch(0.0, length);
+    let h = STRETCH_STEP * muscle.smallest_stretch(target, length) / slope;
+    let energy = |target: f64| {
+        let mut load = load.clone();
+        load.muscles[m] = target;
+        // Growth does not change the sign of det Fe.
+        let Ok(forces) = tube.forces(&load, u) else {
+            unreachable!("an accepted state is not inverted")
+        };
+        forces.energy
+    };
+    (energy(target + h) - energy(target - h)) / (2.0 * h)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::plan;
+    use super::super::{Row, Scale, Stage, Study};
+    use super::*;
+    use crate::activation::{Direction, Muscle, Profile};
+    use crate::tube::{EndMotion, Pressure, Support, Symmetry};
+
+    /// A tube with two muscles, pressures on both walls and a pushed and twisted end, all driven at a time.
+    fn driven(steps: usize) -> Plan {
+        let mut plan = plan(Symmetry::Axisymmetric);
+        let muscle = |name: &str, direction| Muscle {
+            name: name.into(),
+            direction,
+            zone: [0.1, 0.8],
+            profile: Profile::RaisedCosine,
+        };
+        plan.tube.muscles = vec![
+            muscle("circular", Direction::Circular),
+            muscle("longitudinal", Direction::Longitudinal),
+        ];
+        plan.tube.ends = [Support::Fixed; 2];
+        plan.mesh.axial = 9;
+        plan.output.stability_modes = 0;
+        plan.solver.tolerance = 1e-10;
+        let pressure = |follower, dead| Pressure { follower, dead };
+        let load = Load {
+            muscles: vec![0.8, 1.1],
+            ends: [
+                EndMotion {
+                    displacement: -0.05,
+                    twist: 0.0,
+                },
+                EndMotion {
+                    displacement: 0.02,
+                    twist: 0.2,
+                },
+            ],
+            pressures: [pressure(0.01, 0.002), pressure(-0.005, 0.003)],
+        };
+        let back = Load {
+            muscles: vec![0.7, 1.0],
+            ..load.clone()
+        };
+        let stage = |name: &str, load| Stage {
+            name: name.into(),
+            load,
+            steps,
+        };
+        plan.stages = vec![stage("all", load), stage("back", back)];
+        plan
+    }
+
+    fn rows(plan: &Plan) -> Vec<Row> {
+        let mut rows: Vec<Row> = vec![];
+        for state in Study::new(plan).unwrap() {
+            let row = Row::new(&state.unwrap(), &Scale::of(None), true, rows.last());
+            rows.push(row);
+        }
+        rows
+    }
+
+    #[test]
+    fn the_energy_balance_closes_with_second_order_in_the_step() {
+        let gap = |steps: usize| {
+            let rows = rows(&driven(steps));
+            assert_eq!(rows.len(), 1 + 2 * steps);
+            let last = rows.last().unwrap();
+            let muscles: f64 = last.muscles.iter().map(|m| m.work).sum();
+            let ends: f64 = last.ends.iter().map(|end| end.work).sum();
+            let walls = last.inner_wall_work.unwrap() + last.outer_wall_work.unwrap();
+            let parts = [muscles, ends, walls];
+            // No part is too small to count.
+            let all: f64 = parts.iter().map(|x| x.abs()).sum();
+            assert!(parts.iter().all(|x| x.abs() > 0.01 * all), "{parts:?}");
+            let gap = muscles + ends + walls - (last.energy - rows[0].energy);
+            assert!((gap - last.released_energy).abs() < 1e-12 * all);
+            (gap / all).abs()
+        };
+        let [coarse, fine] = [4, 8].map(gap);
+        println!("{coarse:e} {fine:e}");
+        assert!(coarse < 2e-2 && fine < coarse / 3.5, "{coarse} {fine}");
+    }
+
+    #[test]
+    fn a_resumed_study_does_the_same_work_to_the_bit() {
+        let plan = driven(2);
+        let mut study = Study::new(&plan).unwrap();
+        let (mut works, mut continuations) = (vec![], vec![]);
+        while let Some(state) = study.next() {
+            works.push(state.unwrap().work);
+            continuations.push(study.continuation().unwrap());
+        }
+        for number in [0, 1, 2, 3] {
+            let resumed = Study::resume(&plan, continuations[number].clone()).unwrap();
+            let rest: Vec<Work> = resumed.map(|state| state.unwrap().work).collect();
+            assert_eq!(rest, works[number + 1..], "after state {number}");
+        }
+    }
+
+    #[test]
+    fn every_column_scales_with_the_units_of_the_case() {
+        use super::super::{LengthUnit, StressUnit, Units};
+        let plan = driven(1);
+        let scale = Scale::of(Some(&Units {
+            length: LengthUnit::Millimetre,
+            stress: StressUnit::Kilopascal,
+            diameter: 25.0,
+            youngs_modulus: 20.0,
+        }));
+        let (mut plain, mut scaled): (Vec<Row>, Vec<Row>) = (vec![], vec![]);
+        for state in Study::new(&plan).unwrap() {
+            let state = state.unwrap();
+            plain.push(Row::new(&state, &Scale::of(None), true, plain.last()));
+            scaled.push(Row::new(&state, &scale, true, scaled.last()));
+        }
+        let (length, stress) = (25.0_f64, 20.0);
+        let factor = |name: &str| match name {
+            _ if name.starts_with("displacement_") => length,
+            "outer_radius_min" | "outer_radius_max" | "outer_radius_mid" => length,
+            "z_at_min" | "overhang" | "gap" | "lumen" | "asymmetry" => length,
+            "lumen_volume" => length.powi(3),
+            "lumen_area_min" => length.powi(2),
+            "inner_pressure" | "outer_pressure" | "inner_dead_load" | "outer_dead_load" => stress,
+            // kPa mm² is mN; kPa mm³ is uN m and uJ.
+            _ if name.contains("_force_") => stress * length.powi(2),
+            "potential"
+            | "energy"
+            | "energy_ungrown_volume"
+            | "damping_work"
+            | "released_energy" => stress * length.powi(3),
+            _ if name.starts_with("torque_") || name.starts_with("bending_moment_") => {
+                stress * length.powi(3)
+            }
+            _ if name.starts_with("work_") => stress * length.powi(3),
+            _ => 1.0,
+        };
+        assert_eq!(scale.unit(super::super::Quantity::Force), Some("mN"));
+        assert_eq!(scale.unit(super::super::Quantity::Moment), Some("uN m"));
+        let mut different = 0;
+        for (plain, scaled) in plain.iter().zip(&scaled) {
+            for (a, b) in plain.cells().iter().zip(scaled.cells()) {
+                let Some(x) = a.number() else {
+                    assert_eq!(a.text, b.text);
+                    continue;
+                };
+                let expected = factor(&a.name) * x;
+                // Totals are sums of scaled numbers that nearly cancel.
+                let rounding = 1e-12 * expected.abs() + 1e-16 * factor(&a.name);
+                let found = b.number().unwrap();
+                assert!(
+                    (found - expected).abs() <= rounding,
+                    "{}: {found} {expected}",
+                    a.name
+                );
+                assert!((scale.factor(a.quantity) / factor(&a.name) - 1.0).abs() < 1e-12);
+                different += usize::from(factor(&a.name) != 1.0 && x != 0.0);
+            }
+        }
+        assert!(different > 40, "{different}");
+    }
+}
