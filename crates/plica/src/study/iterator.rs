@@ -120,8 +120,8 @@ impl Study {
         }
         let forces = study.tube().forces(&path.state().load, &path.state().u);
         let forces = forces.map_err(|error| StudyError::Resume(error.to_string()))?;
-        let (load, u) = (&path.state().load, &path.state().u);
-        study.work_point = Some(WorkPoint::of(plan, study.tube(), load, u, &forces));
+        let state = (&path.state().load, path.state().u.as_slice());
+        study.work_point = Some(WorkPoint::of(plan, study.tube(), state, &forces));
         study.stage = from.stage;
         study.next_number = from.number + 1;
         study.path = Some(path);

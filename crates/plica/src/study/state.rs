@@ -121,8 +121,9 @@ impl State {
             if energy.abs() < rounding { 0.0 } else { energy }
         };
         let (load, u) = (&accepted.load, &accepted.u);
-        let point = WorkPoint::of(plan, tube, load, u, &forces);
+        let mut point = WorkPoint::of(plan, tube, (load, u), &forces);
         let none = || Work::none(load.muscles.len());
+        let work = previous.map_or_else(none, |previous| previous.work_to(&mut point, tube));
         let state = Self {
             number: at.number,
             stage: at.stage.to_owned(),
@@ -141,7 +142,7 @@ impl State {
             measures: Measures::of(tube, load, u),
             dimensions: Dimensions::of(tube, u),
             reactions: Reaction::of(tube, load, u, &forces.residual),
-            work: previous.map_or_else(none, |previous| previous.to(&point)),
+            work,
             min_det_fe: forces.smallest_jacobian,
             stability,
             length_ratio: plan.tube.length_ratio(&accepted.load),

@@ -36,8 +36,9 @@ impl Work {
 #[derive(Clone, Debug)]
 pub(super) struct WorkPoint {
     load: Load,
-    /// ∂W/∂t of each muscle; 0 for a muscle whose target never changes.
-    muscle_forces: Vec<f64>,
+    u: Vec<f64>,
+    /// ∂W/∂t of each muscle whose target has changed in the step before.
+    muscle_forces: Vec<Option<f64>>,
     /// For each wall, the work of a unit follower pressure and of a unit dead load since rest.
     unit_work: [[f64; 2]; 2],
     /// Displacement and residual at the prescribed unknowns of each end, of one sector.
@@ -51,7 +52,7 @@ const STRETCH_STEP: f64 = 1e-4;
 
 impl WorkPoint {
     /// Evaluates a state, whose forces are known.
-    pub fn of(plan: &Plan, tube: &SplineTube, load: &Load, u: &[f64], forces: &Forces) -> Self {
+    pub fn of(plan: &Plan, tube: &SplineTube, (load, u): (&Load, &[f64]), forces: &Forces) -> Self {
         let k = tube.sector.rings;
         let at_ends = tube.prescribed_at_ends();
         let row = tube.row_size();
@@ -59,29 +60,38 @@ impl WorkPoint {
             let unknowns = (first..first + row).filter(|unknown| at_ends[unknown / k]);
             unknowns.map(|i| [u[i], forces.residual[i]]).collect()
         };
-        let muscle_forces = (0..load.muscles.len()).map(|m| match is_driven(plan, m) {
-            true => muscle_force(tube, load, u, m),
-            false => 0.0,
-        });
         Self {
-            muscle_forces: muscle_forces.collect(),
+            muscle_forces: vec![None; load.muscles.len()],
             unit_work: match plan.has_pressures() {
                 true => tube.work_of_unit_pressures(u),
                 false => [[0.0; 2]; 2],
             },
             ends: [end(0), end(u.len() - row)],
             load: load.clone(),
+            u: u.to_vec(),
             sectors: tube.sector.repeats(),
         }
     }
 
-    /// Returns the work on the way to another state.
-    pub fn to(&self, next: &Self) -> Work {
+    /// Returns ∂W/∂t of a muscle.
+    fn muscle_force(&self, tube: &SplineTube, m: usize) -> f64 {
+        let known = self.muscle_forces[m];
+        known.unwrap_or_else(|| muscle_force(tube, &self.load, &self.u, m))
+    }
+
+    /// Returns the work on the way from this state to the next.
+    pub fn work_to(&self, next: &mut Self, tube: &SplineTube) -> Work {
         let trapezoid = |force: [f64; 2], change: f64| 0.5 * (force[0] + force[1]) * change;
-        let muscle = |m: usize| {
+        let mut muscles = vec![0.0; self.load.muscles.len()];
+        for (m, work) in muscles.iter_mut().enumerate() {
             let change = next.load.muscles[m] - self.load.muscles[m];
-            trapezoid([self.muscle_forces[m], next.muscle_forces[m]], change)
-        };
+            if change != 0.0 {
+                let [from, to] = [&*self, &*next].map(|point| point.muscle_force(tube, m));
+                next.muscle_forces[m] = Some(to);
+                *work = trapezoid([from, to], change);
+            }
+        }
+        let next = &*next;
         let wall = |i: usize| {
             let change = [0, 1].map(|kind| next.unit_work[i][kind] - self.unit_work[i][kind]);
             let [from, to] = [self, next].map(|point| point.load.pressures[i]);
@@ -96,19 +106,11 @@ impl WorkPoint {
             self.sectors * pairs.map(work).sum::<f64>()
         };
         Work {
-            muscles: (0..self.muscle_forces.len()).map(muscle).collect(),
+            muscles,
             walls: [0, 1].map(wall),
             ends: [0, 1].map(end),
         }
     }
-}
-
-/// Returns whether the target of a muscle changes in any stage.
-fn is_driven(plan: &Plan, m: usize) -> bool {
-    let first = plan.first_load().muscles[m];
-    plan.stages
-        .iter()
-        .any(|stage| stage.load.muscles[m] != first)
 }
 
 /// Returns the derivative of the strain energy of the whole tube by the target of a muscle, at fixed displacements.
