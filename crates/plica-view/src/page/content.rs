@@ -17,7 +17,7 @@ pub struct Content {
     title: String,
     headline: String,
     complete: bool,
-    findings: Vec<(&'static str, String)>,
+    findings: Vec<(String, String)>,
     warnings: Vec<String>,
     /// Sentence shown if there are no warnings.
     no_warnings: String,
@@ -51,10 +51,7 @@ impl Content {
     /// Collects the data of a run.
     pub fn of(run: &Run<'_>, columns: &[Column], data: &RunData) -> Self {
         let scale = Scale::of(run.plan.units.as_ref());
-        let findings = Findings {
-            rows: run.rows,
-            scale,
-        };
+        let findings = Findings::of(run.rows, &scale, run.plan.symmetry);
         let tabled = columns.iter().filter(|c| c.role != Role::Other);
         let tabled: Vec<&Column> = tabled.collect();
         let line = |(i, row): (usize, &Row)| Line {
@@ -119,7 +116,7 @@ impl Content {
 }
 
 /// Formats the units and numbers of a finding for the page.
-fn formatted((name, words): (&'static str, String)) -> (&'static str, String) {
+fn formatted((name, words): (String, String)) -> (String, String) {
     let words = words
         .replace("D^3", "D³")
         .replace(" uJ", " µJ")

@@ -3,13 +3,13 @@
 use super::Field;
 use super::labels::{scale_bar, unit};
 use super::orientation::upward_angle;
-use super::selection::Selection;
+use super::selection::{Abscissa, Selection};
 use super::surfaces::{SurfaceOptions, tube_surfaces};
 use super::walls::{Wall, walls};
 use crate::draw::{Chart, Compression, Curve, Cutaway, DrawError, Marker, Panel, VerticalLine};
 use plica::assembly::SplineTube;
-use plica::measure::Shape;
 use plica::run_directory::{Snapshot, Summary};
+use plica::study::findings::Interval;
 use plica::study::{Plan, Row, Scale};
 use rayon::prelude::*;
 
@@ -70,15 +70,33 @@ pub(super) fn energy_label(plan: &Plan) -> String {
 /// Plots the strain energy along the path.
 fn energy(plan: &Plan, summary: &Summary, selection: &Selection<'_>) -> Chart {
     let x = |row: &Row| selection.abscissa.of(row);
-    let within = |row: &&Row| selection.rows.iter().any(|r| r.step == row.step);
-    let minimum = summary.findings().energy_minimum().filter(within);
-    let line = |shape: Shape, label: &str| {
-        let row = selection.rows.iter().find(|row| row.shape == shape)?;
+    let shown = |state: usize| selection.rows.iter().find(|row| row.step == state);
+    let findings = summary.findings();
+    let minima = findings
+        .energy_minima()
+        .filter_map(|minimum| shown(minimum.at.state));
+    let line = |interval: &Interval, label: &str| {
         Some(VerticalLine {
-            at: x(row),
+            at: x(shown(interval.first.state)?),
             label: label.to_owned(),
         })
     };
+    let shapes = [
+        (findings.square.first(), "square"),
+        (findings.overhanging.first(), "overhang"),
+    ];
+    let shapes = shapes
+        .into_iter()
+        .filter_map(|(first, label)| line(first?, label));
+    // Over the whole path, starts of the stages.
+    let is_whole = selection.abscissa == Abscissa::Step;
+    let stages = findings.stages.iter().filter(|_| is_whole);
+    let stages = stages.filter_map(|stage| {
+        Some(VerticalLine {
+            at: x(shown(stage.states[0])?),
+            label: stage.name.clone(),
+        })
+    });
     Chart {
         x_label: selection.abscissa.label(&Scale::of(plan.units.as_ref())),
         y_label: energy_label(plan),
@@ -92,18 +110,14 @@ fn energy(plan: &Plan, summary: &Summary, selection: &Selection<'_>) -> Chart {
             colour: 1,
             ..Curve::default()
         }],
-        markers: minimum
+        markers: minima
             .map(|row| Marker {
                 at: (x(row), row.energy),
                 label: format!("minimum at {}", selection.abscissa.format(row)),
                 colour: 2,
             })
-            .into_iter()
             .collect(),
-        vertical_lines: line(Shape::Square, "square")
-            .into_iter()
-            .chain(line(Shape::Invaginated, "overhang"))
-            .collect(),
+        vertical_lines: shapes.chain(stages).collect(),
         ..Chart::default()
     }
 }

@@ -2,9 +2,9 @@
 
 use super::labels::unit;
 use crate::draw::format_number;
-use plica::measure::Shape;
 use plica::run_directory::Summary;
-use plica::study::{Row, Scale};
+use plica::study::findings::Interval;
+use plica::study::{Findings, Row, Scale};
 
 /// Quantity that varies along a path, used as abscissa.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,64 +69,109 @@ pub(super) struct Selection<'a> {
     pub abscissa: Abscissa,
     /// States of the plotted part.
     pub rows: Vec<&'a Row>,
-    /// Up to four states shown in detail: the first one, the minimum of the energy, the last square wall, the last one.
+    /// The states shown in detail, in the order of the path: see [`chosen`].
     pub chosen: Vec<&'a Row>,
 }
 
-impl<'a> Selection<'a> {
-    /// Selects the last part of a run in which a single quantity changes. Twists and dead loads, which are no abscissae, are
-    /// ignored.
-    pub fn of(summary: &'a Summary) -> Self {
-        let all = summary.rows();
-        let quantities = [
-            Abscissa::LengthRatio,
-            Abscissa::DiameterRatio,
-            Abscissa::Stretch,
-            Abscissa::InnerPressure,
-            Abscissa::OuterPressure,
-        ];
-        let tail = |quantity: Abscissa| {
-            let others = quantities.iter().filter(move |&&other| other != quantity);
-            let last = &all[all.len() - 1];
-            let same = |row: &&Row| others.clone().all(|other| other.of(row) == other.of(last));
-            let count = all.iter().rev().take_while(same).count();
-            let rows = &all[all.len() - count..];
-            let changes = rows
-                .windows(2)
-                .filter(|w| quantity.of(&w[0]) != quantity.of(&w[1]));
-            if changes.count() + 1 >= rows.len() {
-                rows.len()
-            } else {
-                0
-            }
-        };
-        let best = quantities
-            .into_iter()
-            .max_by_key(|&quantity| (tail(quantity), rank(quantity)));
-        let (abscissa, count) = match best {
-            Some(quantity) if tail(quantity) > 2 => (quantity, tail(quantity)),
-            _ => (Abscissa::Step, all.len()),
-        };
-        let rows: Vec<&Row> = all[all.len() - count..].iter().collect();
+/// Largest number of states shown in detail.
+const MOST_CHOSEN: usize = 6;
 
-        let first = rows.first().copied();
-        let mut chosen: Vec<&Row> = first.into_iter().collect();
-        let inside = |row: &&Row| rows.iter().any(|r| r.step == row.step);
-        chosen.extend(summary.findings().energy_minimum().filter(inside));
-        chosen.extend(
-            rows.iter()
-                .rev()
-                .find(|row| row.shape == Shape::Square)
-                .copied(),
-        );
-        chosen.extend(rows.last().copied());
-        chosen.sort_by_key(|row| row.step);
-        chosen.dedup_by_key(|row| row.step);
+impl<'a> Selection<'a> {
+    /// Selects the last part of a run in which a single quantity changes, if all that is found on the path lies in that part, or
+    /// else the whole path. Twists and dead loads, which are no abscissae, are ignored.
+    pub fn of(summary: &'a Summary) -> Self {
+        let (rows, findings) = (summary.rows(), summary.findings());
+        let (abscissa, count) = last_part(rows);
+        let begin = rows[rows.len() - count].step;
+        let (abscissa, count) = if events(findings).all(|state| state >= begin) {
+            (abscissa, count)
+        } else {
+            (Abscissa::Step, rows.len())
+        };
+        let rows = &rows[rows.len() - count..];
+        let chosen = chosen(rows, findings);
         Self {
             abscissa,
-            rows,
-            chosen,
+            rows: rows.iter().collect(),
+            chosen: rows
+                .iter()
+                .filter(|row| chosen.contains(&row.step))
+                .collect(),
         }
+    }
+}
+
+/// Returns the numbers of the states at which something is found.
+fn events(findings: &Findings) -> impl Iterator<Item = usize> + '_ {
+    let intervals = [
+        &findings.square,
+        &findings.overhanging,
+        &findings.crossing,
+        &findings.closed,
+    ];
+    let first = |interval: &Interval| interval.first.state;
+    let intervals = intervals.into_iter().flatten().map(first);
+    let extremes = findings.extremes.iter().map(|extreme| extreme.at.state);
+    let unstable = findings.unstable.iter().flat_map(|unstable| &unstable.states);
+    intervals.chain(extremes).chain(unstable.map(first))
+}
+
+/// Returns the numbers of the states shown in detail: the last one, the one with the deepest invagination, the first one, the ends
+/// of the stages, the energy minima, and the last square wall; of many, those named first.
+fn chosen(rows: &[Row], findings: &Findings) -> Vec<usize> {
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
+        return vec![];
+    };
+    let deepest = findings.deepest.iter().map(|deepest| deepest.at.state);
+    let ends = findings.stages.iter().map(|stage| stage.states[1]);
+    let minima = findings.energy_minima().map(|minimum| minimum.at.state);
+    let square = findings.square.last().map(|interval| interval.last.state);
+    let candidates = std::iter::once(last.step)
+        .chain(deepest)
+        .chain([first.step])
+        .chain(ends)
+        .chain(minima)
+        .chain(square);
+    let mut chosen = vec![];
+    for state in candidates.filter(|state| (first.step..=last.step).contains(state)) {
+        if !chosen.contains(&state) && chosen.len() < MOST_CHOSEN {
+            chosen.push(state);
+        }
+    }
+    chosen
+}
+
+/// Returns the quantity that alone changes in the last part of a path, and the number of states of that part; the number of the
+/// state and the whole path if no single quantity changes.
+fn last_part(all: &[Row]) -> (Abscissa, usize) {
+    let quantities = [
+        Abscissa::LengthRatio,
+        Abscissa::DiameterRatio,
+        Abscissa::Stretch,
+        Abscissa::InnerPressure,
+        Abscissa::OuterPressure,
+    ];
+    let tail = |quantity: Abscissa| {
+        let others = quantities.iter().filter(move |&&other| other != quantity);
+        let last = &all[all.len() - 1];
+        let same = |row: &&Row| others.clone().all(|other| other.of(row) == other.of(last));
+        let count = all.iter().rev().take_while(same).count();
+        let rows = &all[all.len() - count..];
+        let changes = rows
+            .windows(2)
+            .filter(|w| quantity.of(&w[0]) != quantity.of(&w[1]));
+        if changes.count() + 1 >= rows.len() {
+            rows.len()
+        } else {
+            0
+        }
+    };
+    let best = quantities
+        .into_iter()
+        .max_by_key(|&quantity| (tail(quantity), rank(quantity)));
+    match best {
+        Some(quantity) if tail(quantity) > 2 => (quantity, tail(quantity)),
+        _ => (Abscissa::Step, all.len()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The verdict on the stability of a state.
 
+use crate::tube::Symmetry;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -51,6 +52,15 @@ impl Stability {
 }
 
 impl UnstableMode {
+    /// Returns whether a run of a symmetry can follow the mode. The lowest mode of a state is one of the run itself.
+    pub fn is_admitted_by(self, symmetry: Symmetry) -> bool {
+        match (symmetry, self) {
+            (_, Self::Lowest | Self::Circumferential(0)) | (Symmetry::None, _) => true,
+            (Symmetry::Axisymmetric, _) => false,
+            (Symmetry::Fold(m), Self::Circumferential(n)) => n.is_multiple_of(m),
+        }
+    }
+
     /// Describes the mode, for example `circumferential mode 2 (turns oval)`.
     pub fn describe(self) -> String {
         match self {

@@ -20,7 +20,7 @@ pub struct Summary {
     rows: Vec<Row>,
     snapshots: Vec<Option<Snapshot>>,
     ending: Ending,
-    scale: Scale,
+    findings: Findings,
     directory: PathBuf,
 }
 
@@ -33,11 +33,12 @@ impl Summary {
         ending: Ending,
         directory: &Path,
     ) -> Self {
+        let scale = Scale::of(plan.units.as_ref());
         Self {
+            findings: Findings::of(&rows, &scale, plan.symmetry),
             rows,
             snapshots,
             ending,
-            scale: Scale::of(plan.units.as_ref()),
             directory: directory.to_owned(),
         }
     }
@@ -64,11 +65,8 @@ impl Summary {
     }
 
     /// Returns statements about the path.
-    pub fn findings(&self) -> Findings<'_> {
-        Findings {
-            rows: &self.rows,
-            scale: self.scale.clone(),
-        }
+    pub fn findings(&self) -> &Findings {
+        &self.findings
     }
 }
 

@@ -12,7 +12,7 @@
 
 mod changes;
 mod error;
-mod findings;
+pub mod findings;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod forecast;

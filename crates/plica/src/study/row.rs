@@ -256,6 +256,11 @@ impl Row {
         self
     }
 
+    /// Returns whether the outer wall runs back along the axis: it has an angle of 90° or more and an overhang.
+    pub fn overhangs(&self) -> bool {
+        self.max_wall_angle_deg >= 90.0 && self.overhang > 0.0
+    }
+
     /// Returns whether a wall crosses itself. Nothing prevents it without contact.
     pub fn crosses_itself(&self) -> bool {
         self.gap == 0.0

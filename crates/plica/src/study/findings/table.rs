@@ -1,0 +1,220 @@
+//! The closing table of a run.
+
+use super::loads::describe_range;
+use super::place::{Interval, list};
+use super::{Findings, Overhang, Return, StageEnd, states_in};
+use crate::equilibrium::UnstableMode;
+use crate::measure::{Shape, Side};
+
+/// A name and a sentence.
+pub type Line = (String, String);
+
+/// Largest number of energy extremes that the table lists.
+const LISTED_EXTREMES: usize = 4;
+
+impl Findings {
+    /// Returns the lines of the closing table, as names and sentences; none without states.
+    pub fn lines(&self) -> Vec<Line> {
+        if self.work.states == 0 {
+            return vec![];
+        }
+        let mut lines = vec![];
+        lines.extend(self.stages.iter().map(|stage| self.stage_line(stage)));
+        lines.extend(self.energy_lines());
+        lines.extend(self.shape_lines());
+        lines.extend(self.returned.iter().map(|found| self.returned_line(found)));
+        lines.extend(self.caution_lines());
+        lines.extend(self.stability_lines());
+        lines.push(self.states_line());
+        lines.push(self.work_line());
+        lines
+    }
+
+    fn energy(&self, energy: f64) -> String {
+        format!("W = {energy:.6e} {}", self.energy_unit)
+    }
+
+    fn length(&self, length: f64) -> String {
+        match length {
+            x if x != 0.0 && x < 1e-2 => format!("{x:.1e} {}", self.length_unit),
+            x => format!("{x:.3} {}", self.length_unit),
+        }
+    }
+
+    /// Describes the change of load of a stage and its last state.
+    fn stage_line(&self, stage: &StageEnd) -> Line {
+        let [first, last] = stage.states;
+        let states = if first == last {
+            format!("state {last}")
+        } else {
+            format!("states {first} to {last}")
+        };
+        let loads = if stage.to.is_empty() {
+            "no change of load".to_owned()
+        } else {
+            describe_range(&stage.from, &stage.to)
+        };
+        let end = match (stage.shape, stage.side) {
+            (Shape::Invaginated, Side::Colon | Side::Ileum) => format!(
+                "invaginated toward the {}, overhang {}",
+                stage.side,
+                self.length(stage.overhang)
+            ),
+            (shape, _) => shape.to_string(),
+        };
+        let energy = self.energy(stage.energy);
+        let line = format!("{states}, {loads}; at the end {energy}, {end}");
+        (format!("stage {}", stage.name), line)
+    }
+
+    /// Describes extremes of the strain energy.
+    fn energy_lines(&self) -> Vec<Line> {
+        let line = |extreme: &super::Extreme| {
+            let name = if extreme.is_minimum {
+                "energy minimum"
+            } else {
+                "energy maximum"
+            };
+            let jump = match (extreme.is_at_jump, extreme.is_minimum) {
+                (false, _) => "",
+                (true, true) => ", after a jump",
+                (true, false) => ", before a jump",
+            };
+            let energy = self.energy(extreme.energy);
+            (name.to_owned(), format!("{energy} at {}{jump}", extreme.at))
+        };
+        let mut lines: Vec<Line> = self.extremes.iter().take(LISTED_EXTREMES).map(line).collect();
+        if let Some(more) = self.extremes.len().checked_sub(LISTED_EXTREMES + 1) {
+            let others = "of the energy are not listed here";
+            lines.push((String::new(), format!("{} extremes {others}", more + 1)));
+        }
+        if !self.energy_minima().any(|_| true) {
+            let none = "none inside a stage".to_owned();
+            lines.insert(0, ("energy minimum".into(), none));
+        }
+        lines
+    }
+
+    /// Describes when the wall is square, overhangs and invaginates.
+    fn shape_lines(&self) -> Vec<Line> {
+        let or_none = |intervals: &[Interval]| match intervals {
+            [] => "in no state".to_owned(),
+            intervals => list(intervals),
+        };
+        let invaginates = match &self.deepest {
+            None => "no".to_owned(),
+            Some(Overhang { at, overhang, side }) => {
+                let toward = match side {
+                    Side::None => "toward both sides alike".to_owned(),
+                    side => format!("toward the {side}"),
+                };
+                let most = format!("at most by {} at {at}", self.length(*overhang));
+                if self.invaginated == self.overhanging {
+                    format!("{toward}, {most}")
+                } else {
+                    format!("{}: {toward}, {most}", list(&self.invaginated))
+                }
+            }
+        };
+        let mut lines = vec![
+            ("wall is square".into(), or_none(&self.square)),
+            ("wall overhangs".into(), or_none(&self.overhanging)),
+            ("invaginates".into(), invaginates),
+        ];
+        if let Some(largest) = &self.asymmetry {
+            let amplitude = self.length(largest.amplitude);
+            let mode = UnstableMode::Circumferential(largest.mode).describe();
+            let most = format!("at most {amplitude}, in {mode}, at {}", largest.at);
+            lines.push(("asymmetry".into(), most));
+        }
+        lines
+    }
+
+    /// Describes what remains of a cycle of loads.
+    fn returned_line(&self, found: &Return) -> Line {
+        let Return {
+            earlier,
+            last,
+            energy,
+            shape,
+            ..
+        } = found;
+        let load = format!("state {} has the load of {earlier}", last.state);
+        let [before, after] = shape;
+        let line = if found.is_same {
+            format!("{load} and is the same state: the tube has recovered")
+        } else {
+            let [w, now] = energy;
+            let unit = &self.energy_unit;
+            let differ = format!("{now:.6e} against {w:.6e} {unit}, {after} against {before}");
+            format!("{load} but is another state: W = {differ}")
+        };
+        ("return".into(), line)
+    }
+
+    /// Describes states that are not physical.
+    fn caution_lines(&self) -> Vec<Line> {
+        let reasons = [
+            ("wall crosses itself", &self.crossing),
+            ("lumen is closed", &self.closed),
+        ];
+        let found = reasons.into_iter().filter(|(_, states)| !states.is_empty());
+        let line = |(name, states): (&str, &Vec<Interval>)| {
+            let states = list(states);
+            let line = format!("{states}: not physical, as there is no contact");
+            (name.to_owned(), line)
+        };
+        found.map(line).collect()
+    }
+
+    /// Describes unstable states, and states whose stability is not known.
+    fn stability_lines(&self) -> Vec<Line> {
+        let mut lines = vec![];
+        let mut name = "unstable";
+        for unstable in &self.unstable {
+            let line = format!("to {}: {}", unstable.description, list(&unstable.states));
+            lines.push((name.to_owned(), line));
+            name = "";
+        }
+        if let Some(leaves) = &self.leaves {
+            let line = format!(
+                "from {} on, a tube with a small imperfection leaves this path, by {}",
+                leaves.at, leaves.mode
+            );
+            lines.push(("branch".into(), line));
+        }
+        if !self.untested.is_empty() {
+            let line = format!("not determined: {}", list(&self.untested));
+            lines.push(("stability".into(), line));
+        } else if self.unstable.is_empty() {
+            lines.push((name.to_owned(), "in no state".into()));
+        }
+        lines
+    }
+
+    fn states_line(&self) -> Line {
+        let equilibrium = match states_in(&self.out_of_equilibrium) {
+            0 => "all in equilibrium".to_owned(),
+            _ => format!("not in equilibrium: {}", list(&self.out_of_equilibrium)),
+        };
+        let (states, residual) = (self.work.states, self.work.largest_residual);
+        let line = format!("{states}, {equilibrium} (largest residual {residual:.0e})");
+        ("states".into(), line)
+    }
+
+    fn work_line(&self) -> Line {
+        let line = format!(
+            "{} in {:.1} s, {} by relaxation",
+            counted(self.work.linear_solves, "linear solve"),
+            self.work.seconds,
+            counted(self.jumps.len(), "step")
+        );
+        ("work".into(), line)
+    }
+}
+
+/// Returns a count with its noun in the singular or plural.
+fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
