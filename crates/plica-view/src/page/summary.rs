@@ -3,16 +3,16 @@
 use super::Run;
 use super::scene::Scene;
 use crate::report::VISIBLE_ASYMMETRY;
-use plica::equilibrium::{Stability, UnstableMode};
+use plica::equilibrium::Stability;
 use plica::measure::{Shape, Side};
 use plica::run_directory::Verdict;
 use plica::solve::Method;
-use plica::study::{Findings, Row};
+use plica::study::findings::Unstable;
+use plica::study::{Findings, Row, Scale};
 use plica::tube::Symmetry;
-use std::collections::BTreeMap;
 
 /// Returns sentences on the end of the run and the final shape of the tube.
-pub fn headline(run: &Run<'_>, findings: &Findings<'_>) -> String {
+pub fn headline(run: &Run<'_>, findings: &Findings) -> String {
     let recorded = run.directory.state_count().unwrap_or(0);
     let missing = recorded.saturating_sub(run.rows.len());
     if missing > 0 {
@@ -29,25 +29,47 @@ pub fn headline(run: &Run<'_>, findings: &Findings<'_>) -> String {
     };
     let mut sentences = vec![ended.to_owned()];
     if let Some(last) = run.rows.last() {
-        sentences.extend(final_shape(last, findings));
-        sentences.extend(unstable(run));
+        sentences.extend(final_shape(run, last, findings));
+        sentences.extend(unstable(findings));
     }
     sentences.join(" ")
 }
 
-/// Describes the last state.
-fn final_shape(last: &Row, findings: &Findings<'_>) -> Vec<String> {
-    let unit = &findings.scale.length_name;
-    let shape = match (findings.side(), last.shape) {
-        (Side::None, shape) => format!("In the last state the tube is {}.", described(shape)),
-        (side, _) => format!(
-            "The tube invaginates toward the {side} with an overhang of {:.3} {unit}.",
+/// Describes the deepest invagination and the last state.
+fn final_shape(run: &Run<'_>, last: &Row, findings: &Findings) -> Vec<String> {
+    let unit = &findings.length_unit;
+    let scale = Scale::of(run.plan.units.as_ref());
+    let is_invaginated = last.shape == Shape::Invaginated;
+    let shape = match (last.side, is_invaginated) {
+        (Side::None, _) | (_, false) => {
+            format!("In the last state the tube is {}.", described(last.shape))
+        }
+        (side, true) => format!(
+            "In the last state the tube invaginates toward the {side} with an overhang of {:.3} {unit}.",
             last.overhang
         ),
     };
+    let earlier = findings.deepest.iter().filter(|_| !is_invaginated);
+    let earlier = earlier.map(|deepest| {
+        format!(
+            "It was invaginated before, most deeply in state {} with an overhang of {:.3} {unit}.",
+            deepest.at.state, deepest.overhang
+        )
+    });
+    let returned = findings.returned.iter().map(|found| {
+        let same = if found.is_same {
+            "is the same state: the tube has recovered"
+        } else {
+            "is another state: the tube has not recovered"
+        };
+        format!(
+            "It has the load of state {} and {same}.",
+            found.earlier.state
+        )
+    });
     let amplitude = format!("{:.3} {unit}", last.asymmetry);
     let asymmetry = match last.asymmetry_mode {
-        _ if last.asymmetry <= VISIBLE_ASYMMETRY * findings.scale.length => None,
+        _ if last.asymmetry <= VISIBLE_ASYMMETRY * scale.length => None,
         1 => Some(format!(
             "It is not axisymmetric: its wall is displaced sideways by {amplitude}."
         )),
@@ -60,6 +82,8 @@ fn final_shape(last: &Row, findings: &Findings<'_>) -> Vec<String> {
     };
     let caution = caution(last).map(|what| format!("There {what}."));
     std::iter::once(shape)
+        .chain(earlier)
+        .chain(returned)
         .chain(asymmetry)
         .chain(caution)
         .collect()
@@ -86,19 +110,26 @@ fn described(shape: Shape) -> String {
     }
 }
 
-/// Names the unstable circumferential modes and the states at which they are unstable.
-fn unstable(run: &Run<'_>) -> Option<String> {
-    let mut unstable: BTreeMap<UnstableMode, Vec<usize>> = BTreeMap::new();
-    for row in run.rows {
-        for mode in row.stability.unstable_modes() {
-            unstable.entry(mode).or_default().push(row.step);
-        }
-    }
-    let phrase = |(mode, steps): (&UnstableMode, &Vec<usize>)| {
-        format!("to {} in {}", mode.describe(), states(steps))
+/// Names the unstable modes and the states that are unstable to them.
+fn unstable(findings: &Findings) -> Option<String> {
+    let phrase = |unstable: &Unstable| {
+        let steps: Vec<usize> = unstable
+            .states
+            .iter()
+            .flat_map(|interval| interval.first.state..=interval.last.state)
+            .collect();
+        format!("to {} in {}", unstable.description, states(&steps))
     };
-    let phrases: Vec<String> = unstable.iter().map(phrase).collect();
-    (!phrases.is_empty()).then(|| format!("The path is unstable {}.", phrases.join(", and ")))
+    let phrases: Vec<String> = findings.unstable.iter().map(phrase).collect();
+    let leaves = findings.leaves.iter().map(|departure| {
+        format!(
+            " A tube with a small imperfection leaves this path at state {}.",
+            departure.at.state
+        )
+    });
+    let leaves: String = leaves.collect();
+    (!phrases.is_empty())
+        .then(|| format!("The path is unstable {}.{leaves}", phrases.join(", and ")))
 }
 
 /// Lists states by their numbers.
@@ -108,18 +139,8 @@ fn states(steps: &[usize]) -> String {
         (Some(first), Some(last)) if last - first + 1 == steps.len() => {
             format!("states {first} to {last}")
         }
-        (Some(first), Some(last)) => format!("{} states from {first} to {last}", steps.len()),
+        (Some(first), Some(last)) => format!("{} states between {first} and {last}", steps.len()),
         _ => "no state".into(),
-    }
-}
-
-/// Returns true if the symmetry of the run admits a circumferential mode.
-fn admits(symmetry: Symmetry, mode: UnstableMode) -> bool {
-    use UnstableMode::{Circumferential, Lowest};
-    match (symmetry, mode) {
-        (_, Lowest | Circumferential(0)) | (Symmetry::None, _) => true,
-        (Symmetry::Axisymmetric, _) => false,
-        (Symmetry::Fold(m), Circumferential(n)) => n % m == 0,
     }
 }
 
@@ -206,7 +227,7 @@ fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
     );
     let unstable = |row: &Row, admitted: bool| {
         let mut modes = row.stability.unstable_modes();
-        modes.any(|mode| admits(symmetry, mode) == admitted)
+        modes.any(|mode| mode.is_admitted_by(symmetry) == admitted)
     };
     warn(
         &|row| unstable(row, true),
@@ -263,7 +284,7 @@ mod tests {
     fn states_are_listed_by_number() {
         assert_eq!(states(&[3]), "state 3");
         assert_eq!(states(&[3, 4, 5]), "states 3 to 5");
-        assert_eq!(states(&[3, 5]), "2 states from 3 to 5");
+        assert_eq!(states(&[3, 5]), "2 states between 3 and 5");
     }
 
     #[test]

@@ -112,7 +112,10 @@ fn events(findings: &Findings) -> impl Iterator<Item = usize> + '_ {
     let first = |interval: &Interval| interval.first.state;
     let intervals = intervals.into_iter().flatten().map(first);
     let extremes = findings.extremes.iter().map(|extreme| extreme.at.state);
-    let unstable = findings.unstable.iter().flat_map(|unstable| &unstable.states);
+    let unstable = findings
+        .unstable
+        .iter()
+        .flat_map(|unstable| &unstable.states);
     intervals.chain(extremes).chain(unstable.map(first))
 }
 

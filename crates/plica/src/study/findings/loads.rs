@@ -1,6 +1,6 @@
 //! The driven quantities of a state, with their names.
 
-use crate::study::{Row, Scale};
+use crate::study::{MuscleRow, Row, Scale};
 use serde::Serialize;
 
 /// A driven quantity and its value at a state.
@@ -35,27 +35,56 @@ impl NamedLoad {
     }
 }
 
-/// Returns all driven quantities of a state, in the order in which they are named.
-pub fn loads(row: &Row, scale: &Scale) -> Vec<NamedLoad> {
-    let load = |name: &str, value: f64, unit: &str| NamedLoad {
-        name: name.into(),
+/// Returns all driven quantities of a state, in the order in which they are named. Muscles are `Lmax/L` and `Dmin/D`, or
+/// each has its own name.
+pub fn loads(row: &Row, scale: &Scale, muscles_by_name: bool) -> Vec<NamedLoad> {
+    let load = |name: String, value: f64, unit: &str| NamedLoad {
+        name,
         value,
         unit: unit.into(),
     };
     let (length, stress) = (scale.length_name.as_str(), scale.stress_name.as_str());
-    let pressure = |name: &str, value: Option<f64>| load(name, value.unwrap_or(0.0), stress);
-    vec![
-        load("Lmax/L", row.length_ratio, ""),
-        load("Dmin/D", row.diameter_ratio, ""),
-        load("colon end at", row.colon_displacement, length),
-        load("ileum end at", row.ileum_displacement, length),
-        load("colon end twisted", row.colon_twist_deg, "°"),
-        load("ileum end twisted", row.ileum_twist_deg, "°"),
-        pressure("pressure inside", row.inner_pressure),
-        pressure("pressure outside", row.outer_pressure),
-        pressure("dead load inside", row.inner_dead_load),
-        pressure("dead load outside", row.outer_dead_load),
-    ]
+    let mut loads = if muscles_by_name {
+        let muscles = row.muscles.iter();
+        let target = |muscle: &MuscleRow| load(muscle.name.clone(), muscle.target, "");
+        muscles.map(target).collect()
+    } else {
+        vec![
+            load("Lmax/L".into(), row.length_ratio, ""),
+            load("Dmin/D".into(), row.diameter_ratio, ""),
+        ]
+    };
+    for end in &row.ends {
+        let (moved, twist) = (
+            format!("{} end moved", end.name),
+            format!("{} end twisted", end.name),
+        );
+        loads.push(load(moved, end.displacement, length));
+        loads.push(load(twist, end.twist_deg, "°"));
+    }
+    for (name, value) in [
+        ("pressure inside", row.inner_pressure),
+        ("pressure outside", row.outer_pressure),
+        ("dead load inside", row.inner_dead_load),
+        ("dead load outside", row.outer_dead_load),
+    ] {
+        loads.push(load(name.into(), value.unwrap_or(0.0), stress));
+    }
+    loads
+}
+
+/// Returns whether Lmax/L and Dmin/D do not say where each muscle stands, as when several shorten the circumference.
+pub fn needs_names(rows: &[Row]) -> bool {
+    let explained = |row: &Row| {
+        let ratios = [row.length_ratio, row.diameter_ratio];
+        match &row.muscles[..] {
+            [] => true,
+            [one] => ratios == [one.target, 1.0] || ratios == [1.0, one.target],
+            [a, b] => ratios == [a.target, b.target] || ratios == [b.target, a.target],
+            _ => false,
+        }
+    };
+    !rows.iter().all(explained)
 }
 
 /// Describes the loads of a state, each as `name = value`.
@@ -70,12 +99,7 @@ pub fn describe_range(from: &[NamedLoad], to: &[NamedLoad]) -> String {
         if from.value == to.value {
             format!("{} = {}", to.name, to.with_unit())
         } else {
-            format!(
-                "{} = {} to {}",
-                from.name,
-                from.formatted(),
-                to.with_unit()
-            )
+            format!("{} = {} to {}", from.name, from.formatted(), to.with_unit())
         }
     };
     from.iter().zip(to).map(one).collect::<Vec<_>>().join(", ")

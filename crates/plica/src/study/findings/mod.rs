@@ -212,7 +212,9 @@ fn deepest(path: &Path<'_>) -> Option<Overhang> {
     let overhang = |i: usize| path.rows[i].overhang;
     let states = (0..path.rows.len()).filter(invaginated);
     // The first of equal ones.
-    let deepest = states.rev().max_by(|&a, &b| overhang(a).total_cmp(&overhang(b)))?;
+    let deepest = states
+        .rev()
+        .max_by(|&a, &b| overhang(a).total_cmp(&overhang(b)))?;
     Some(Overhang {
         at: path.place(deepest),
         overhang: overhang(deepest),
@@ -221,7 +223,10 @@ fn deepest(path: &Path<'_>) -> Option<Overhang> {
 }
 
 fn unstable(path: &Path<'_>) -> Vec<Unstable> {
-    let modes = path.rows.iter().flat_map(|row| row.stability.unstable_modes());
+    let modes = path
+        .rows
+        .iter()
+        .flat_map(|row| row.stability.unstable_modes());
     let modes: BTreeSet<UnstableMode> = modes.collect();
     let of = |mode: UnstableMode| Unstable {
         mode: match mode {
@@ -248,7 +253,9 @@ fn leaves(path: &Path<'_>, symmetry: Symmetry) -> Option<Departure> {
 fn asymmetry(path: &Path<'_>) -> Option<LargestAsymmetry> {
     let amplitude = |i: usize| path.rows[i].asymmetry;
     let states = (0..path.rows.len()).filter(|&i| path.rows[i].asymmetry_mode > 0);
-    let largest = states.rev().max_by(|&a, &b| amplitude(a).total_cmp(&amplitude(b)))?;
+    let largest = states
+        .rev()
+        .max_by(|&a, &b| amplitude(a).total_cmp(&amplitude(b)))?;
     Some(LargestAsymmetry {
         at: path.place(largest),
         amplitude: amplitude(largest),

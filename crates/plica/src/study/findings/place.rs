@@ -1,6 +1,6 @@
 //! Places on a path: states and intervals of states, with the stage and the loads that are driven there.
 
-use super::loads::{NamedLoad, describe, describe_range, loads};
+use super::loads::{NamedLoad, describe, describe_range, loads, needs_names};
 use crate::study::{Row, Scale};
 use serde::Serialize;
 
@@ -45,6 +45,7 @@ pub(super) struct Part {
 pub(super) struct Path<'a> {
     pub rows: &'a [Row],
     scale: &'a Scale,
+    muscles_by_name: bool,
     pub parts: Vec<Part>,
 }
 
@@ -60,16 +61,27 @@ impl<'a> Path<'a> {
                 }),
             }
         }
+        let muscles_by_name = needs_names(rows);
         for part in &mut parts {
             let [first, last] = part.rows;
             let all: Vec<_> = rows[first.saturating_sub(1)..=last]
                 .iter()
-                .map(|row| loads(row, scale))
+                .map(|row| loads(row, scale, muscles_by_name))
                 .collect();
             let changes = |&k: &usize| all.iter().any(|one| one[k].value != all[0][k].value);
             part.driven = (0..all[0].len()).filter(changes).collect();
         }
-        Self { rows, scale, parts }
+        Self {
+            rows,
+            scale,
+            muscles_by_name,
+            parts,
+        }
+    }
+
+    /// Returns all driven quantities of a row.
+    pub fn loads(&self, row: usize) -> Vec<NamedLoad> {
+        loads(&self.rows[row], self.scale, self.muscles_by_name)
     }
 
     /// Returns the part that holds a row.
@@ -81,7 +93,7 @@ impl<'a> Path<'a> {
 
     /// Returns the place of a row.
     pub fn place(&self, row: usize) -> Place {
-        let all = loads(&self.rows[row], self.scale);
+        let all = self.loads(row);
         let driven = &self.part(row).driven;
         Place {
             state: self.rows[row].step,
@@ -93,7 +105,12 @@ impl<'a> Path<'a> {
     /// Returns the intervals of rows that meet a condition.
     pub fn intervals(&self, condition: impl Fn(&Row) -> bool) -> Vec<Interval> {
         let mut found: Vec<[usize; 2]> = vec![];
-        for (i, _) in self.rows.iter().enumerate().filter(|(_, row)| condition(row)) {
+        for (i, _) in self
+            .rows
+            .iter()
+            .enumerate()
+            .filter(|(_, row)| condition(row))
+        {
             match found.last_mut() {
                 Some([_, last]) if *last + 1 == i => *last = i,
                 _ => found.push([i, i]),
@@ -109,7 +126,7 @@ impl<'a> Path<'a> {
     /// Returns the loads at the beginning and at the end of a part that changed in it.
     pub fn driven(&self, part: &Part) -> [Vec<NamedLoad>; 2] {
         [part.rows[0].saturating_sub(1), part.rows[1]].map(|row| {
-            let all = loads(&self.rows[row], self.scale);
+            let all = self.loads(row);
             part.driven.iter().map(|&k| all[k].clone()).collect()
         })
     }

@@ -1,6 +1,6 @@
 //! Comparison of the last state with an earlier one under the same load: what remains of a cycle of loads.
 
-use super::loads::{NamedLoad, loads};
+use super::loads::NamedLoad;
 use super::place::{Path, Place};
 use crate::measure::Shape;
 use crate::study::{Row, Scale};
@@ -33,13 +33,16 @@ const SAME_LENGTH: f64 = 1e-3;
 /// Compares the last state of a path with the first one under the same load; none if the load is new.
 pub(super) fn returned(path: &Path<'_>, scale: &Scale) -> Option<Return> {
     let last = path.rows.len().checked_sub(1)?;
-    let all: Vec<_> = path.rows.iter().map(|row| loads(row, scale)).collect();
+    let all: Vec<_> = (0..=last).map(|i| path.loads(i)).collect();
     let same = |i: usize| all[i].iter().zip(&all[last]).all(same_load);
     let earlier = (0..last).find(|&i| same(i))?;
     // The load must have been another one in between.
     (earlier..last).find(|&i| !same(i))?;
     let rows = [&path.rows[earlier], &path.rows[last]];
-    let largest = path.rows.iter().fold(0.0_f64, |most, row| most.max(row.energy.abs()));
+    let largest = path
+        .rows
+        .iter()
+        .fold(0.0_f64, |most, row| most.max(row.energy.abs()));
     Some(Return {
         earlier: path.place(earlier),
         last: path.place(last),

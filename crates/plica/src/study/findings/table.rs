@@ -83,7 +83,12 @@ impl Findings {
             let energy = self.energy(extreme.energy);
             (name.to_owned(), format!("{energy} at {}{jump}", extreme.at))
         };
-        let mut lines: Vec<Line> = self.extremes.iter().take(LISTED_EXTREMES).map(line).collect();
+        let mut lines: Vec<Line> = self
+            .extremes
+            .iter()
+            .take(LISTED_EXTREMES)
+            .map(line)
+            .collect();
         if let Some(more) = self.extremes.len().checked_sub(LISTED_EXTREMES + 1) {
             let others = "of the energy are not listed here";
             lines.push((String::new(), format!("{} extremes {others}", more + 1)));
