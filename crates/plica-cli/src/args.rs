@@ -123,8 +123,8 @@ pub struct StabilityArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=100))]
     pub harmonics: Option<u8>,
     /// Axisymmetric runs: width of the brackets of critical values, in the unit of the driven quantity (Lmax/L, Dmin/D or
-    /// D; relative for a pressure) [default: 1e-4]
-    #[arg(long, value_name = "X", value_parser = tolerance)]
+    /// D; relative for a pressure), from 1e-9 to 1 [default: 1e-4]
+    #[arg(long, value_name = "X", value_parser = tolerance, allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
     /// Three-dimensional runs: number of lowest eigenvalues and modes per state [default: 3]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=50))]
@@ -172,7 +172,7 @@ pub struct PlotArguments {
     /// For walls: state to plot; may be repeated [default: the last saved state]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     pub state: Vec<usize>,
-    /// Width of the PNG in pixels
+    /// Width of the PNG in pixels, from 600 to 8000
     #[arg(long, value_name = "PX", default_value = "1800", value_parser = clap::value_parser!(u16).range(600..=8000))]
     pub width: u16,
     /// File to write a single plot to, ending in .svg or .png [default: both, in pictures/ of the run]
@@ -184,7 +184,7 @@ pub struct PlotArguments {
 #[derive(Args, Debug)]
 pub struct ReportArguments {
     /// Directories of one to four runs; several are compared
-    #[arg(value_name = "RUN_DIR", required = true, num_args = 1..=4)]
+    #[arg(value_name = "RUN_DIR", required = true)]
     pub runs: Vec<PathBuf>,
     /// File to write to [default: report.html of the run; comparison.html in the working directory for several]
     #[arg(short, long, value_name = "FILE")]
@@ -260,8 +260,8 @@ pub struct AnimateArguments {
     /// Directory of the run
     #[arg(value_name = "RUN_DIR")]
     pub run: PathBuf,
-    /// States per second
-    #[arg(long, value_name = "N", default_value = "6", value_parser = frame_rate)]
+    /// States per second, from 0.1 to 60
+    #[arg(long, value_name = "N", default_value = "6", value_parser = frame_rate, allow_negative_numbers = true)]
     pub fps: f64,
     /// Appearance of the picture
     #[command(flatten)]
@@ -274,8 +274,8 @@ pub struct LookArguments {
     /// Field to colour the wall by
     #[arg(long, value_name = "FIELD", default_value = "energy", value_parser = fields())]
     pub field: String,
-    /// Angle of the wall to cut away, in degrees: 180 the near half, 90 its upper quarter, 0 nothing
-    #[arg(long, value_name = "DEG", default_value = "180", value_parser = cutaway)]
+    /// Angle of the wall to cut away, from 0 to 350 degrees: 180 the near half, 90 its upper quarter, 0 nothing
+    #[arg(long, value_name = "DEG", default_value = "180", value_parser = cutaway, allow_negative_numbers = true)]
     pub cutaway: f64,
     /// Draw the removed part transparent
     #[arg(long)]
@@ -286,7 +286,7 @@ pub struct LookArguments {
     /// Limits of the colour bar [default: range of the field]
     #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<Limits>,
-    /// Width of the picture in pixels
+    /// Width of the picture in pixels, from 600 to 8000
     #[arg(long, value_name = "PX", default_value = "1800", value_parser = clap::value_parser!(u16).range(600..=8000))]
     pub width: u16,
     /// File to write to [default: in pictures/ of the run]
@@ -416,7 +416,7 @@ Output in the directory of the run:
   stability.png    lowest eigenvalues along the path with the critical values
   mode.png         the first buckling mode
 
-Ctrl-C or SIGTERM stops the analysis after the current solve; nothing is written.
+Ctrl-C or SIGTERM stops the analysis after the current solve; nothing is written, and earlier results stay.
 
 Three-dimensional runs: the lowest eigenvalues and modes of the tangent at each state are computed, with the share of \
 each circumferential mode in them.
@@ -427,7 +427,8 @@ Output in the directory of the run:
   stability.png    lowest eigenvalues by state
   mode.png         modes of the first unstable state, or of the last state if all are stable
 
-Ctrl-C or SIGTERM stops the analysis after the current iteration; completed states are written.";
+Ctrl-C or SIGTERM stops the analysis after the current iteration; completed states are written. \
+Earlier results of other states stay in any case.";
 
 const VERIFY_EPILOGUE: &str = "\
 The checks compare Plica with closed forms, an independent one-dimensional solution, expected orders of convergence and \

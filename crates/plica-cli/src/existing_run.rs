@@ -3,7 +3,7 @@
 use crate::case_file;
 use crate::console;
 use crate::failure::Failure;
-use plica::run_directory::RunDirectory;
+use plica::run_directory::{RunDirectory, write_file};
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row};
 use std::collections::BTreeMap;
@@ -21,6 +21,21 @@ pub fn check_out(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
             folder.display()
         )));
     }
+    if path.is_dir() {
+        return Err(Failure::Usage(format!(
+            "--out {}: is a directory; name a file in it",
+            path.display()
+        )));
+    }
+    if let Ok(target) = std::fs::read_link(path)
+        && !path.exists()
+    {
+        return Err(Failure::Files(format!(
+            "--out {}: is a symbolic link to {}, which does not exist; remove it, or choose another file",
+            path.display(),
+            target.display()
+        )));
+    }
     let extension = path.extension().unwrap_or_default();
     if extensions.iter().any(|e| extension.eq_ignore_ascii_case(e)) {
         return Ok(());
@@ -31,6 +46,22 @@ pub fn check_out(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
         path.display(),
         named.join(" or ")
     )))
+}
+
+/// Writes an output file that the user has named.
+pub fn write_out(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let written = write_file(path, bytes);
+    written.map_err(|error| Failure::Files(format!("--out {}: {error}", path.display())))
+}
+
+/// Returns a number of bytes with a unit.
+pub fn size(bytes: usize) -> String {
+    match bytes {
+        0..1_000 => format!("{bytes} bytes"),
+        1_000..100_000 => format!("{:.1} kB", bytes as f64 * 1e-3),
+        100_000..1_000_000 => format!("{:.0} kB", bytes as f64 * 1e-3),
+        _ => format!("{:.1} MB", bytes as f64 * 1e-6),
+    }
 }
 
 /// An existing run.
@@ -53,7 +84,10 @@ impl ExistingRun {
         let directory = RunDirectory::open(path)?;
         let mut saved = directory.numbered("states", "safetensors")?;
         let plan = case_file::of_run(&directory)?;
-        let (rows, error) = directory.readable_history()?;
+        let (rows, error, faults) = directory.checked_history()?;
+        for fault in &faults {
+            console::message(&format!("warning: {fault}"));
+        }
         if rows.is_empty() {
             return Err(Failure::Usage(format!(
                 "{}: the run has not reached its first state",
@@ -137,8 +171,7 @@ impl ExistingRun {
     ) -> Result<(), Failure> {
         let path = match out {
             Some(path) => {
-                std::fs::write(path, bytes)
-                    .map_err(|error| Failure::Files(format!("{}: {error}", path.display())))?;
+                write_out(path, bytes)?;
                 path.to_owned()
             }
             None => {
@@ -148,9 +181,9 @@ impl ExistingRun {
             }
         };
         console::print(&format!(
-            "written to {} ({:.1} MB)\n",
+            "written to {} ({})\n",
             path.display(),
-            bytes.len() as f64 * 1e-6
+            size(bytes.len())
         ))
     }
 
@@ -163,5 +196,28 @@ impl ExistingRun {
             }
             _ => numbers.join(", "),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::size;
+
+    #[test]
+    fn sizes_have_the_unit_that_fits() {
+        let sizes = [0, 999, 1_000, 4_321, 99_900, 654_321, 1_000_000, 15_000_000];
+        assert_eq!(
+            sizes.map(size),
+            [
+                "0 bytes",
+                "999 bytes",
+                "1.0 kB",
+                "4.3 kB",
+                "99.9 kB",
+                "654 kB",
+                "1.0 MB",
+                "15.0 MB"
+            ]
+        );
     }
 }

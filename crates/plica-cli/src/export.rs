@@ -1,7 +1,7 @@
 //! `plica export`.
 
 use crate::args::ExportArguments;
-use crate::existing_run::ExistingRun;
+use crate::existing_run::{ExistingRun, size};
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
@@ -74,17 +74,17 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let mut text = String::new();
     for (what, (files, bytes)) in &work.written {
         text += &format!(
-            "{}: {files} files, {:.1} MB; open {}\n",
+            "{}: {files} files, {}; open {}\n",
             what.name(),
-            *bytes as f64 * 1e-6,
+            size(*bytes),
             arguments.run.join(collection_of(*what)).display()
         );
     }
     if let Some((states, bytes)) = series {
         let path = arguments.run.join(SERIES);
-        let size = bytes as f64 * 1e-6;
         text += &format!(
-            "{states} states in one file: {size:.1} MB; open {}\n",
+            "{states} states in one file: {}; open {}\n",
+            size(bytes),
             path.display()
         );
     }
@@ -174,14 +174,21 @@ fn collection_of(what: Geometry) -> String {
 
 /// Writes the collection of all existing files of a kind.
 fn collect(directory: &RunDirectory, what: Geometry) -> Result<(), Failure> {
-    let files = directory.numbered(&folder(what), what.extension())?;
-    let name = |path: &Path| {
-        let file = path.file_name().unwrap_or_default().to_string_lossy();
-        format!("{}/{file}", what.name())
-    };
-    let names: Vec<(usize, String)> = files.iter().map(|(&n, path)| (n, name(path))).collect();
-    let text = collection(names.iter().map(|(n, name)| (*n, name.as_str())));
-    directory
-        .write(&collection_of(what), text.as_bytes())
-        .map_err(Failure::Run)
+    let list = || directory.numbered(&folder(what), what.extension());
+    let mut files = list()?;
+    loop {
+        let name = |path: &Path| {
+            let file = path.file_name().unwrap_or_default().to_string_lossy();
+            format!("{}/{file}", what.name())
+        };
+        let names: Vec<(usize, String)> = files.iter().map(|(&n, path)| (n, name(path))).collect();
+        let text = collection(names.iter().map(|(n, name)| (*n, name.as_str())));
+        directory.write(&collection_of(what), text.as_bytes())?;
+        // Another export may have added files in the meantime.
+        let now = list()?;
+        if now == files {
+            return Ok(());
+        }
+        files = now;
+    }
 }

@@ -3,7 +3,8 @@
 use crate::{console, diagnostics};
 use plica::case::CaseError;
 use plica::run_directory::RunError;
-use std::path::PathBuf;
+use std::io::{Error, ErrorKind};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Reason why a command failed.
@@ -26,8 +27,15 @@ pub enum Failure {
     Files(String),
     /// Internal error.
     Fault(String),
-    /// Error of a run.
+    /// Error of a run directory.
     Run(RunError),
+    /// Error of a run that can be resumed.
+    OfRun {
+        /// The error.
+        error: RunError,
+        /// Its directory.
+        run: PathBuf,
+    },
     /// Interrupted by the user; says what has been written.
     Interrupted(String),
 }
@@ -41,14 +49,57 @@ impl Failure {
             Self::Usage(what) => (format!("error: {what}"), 2),
             Self::Files(what) => (format!("error: {what}"), 3),
             Self::Fault(what) => (format!("error: {what}"), 1),
-            Self::Run(error) => {
-                let code = if error.is_about_files() { 3 } else { 1 };
-                (format!("error: {error}{}", help(error)), code)
+            Self::Run(error) => (format!("error: {error}{}", help(error)), code(error)),
+            Self::OfRun { error, run } => {
+                let help = help_for_run(error, run).unwrap_or_else(|| help(error).into());
+                (format!("error: {error}{help}"), code(error))
             }
             Self::Interrupted(what) => (what.clone(), 130),
         };
         console::message(&message);
         ExitCode::from(code)
+    }
+
+    /// Adds the directory of the run that can be resumed.
+    pub fn of_run(self, run: &Path) -> Self {
+        match self {
+            Self::Run(error) => Self::OfRun {
+                error,
+                run: run.to_owned(),
+            },
+            other => other,
+        }
+    }
+}
+
+/// Returns the exit code of an error of a run.
+fn code(error: &RunError) -> u8 {
+    if error.is_about_files() { 3 } else { 1 }
+}
+
+/// Returns whether there was no room on the disk.
+fn is_full(error: &Error) -> bool {
+    let kinds = [
+        ErrorKind::StorageFull,
+        ErrorKind::QuotaExceeded,
+        ErrorKind::FileTooLarge,
+    ];
+    kinds.contains(&error.kind())
+}
+
+/// Returns how a run can be resumed after an error.
+fn help_for_run(error: &RunError, run: &Path) -> Option<String> {
+    let resume = format!("`plica resume {}`", run.display());
+    match error {
+        RunError::File { source, .. } if is_full(source) => {
+            Some(format!("; make room, then {resume}"))
+        }
+        RunError::File { .. } => Some(format!("; all states before are kept: {resume} continues")),
+        RunError::Moved(_) => Some(", where `plica resume` continues".into()),
+        RunError::Changed(_) => Some(format!(
+            "; its history and last state are written again, and {resume} continues"
+        )),
+        _ => None,
     }
 }
 
@@ -64,8 +115,15 @@ fn help(error: &RunError) -> &'static str {
         RunError::Occupied(_) => {
             "; resume it with --resume, choose another directory with --out, or replace it with --overwrite"
         }
-        RunError::Busy { .. } => "; wait for it, end it, or choose another directory with --out",
+        RunError::Busy { .. } => "; wait for it, end it, or choose another directory",
         RunError::NoCheckpoint { .. } => "; run the case again with --overwrite",
+        RunError::File { source, .. } if is_full(source) => "; make room, then repeat the command",
+        RunError::DanglingLink { .. } => "; create that directory, or choose another with --out",
+        RunError::IsAFile(_) => "; choose another with --out",
+        RunError::Unwritten(_) => "; start it again with `plica run CASE --resume`",
+        RunError::Incomplete { .. } => {
+            ". What is left is intact. To compute the rest again, run the case in another directory or with --overwrite"
+        }
         RunError::NotARun(_) => " (not even with --overwrite); choose another directory with --out",
         RunError::NoDirectory(_) => {
             "; give the directory of a run: runs/NAME, or the value of --out"

@@ -1,15 +1,24 @@
 //! `plica report`.
 
 use crate::args::ReportArguments;
-use crate::existing_run::{ExistingRun, check_out};
+use crate::existing_run::{ExistingRun, check_out, size, write_out};
 use crate::failure::Failure;
 use crate::{console, threads};
 use plica::saved_state::SavedState;
 use plica_view::page::{PageError, Run, drawn, page};
 use std::path::{Path, PathBuf};
 
+/// Largest number of runs on one page.
+const MOST: usize = 4;
+
 /// Writes the HTML report of one run or a comparison of several.
 pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
+    if arguments.runs.len() > MOST {
+        return Err(Failure::Usage(format!(
+            "{} runs are too many for one page; name {MOST} at most",
+            arguments.runs.len()
+        )));
+    }
     threads::limit(arguments.threads)?;
     if let Some(path) = &arguments.out {
         check_out(path, &["html", "htm"])?;
@@ -40,15 +49,14 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
         }
         (out, _) => {
             let path = out.clone().unwrap_or("comparison.html".into());
-            std::fs::write(&path, &html)
-                .map_err(|error| Failure::Files(format!("{}: {error}", path.display())))?;
+            write_out(&path, html.as_bytes())?;
             path
         }
     };
     console::print(&format!(
-        "written to {} ({:.1} MB); open it in a browser\n",
+        "written to {} ({}); open it in a browser\n",
         path.display(),
-        html.len() as f64 * 1e-6
+        size(html.len())
     ))
 }
 

@@ -63,7 +63,7 @@ fn resume_with_case(arguments: &RunArguments, out: &Path) -> Result<(), Failure>
         let (text, plan) = case_file::open_again(&arguments.case, &directory, &old)?;
         if before == text.as_bytes() {
             if directory.is_complete() {
-                return nothing_to_do(&directory);
+                return nothing_to_do(&mut directory, &plan);
             }
         } else {
             let before = String::from_utf8_lossy(&before);
@@ -86,14 +86,18 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
     directory.lock()?;
     let plan = case_file::of_run(&directory)?;
     if directory.is_complete() {
-        return nothing_to_do(&directory);
+        return nothing_to_do(&mut directory, &plan);
     }
     follow(&plan, &mut directory, Interrupt::listen()?, true)
 }
 
-/// Prints that a run is complete.
-fn nothing_to_do(directory: &RunDirectory) -> Result<(), Failure> {
+/// Prints that a run is complete, restores its history if that is damaged, and lists its damaged files.
+fn nothing_to_do(directory: &mut RunDirectory, plan: &Plan) -> Result<(), Failure> {
     directory.close()?;
+    let restored = directory.mend(plan)?;
+    if !restored.is_empty() {
+        console::message("history.csv was damaged or incomplete; restored from the checkpoint");
+    }
     console::print(&format!(
         "{} is complete; there is nothing to resume\n",
         directory.path().display()
@@ -105,8 +109,7 @@ fn check_changes(
     directory: &RunDirectory,
     [(before, old), (text, new)]: [(&str, &Plan); 2],
 ) -> Result<(), Failure> {
-    let (rows, _) = directory.readable_history()?;
-    let (checkpoint, _) = directory.checkpoint(old, &rows)?;
+    let checkpoint = directory.checkpoint(old)?.checkpoint;
     let reached = checkpoint.path.reached;
     let changes = forbidden_changes(old, new, checkpoint.stage.map(|stage| (stage, reached)));
     if changes.is_empty() {
@@ -140,13 +143,25 @@ fn follow(
     let mut progress = Progress::new(plan, interrupt.clone());
     let summary = all_states(plan, directory, &mut progress, resume);
     progress.finish();
-    let summary = summary?;
+    let summary = summary.map_err(|error| Failure::OfRun {
+        error,
+        run: out.clone(),
+    })?;
     // The table is printed before the pictures, which take longer.
     let printed = console::print(&summary.to_string());
-    let drawn = draw(plan, &summary, directory)?;
+    let drawn = draw(plan, &summary, directory).map_err(|failure| failure.of_run(&out))?;
+    if let Some(gaps) = stability_gaps(directory) {
+        console::message(&format!(
+            "warning: {gaps}; run `plica stability {}` again",
+            out.display()
+        ));
+    }
     printed.and_then(|()| console::print(&drawn))?;
     match summary.ending() {
-        Ending::Complete => return Ok(directory.close()?),
+        Ending::Complete => {
+            let closed = directory.close();
+            return closed.map_err(|error| Failure::from(error).of_run(&out));
+        }
         Ending::Stopped => console::message("stopped on request; every state so far is kept"),
         Ending::Lost(lost) => console::message(&lost.to_string()),
     }
@@ -157,6 +172,12 @@ fn follow(
         )));
     }
     Err(Failure::Unfinished)
+}
+
+/// Returns a statement on the saved states that earlier results of `plica stability` do not cover.
+fn stability_gaps(directory: &RunDirectory) -> Option<String> {
+    let saved = directory.state_numbers().unwrap_or_default();
+    directory.stability_coverage()?.gaps(&saved)
 }
 
 /// Computes all states and shows a line for each.

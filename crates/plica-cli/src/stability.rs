@@ -138,7 +138,7 @@ fn three_dimensional(
     finish(arguments, directory, table, names, pictures)?;
     if interrupted {
         return Err(Failure::Interrupted(
-            "interrupted; completed states were written".into(),
+            "interrupted; completed states were written, and earlier results of other states are kept".into(),
         ));
     }
     Ok(())
@@ -171,6 +171,11 @@ fn finish(
             }
         }
         Err(error) => console::message(&format!("warning: no pictures: {error}")),
+    }
+    let gaps = directory.stability_coverage();
+    let gaps = gaps.and_then(|tested| tested.gaps(&directory.state_numbers().unwrap_or_default()));
+    if let Some(gaps) = gaps {
+        console::message(&format!("note: {gaps}"));
     }
     let (modes, mut files): (Vec<String>, Vec<String>) = names
         .into_iter()

@@ -31,10 +31,10 @@ pub fn require_ffmpeg(path: &Path) -> Result<(), Failure> {
 /// Converts an animated PNG to a video whose last picture stays for `pause` more seconds. ffmpeg needs seekable files: two
 /// temporary files are written beside `path`.
 pub fn convert(apng: &[u8], path: &Path, pause: f64) -> Result<Vec<u8>, Failure> {
-    let temporary = [
-        path.with_extension("part.apng"),
-        path.with_extension("part.mp4"),
-    ];
+    // With the process, so that two conversions at a time do not share them.
+    let process = std::process::id();
+    let temporary =
+        ["apng", "mp4"].map(|ending| path.with_extension(format!("part-{process}.{ending}")));
     let video = run_ffmpeg(apng, &temporary, pause)
         .map_err(|what| Failure::Files(format!("{}: {what}", path.display())));
     for file in &temporary {

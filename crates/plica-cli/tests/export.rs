@@ -74,3 +74,32 @@ fn export_refuses_missing_and_damaged_states() {
     let stderr = fail(&directory, &["export", "run"], 2);
     assert!(stderr.contains("has saved no states"));
 }
+
+#[test]
+fn several_exports_and_pages_of_a_run_at_a_time_succeed() {
+    use std::process::{Child, Command, Stdio};
+    let directory = scratch("export-together");
+    let run = short_run(&directory);
+    let commands: [&[&str]; 8] = [
+        &["export", "run", "--all"],
+        &["export", "run", "--all"],
+        &["export", "run", "--state", "1", "--linear"],
+        &["report", "run"],
+        &["report", "run"],
+        &["plot", "run"],
+        &["plot", "run"],
+        &["render", "run", "--out", "picture.png", "--width", "600"],
+    ];
+    let start = |arguments: &&[&str]| {
+        let mut command = Command::new(crate::common::PLICA);
+        command.args(*arguments).current_dir(&directory);
+        command.stdout(Stdio::null()).spawn().unwrap()
+    };
+    let children: Vec<Child> = commands.iter().map(start).collect();
+    for (mut child, arguments) in children.into_iter().zip(commands) {
+        assert!(child.wait().unwrap().success(), "{arguments:?}");
+    }
+    assert!(crate::common::files(&directory, "part").is_empty());
+    let collection = fs::read_to_string(run.join("vtk/volume.pvd")).unwrap();
+    assert_eq!(collection.matches("<DataSet").count(), 4, "{collection}");
+}

@@ -4,7 +4,7 @@
 //! Random kills (`resume.rs`) rarely hit the short time between two successive operations. A preloaded library
 //! (`faults/faults.c`) replaces the functions of the system, so that the unmodified program is tested.
 
-use crate::common::{PLICA, assert_contents, contents, plica, scratch, succeed, text};
+use crate::common::{PLICA, assert_contents, contents, copy, plica, scratch, succeed, text};
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
@@ -42,19 +42,6 @@ fn library(directory: &Path) -> PathBuf {
         .expect("the C compiler that Rust links with");
     assert!(built.status.success(), "{}", text(&built.stderr));
     library
-}
-
-/// Copies a directory.
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap().flatten() {
-        let (path, name) = (entry.path(), to.join(entry.file_name()));
-        if path.is_dir() {
-            copy(&path, &name);
-        } else {
-            fs::copy(path, name).unwrap();
-        }
-    }
 }
 
 /// A command on the directory `cut` that a fault interrupts.
@@ -111,7 +98,10 @@ impl Scenario<'_> {
                     assert_eq!(output.status.signal(), Some(9), "{how} at {at}: {stderr}");
                 } else {
                     assert_eq!(output.status.code(), Some(3), "{how} at {at}: {stderr}");
-                    assert!(stderr.contains("No space left"), "{how} at {at}: {stderr}");
+                    assert!(
+                        stderr.contains("No space left") && stderr.contains("; make room, then "),
+                        "{how} at {at}: {stderr}"
+                    );
                 }
                 let what = format!("{}: {how} at {at}", self.name);
                 self.repair(&directory, &what);

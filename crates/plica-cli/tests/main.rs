@@ -8,6 +8,8 @@ mod export;
 mod faults;
 mod main_case;
 mod mode_imperfections;
+#[cfg(unix)]
+mod removals;
 mod render;
 mod report;
 mod reproduce;

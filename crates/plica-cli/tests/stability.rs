@@ -94,7 +94,7 @@ fn a_relaxing_tube_becomes_oval_first() {
     let (code, stdout, _) = stability(&directory, &["--harmonics", "1"]);
     assert_eq!(code, Some(0));
     assert!(
-        stdout.starts_with("  all 7 states are stable to circumferential modes 0 to 1\n"),
+        stdout.starts_with("  all 7 states (0 to 6) are stable to circumferential modes 0 to 1\n"),
         "{stdout}"
     );
     assert!(!run.join("modes/mode-01-harmonic-2.safetensors").exists());
@@ -202,9 +202,13 @@ pictures = false
     let modes = ["--modes", "2", "--state", "1"];
     let (code, stdout, stderr) = run_and_test(&directory, case, &modes);
     assert_eq!(code, Some(0), "{stderr}");
-    // A heading, two modes and the names of the files.
+    // A heading, two modes, the states and the names of the files.
     let lines: Vec<&str> = stdout.lines().collect();
-    assert_eq!(lines.len(), 4, "{stdout}");
+    assert_eq!(lines.len(), 5, "{stdout}");
+    assert!(
+        stderr.ends_with("note: stability was tested at states 1 only, not at 0\n"),
+        "{stderr}"
+    );
     let first: Vec<&str> = lines[1].split_whitespace().collect();
     assert_eq!(first[..6], ["1", "relax", "1.0200", "1.0000", "0", "1"]);
     assert_eq!(first[8], "2", "turns oval: {stdout}");
@@ -238,6 +242,50 @@ pictures = false
         fs::read_to_string(run.join("eigenpairs.csv")).unwrap(),
         table
     );
+    // Results of one state do not replace those of another; those of the same state do.
+    let (code, both, stderr) = stability(&directory, &["--modes", "1", "--state", "0"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(!stderr.contains("not at"), "{stderr}");
+    assert!(both.contains("states 0 to 1\n"), "{both}");
+    let merged = fs::read_to_string(run.join("eigenpairs.csv")).unwrap();
+    let kept = table.split_once('\n').unwrap().1;
+    assert!(
+        merged.lines().count() == 4 && merged.ends_with(kept),
+        "{merged}"
+    );
+    let manifest = fs::read_to_string(run.join("manifest.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    assert_eq!(manifest["stability"]["states"], serde_json::json!([0, 1]));
+    stability(&directory, &["--modes", "1"]);
+    assert!(!run.join("modes/mode-state-0001-2.safetensors").exists());
+}
+
+#[test]
+fn results_say_which_states_they_cover_when_a_stage_is_added() {
+    let directory = scratch("stability-added");
+    let short = RELAXING
+        .replace("steps = 6", "steps = 2")
+        .replace("1.07", "1.02");
+    assert_eq!(run_and_test(&directory, &short, &[]).0, Some(0));
+    let added = "[[stages]]\nname = \"more\"\nsteps = 1\ndrive.long.length_ratio = 1.03\n[output]";
+    fs::write(
+        directory.join("case.toml"),
+        short.replace("[output]", added),
+    )
+    .unwrap();
+    let output = plica(
+        &directory,
+        &["run", "case.toml", "--out", "run", "--resume"],
+    );
+    let stderr = text(&output.stderr);
+    let gaps = "stability was tested at states 0 to 2 only, not at 3";
+    assert!(output.status.success() && stderr.contains(gaps), "{stderr}");
+    succeed(&directory, &["report", "run"]);
+    let page = || fs::read_to_string(directory.join("run/report.html")).unwrap();
+    assert!(page().contains(gaps));
+    assert_eq!(stability(&directory, &[]).0, Some(0));
+    succeed(&directory, &["report", "run"]);
+    assert!(!page().contains("stability was tested at states"));
 }
 
 #[cfg(unix)]

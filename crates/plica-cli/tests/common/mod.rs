@@ -135,6 +135,19 @@ pub fn damage(path: &Path) {
     fs::write(path, bytes).unwrap();
 }
 
+/// Copies a directory.
+pub fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().flatten() {
+        let (path, name) = (entry.path(), to.join(entry.file_name()));
+        if path.is_dir() {
+            copy(&path, &name);
+        } else {
+            fs::copy(path, name).unwrap();
+        }
+    }
+}
+
 /// A table with named columns.
 pub struct Table {
     /// Names of the columns.

@@ -2,6 +2,7 @@
 
 use super::Run;
 use super::picture::Picture;
+use plica::run_directory::StabilityCoverage;
 use serde::Serialize;
 
 /// Data of the section on stability.
@@ -60,7 +61,7 @@ impl Stability {
         for head in &mut heads {
             *head = head.replace('_', " ");
         }
-        let words = summary(eigenvalues, changes.is_empty());
+        let words = summary(eigenvalues, changes.is_empty()) + &gaps(run, eigenvalues);
         Self {
             words,
             caption: "Points where the path loses or regains stability, for each circumferential mode; lengths in D, pressures in E.",
@@ -81,6 +82,7 @@ impl Stability {
 
     /// Section for a three-dimensional run.
     fn of_modes(run: &Run<'_>, mut pairs: Vec<Vec<String>>) -> Self {
+        let gaps = gaps(run, &pairs);
         let heads = if pairs.is_empty() {
             vec![]
         } else {
@@ -94,7 +96,7 @@ impl Stability {
         let state = |line: &Vec<String>| line.first().cloned().unwrap_or_default();
         let mut unstable: Vec<String> = pairs.iter().filter(negative).map(state).collect();
         unstable.dedup();
-        let words = if unstable.is_empty() {
+        let words: String = if unstable.is_empty() {
             "All eigenvalues found are positive.".into()
         } else {
             format!(
@@ -104,7 +106,7 @@ impl Stability {
             )
         };
         Self {
-            words,
+            words: words + &gaps,
             caption: "Lowest eigenvalues of the tangent, in E/D², and the share of each circumferential mode in their eigenvectors.",
             heads: heads.iter().map(|head| head.replace('_', " ")).collect(),
             lines: pairs,
@@ -120,6 +122,27 @@ impl Stability {
             ),
         }
     }
+}
+
+/// Returns a sentence on saved states that a table of tested states lacks; empty if it has all.
+fn gaps(run: &Run<'_>, table: &[Vec<String>]) -> String {
+    let Some((heads, lines)) = table.split_first() else {
+        return String::new();
+    };
+    let state = heads.iter().position(|head| head == "state");
+    let number = |line: &Vec<String>| line.get(state?)?.parse().ok();
+    let mut states: Vec<usize> = lines.iter().filter_map(number).collect();
+    states.sort_unstable();
+    states.dedup();
+    let highest_mode = None;
+    let tested = StabilityCoverage {
+        states,
+        highest_mode,
+    };
+    let saved = run.directory.state_numbers().unwrap_or_default();
+    tested.gaps(&saved).map_or(String::new(), |gaps| {
+        format!(" But {gaps}: run `plica stability` on the directory of this run again.")
+    })
 }
 
 /// Summarises the eigenvalues of all circumferential modes; `steady` means that no mode changes its stability.

@@ -1,9 +1,10 @@
 //! Checkpoints: all that it takes to resume a run after a state.
 //!
 //! A checkpoint is a saved state with the state of the continuation: stage, completed fraction, previous point, pseudo-time
-//! velocity. It carries a digest of the history up to its row, so that it is never used with another history.
+//! velocity. It carries the record of the run up to its row, from which a damaged history is restored, and so that it is
+//! never used with another history.
 
-use super::write::table_of;
+use super::Record;
 use crate::saved_state::{Array, SavedState, SavedStateError};
 use crate::solve::{ContinuationState, PreviousPoint};
 use crate::study::{Continuation, Plan, Row};
@@ -18,13 +19,14 @@ pub struct Checkpoint {
     pub stage: Option<usize>,
     /// State of the continuation.
     pub path: ContinuationState,
-    /// Digest of the rows of the history up to that of the state.
-    pub history: [u8; 32],
+    /// The rows of the history up to that of the state, and the files of these states.
+    pub record: Record,
 }
 
 /// Names of its arrays beside `u`.
 const PATH: &str = "path";
 const HISTORY: &str = "history";
+const FILES: &str = "files";
 const PREVIOUS: &str = "previous";
 const TANGENT: &str = "previous_tangent";
 const VELOCITY: &str = "velocity";
@@ -38,7 +40,7 @@ impl Checkpoint {
             mut state,
             stage,
             path,
-            history,
+            record,
         } = self;
         let shape = state.layout.shape().to_vec();
         let like_u = |values| Array {
@@ -52,12 +54,11 @@ impl Checkpoint {
         let previous = path.previous.as_ref().map_or(NONE, |previous| previous.t);
         let stage = stage.map_or(NONE, |stage| stage as f64);
         let numbers = vec![stage, path.reached, path.halving_level as f64, previous];
+        let [history, files] = record.arrays();
         let mut arrays = BTreeMap::from([
             (PATH.to_owned(), row(numbers)),
-            (
-                HISTORY.to_owned(),
-                row(history.iter().map(|byte| f64::from(*byte)).collect()),
-            ),
+            (HISTORY.to_owned(), history),
+            (FILES.to_owned(), files),
         ]);
         if let Some(PreviousPoint { u, tangent, .. }) = path.previous {
             arrays.insert(PREVIOUS.into(), like_u(u));
@@ -90,11 +91,10 @@ impl Checkpoint {
         if !sound || !(0.0..=1.0).contains(&reached) || (previous != NONE && previous >= reached) {
             return Err(wrong(PATH, "is invalid"));
         }
-        let bytes = take(HISTORY).ok_or_else(|| wrong(HISTORY, missing))?;
-        let byte = |x: &f64| (*x == x.trunc() && (0.0..256.0).contains(x)).then_some(*x as u8);
-        let bytes: Option<Vec<u8>> = bytes.iter().map(byte).collect();
-        let history = bytes.and_then(|bytes| bytes.try_into().ok());
-        let history = history.ok_or_else(|| wrong(HISTORY, "is not a digest"))?;
+        let history = take(HISTORY).ok_or_else(|| wrong(HISTORY, missing))?;
+        let files = take(FILES).ok_or_else(|| wrong(FILES, missing))?;
+        let record = Record::from_arrays([&history, &files]);
+        let record = record.ok_or_else(|| wrong(HISTORY, "is not the record of a run"))?;
         let long = |name: &str, values: Vec<f64>| match values.len() == state.u.len() {
             true => Ok(values),
             false => Err(wrong(name, "is not as long as u")),
@@ -123,7 +123,7 @@ impl Checkpoint {
                 previous,
                 velocity,
             },
-            history,
+            record,
             state,
         })
     }
@@ -139,20 +139,22 @@ impl Checkpoint {
         }
     }
 
-    /// Checks that the checkpoint belongs to a plan and to the rows up to its state.
+    /// Returns the rows up to its state, with the wall times of the recorded rows, and the numbers of the states whose rows
+    /// are not among the recorded ones.
     ///
     /// # Errors
-    /// The reason, in words.
-    pub fn fits(&self, plan: &Plan, rows: &[Row]) -> Result<(), String> {
+    /// The reason, in words, why the checkpoint does not belong to the plan or to the recorded rows.
+    pub fn rows(&self, plan: &Plan, recorded: &[Row]) -> Result<(Vec<Row>, Vec<usize>), String> {
         plan.accepts(&self.state).map_err(|e| e.to_string())?;
-        let Some(own) = rows.get(..=self.state.row) else {
-            return Err(format!(
-                "it is of state {}, and history.csv ends with state {}",
-                self.state.row,
-                rows.len() as i64 - 1
-            ));
-        };
-        if Digest::of(own).finish() != self.history {
+        let own = self
+            .record
+            .rows()
+            .filter(|own| own.len() == self.state.row + 1);
+        let own = own.ok_or("its copy of history.csv has other columns or rows")?;
+        let (own, lost) = with_recorded(own, recorded);
+        let present = recorded.iter().filter(|row| row.step < own.len()).count();
+        // A few damaged rows are restored; a table of which most differ is that of another run.
+        if 2 * (own.len() - lost.len()) < present {
             return Err("it was written with another history.csv".into());
         }
         let Some([from, to]) = self.clone().into_continuation().segment(plan) else {
@@ -161,37 +163,30 @@ impl Checkpoint {
         if self.state.load != from.towards(&to, self.path.reached) {
             return Err("its load is not on the path of the case".into());
         }
-        Ok(())
+        Ok((own, lost))
     }
 }
 
-/// A digest of rows, without their wall times; absent pressures count as zero.
-#[derive(Clone, Debug, Default)]
-pub struct Digest(blake3::Hasher);
-
-impl Digest {
-    /// Returns the digest of rows.
-    pub fn of(rows: &[Row]) -> Self {
-        let mut digest = Self::default();
-        rows.iter().for_each(|row| digest.add(row));
-        digest
+/// Returns rows with the wall times of recorded rows, and the numbers of those that are not recorded as they are.
+pub(super) fn with_recorded(mut rows: Vec<Row>, recorded: &[Row]) -> (Vec<Row>, Vec<usize>) {
+    let recorded: BTreeMap<usize, &Row> = recorded.iter().map(|row| (row.step, row)).collect();
+    let mut lost = vec![];
+    for row in &mut rows {
+        match recorded.get(&row.step) {
+            Some(found) if agree(found, row) => row.seconds = found.seconds,
+            _ => lost.push(row.step),
+        }
     }
+    (rows, lost)
+}
 
-    /// Adds a row.
-    pub fn add(&mut self, row: &Row) {
-        let row = Row {
-            seconds: 0.0,
-            ..row.clone().with_pressures()
-        };
-        // Writing to memory cannot fail.
-        let table = table_of(&[row]).unwrap_or_default();
-        self.0.update(&table);
-    }
-
-    /// Returns the digest.
-    pub fn finish(&self) -> [u8; 32] {
-        *self.0.finalize().as_bytes()
-    }
+/// Returns whether two rows agree, apart from wall times; absent pressures count as zero.
+fn agree(a: &Row, b: &Row) -> bool {
+    let [a, b] = [a, b].map(|row| Row {
+        seconds: 0.0,
+        ..row.clone().with_pressures()
+    });
+    a == b
 }
 
 #[cfg(test)]
@@ -215,7 +210,7 @@ mod tests {
                 }),
                 velocity: like_u(if previous { 0.0 } else { 0.25 }),
             },
-            history: std::array::from_fn(|i| 7 * i as u8),
+            record: Record::default(),
             state,
         }
     }
@@ -245,7 +240,10 @@ mod tests {
         broken(|state| {
             state.arrays.insert(VELOCITY.into(), Array::default());
         });
-        broken(|state| state.arrays.get_mut(HISTORY).unwrap().values[5] = 256.0);
+        broken(|state| state.arrays.get_mut(HISTORY).unwrap().values[0] = 256.0);
+        broken(|state| {
+            state.arrays.remove(FILES);
+        });
         broken(|state| {
             state.arrays.get_mut(PREVIOUS).unwrap().values.pop();
         });

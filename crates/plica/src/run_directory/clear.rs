@@ -30,19 +30,34 @@ pub(super) fn clear(path: &Path) -> Result<(), RunError> {
     for (folder, ending) in OF_STATES.into_iter().chain(exported) {
         let mine = |file: &Path, ending| number_of_state(file, ending).is_some();
         old.extend(files(&path.join(folder)).filter(|f| mine(f, ending) || mine(f, "part")));
+        old.extend(parts(&path.join(folder), &["state-"]));
     }
+    old.extend(parts(path, &["report.html."]));
+    old.extend(parts(&path.join("vtk"), &["walls.", "volume.", "linear."]));
     old.extend(files(&path.join("pictures")).filter(|file| {
         let name = file
             .file_name()
             .and_then(|name| name.to_str())
             .unwrap_or_default();
         let (stem, ending) = name.rsplit_once('.').unwrap_or_default();
+        let is_part = ending == "part" && (name.contains("-state-") || name.contains("-path."));
         (stem.contains("-state-") || stem.ends_with("-path"))
             && ["png", "svg", "apng", "mp4"].contains(&ending)
+            || is_part
     }));
     old.extend(["walls", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))));
     old.push(path.join("vtk/walls.vtkhdf"));
     remove(old)
+}
+
+/// Returns the temporary files in a folder whose names begin so: a process that writes without the lock gives them names of
+/// their own.
+fn parts<'a>(folder: &Path, begin: &'a [&str]) -> impl Iterator<Item = PathBuf> + use<'a> {
+    files(folder).filter(move |file| {
+        let name = file.file_name().and_then(|name| name.to_str());
+        let begins = |name: &str| begin.iter().any(|begin| name.starts_with(begin));
+        name.is_some_and(|name| name.ends_with(".part") && begins(name))
+    })
 }
 
 /// Returns the files that a stability analysis writes.

@@ -4,12 +4,17 @@ use super::RunError;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Write};
 use std::path::Path;
+use std::time::Duration;
 
 /// Name of the file that is locked.
 pub(super) const LOCK: &str = "lock";
 
 /// Error of Linux (ENOLCK) for a file system without locks.
 const NO_LOCKS: i32 = 37;
+
+/// Further attempts to lock a directory, and the time between them.
+const ATTEMPTS: usize = 5;
+const PAUSE: Duration = Duration::from_millis(10);
 
 /// The lock of a run directory. The system releases it when the process ends, so no lock is ever stale.
 #[derive(Debug)]
@@ -37,14 +42,18 @@ impl Lock {
             .truncate(false)
             .clone();
         let mut file = options.open(&path).map_err(error_at)?;
-        match file.try_lock() {
+        // Another process may just look at the lock.
+        let mut attempt = file.try_lock();
+        for _ in 0..ATTEMPTS {
+            if !matches!(attempt, Err(TryLockError::WouldBlock)) {
+                break;
+            }
+            std::thread::sleep(PAUSE);
+            attempt = file.try_lock();
+        }
+        match attempt {
             Err(TryLockError::WouldBlock) => {
-                let mut owner = String::new();
-                let _ = file.take(200).read_to_string(&mut owner);
-                return Err(RunError::Busy {
-                    path: directory.to_owned(),
-                    owner: owner.trim().to_owned(),
-                });
+                return Err(busy(directory, file));
             }
             Err(TryLockError::Error(error))
                 if error.kind() != std::io::ErrorKind::Unsupported
@@ -58,6 +67,30 @@ impl Lock {
         let _ = file.set_len(0);
         let _ = writeln!(file, "process {}", std::process::id());
         Ok(Self(file))
+    }
+
+    /// Returns whether the file that is locked is still that of a directory.
+    pub fn is_at(&self, directory: &Path) -> bool {
+        super::presence::is_at(&self.0, &directory.join(LOCK))
+    }
+
+    /// Returns the process that works in a directory, if there is one.
+    pub fn owner(directory: &Path) -> Option<RunError> {
+        let file = File::open(directory.join(LOCK)).ok()?;
+        match file.try_lock_shared() {
+            Err(TryLockError::WouldBlock) => Some(busy(directory, file)),
+            _ => None,
+        }
+    }
+}
+
+/// Returns the error of a directory that another process has locked.
+fn busy(directory: &Path, lock: File) -> RunError {
+    let mut owner = String::new();
+    let _ = lock.take(200).read_to_string(&mut owner);
+    RunError::Busy {
+        path: directory.to_owned(),
+        owner: owner.trim().to_owned(),
     }
 }
 

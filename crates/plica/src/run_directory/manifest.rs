@@ -1,6 +1,6 @@
 //! `manifest.json`: the case, the machine, and how the run ended.
 
-use super::{PROGRAM, RunDirectory, RunError, Verdict};
+use super::{PROGRAM, RunDirectory, RunError, STABILITY, Verdict};
 use crate::study::{Ending, Plan, Row, Scale};
 use serde::Serialize;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -51,6 +51,12 @@ pub(super) struct Manifest {
     pub states_out_of_equilibrium: usize,
     /// Number of unstable states.
     pub states_unstable: usize,
+    /// Profiles and saved states that are missing or damaged at the end of the run.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub missing_files: Vec<String>,
+    /// States and modes that `plica stability` has tested; none if it has not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stability: Option<serde_json::Value>,
     /// Whether the pictures are drawn and temporary files are removed.
     pub closed: bool,
 }
@@ -81,6 +87,8 @@ impl Manifest {
             states: 0,
             states_out_of_equilibrium: 0,
             states_unstable: 0,
+            missing_files: vec![],
+            stability: None,
             closed: false,
         }
     }
@@ -104,6 +112,7 @@ impl Manifest {
             threads: number("threads", now.threads as u64) as usize,
             started_unix: number("started_unix", now.started_unix),
             resumed,
+            stability: before.get(STABILITY).cloned(),
             ..now
         }
     }
@@ -124,6 +133,11 @@ impl Manifest {
     /// Closes the manifest after an error of the program: a result is not finite.
     pub fn fail(&mut self, error: &RunError, rows: &[Row]) {
         self.close(Verdict::Lost, error.to_string(), rows);
+    }
+
+    /// Closes the manifest where another program has changed the files of the run.
+    pub fn halt(&mut self, error: &RunError, rows: &[Row]) {
+        self.close(Verdict::Stopped, error.to_string(), rows);
     }
 
     fn close(&mut self, verdict: Verdict, text: String, rows: &[Row]) {

@@ -7,6 +7,8 @@ mod clear;
 mod error;
 mod lock;
 mod manifest;
+mod presence;
+mod record;
 mod resume;
 mod run;
 mod summary;
@@ -14,12 +16,16 @@ mod write;
 
 pub use checkpoint::Checkpoint;
 pub use error::RunError;
+pub use record::{Fault, Record};
+pub use resume::Resumption;
 pub use run::{Run, run};
 pub use summary::{Snapshot, Summary};
+pub use write::write_file;
 
 use crate::study::{Row, RowReader};
 use clear::{clear, files, modes, remove, stability_files};
 use lock::{LOCK, Lock};
+use presence::Folder;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -47,8 +53,13 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub struct RunDirectory {
     path: PathBuf,
+    /// The directory that was at the path when it was opened.
+    folder: Folder,
+    case: Vec<u8>,
     case_hash: String,
+    /// `history.csv` of the run that this process writes, and its length in bytes.
     history: Option<File>,
+    history_length: u64,
     /// Held by the process that writes the run.
     lock: Option<Lock>,
 }
@@ -80,6 +91,9 @@ impl std::fmt::Display for Verdict {
 
 /// Key in the manifest of a run that is being replaced.
 const REPLACED: &str = "replaced";
+
+/// Key in the manifest for the coverage of `plica stability`.
+const STABILITY: &str = "stability";
 
 /// Name of the program in a manifest.
 const PROGRAM: &str = "plica";
@@ -145,15 +159,23 @@ impl RunDirectory {
                 }
             }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+                if let Ok(target) = fs::read_link(path) {
+                    let link = path.to_owned();
+                    return Err(RunError::DanglingLink { link, target });
+                }
                 fs::create_dir_all(path).map_err(error_at)?;
             }
+            Err(_) if path.is_file() => return Err(RunError::IsAFile(path.to_owned())),
             Err(e) => return Err(error_at(e)),
         }
         let lock = Some(Lock::take(path)?);
         let mut directory = Self {
             path: path.to_owned(),
+            folder: Folder::open(path),
+            case: vec![],
             case_hash: String::new(),
             history: None,
+            history_length: 0,
             lock,
         };
         // First, so that the directory stays a run whatever happens next: the previous one, as long as its case is there.
@@ -176,7 +198,7 @@ impl RunDirectory {
             // Another process may have changed it since it was opened.
             *self = Self {
                 lock,
-                ..Self::open(&self.path)?
+                ..Self::read_from(&self.path, true)?
             };
         }
         Ok(())
@@ -185,9 +207,15 @@ impl RunDirectory {
     /// Opens the directory of a run, complete or not.
     ///
     /// # Errors
-    /// [`RunError::File`] if it does not exist, [`RunError::NoRun`] if it holds no run, and
-    /// [`RunError::CaseChanged`] if its case is not the one that was run.
+    /// [`RunError::File`] if it does not exist, [`RunError::Busy`] if another process creates the run just now,
+    /// [`RunError::NoRun`] or [`RunError::Unwritten`] if it holds no run, and [`RunError::CaseChanged`] if its case is not
+    /// the one that was run.
     pub fn open(path: &Path) -> Result<Self, RunError> {
+        Self::read_from(path, false)
+    }
+
+    /// Opens the directory; `is_mine` if this process has locked it.
+    fn read_from(path: &Path, is_mine: bool) -> Result<Self, RunError> {
         let read = |name: &str| {
             fs::read(path.join(name)).map_err(|source| RunError::File {
                 path: path.join(name),
@@ -201,12 +229,24 @@ impl RunDirectory {
             path: path.to_owned(),
             source,
         })?;
-        if !is_run(path) {
-            return Err(RunError::NoRun(path.to_owned()));
+        let folder = Folder::open(path);
+        if !is_run(path) || !path.join(CASE).exists() {
+            // A run that begins now writes them in a moment.
+            let none = match is_run(path) {
+                true if is_unwritten(path) => RunError::Unwritten(path.to_owned()),
+                true => RunError::File {
+                    path: path.join(CASE),
+                    source: std::io::ErrorKind::NotFound.into(),
+                },
+                false => RunError::NoRun(path.to_owned()),
+            };
+            let owner = if is_mine { None } else { Lock::owner(path) };
+            return Err(owner.unwrap_or(none));
         }
         let manifest: serde_json::Value =
             serde_json::from_slice(&read(MANIFEST)?).unwrap_or_default();
-        let case_hash = blake3::hash(&read(CASE)?).to_string();
+        let case = read(CASE)?;
+        let case_hash = blake3::hash(&case).to_string();
         if manifest["case_hash"]
             .as_str()
             .is_some_and(|hash| hash != case_hash)
@@ -215,8 +255,11 @@ impl RunDirectory {
         }
         Ok(Self {
             path: path.to_owned(),
+            folder,
+            case,
             case_hash,
             history: None,
+            history_length: 0,
             lock: None,
         })
     }
@@ -248,6 +291,24 @@ impl RunDirectory {
             .records()
             .map(|row| Some(row.ok()?.iter().map(String::from).collect()));
         rows.collect()
+    }
+
+    /// Returns the numbers of the saved states.
+    ///
+    /// # Errors
+    /// As [`RunDirectory::states`].
+    pub fn state_numbers(&self) -> Result<Vec<usize>, RunError> {
+        Ok(self.numbered(STATES, STATE_ENDING)?.into_keys().collect())
+    }
+
+    /// Returns the states that `plica stability` has tested, as the manifest says; none if it has not.
+    pub fn stability_coverage(&self) -> Option<StabilityCoverage> {
+        let about = &manifest(&self.path)[STABILITY];
+        let states = about["states"].as_array()?.iter();
+        Some(StabilityCoverage {
+            states: states.filter_map(|n| Some(n.as_u64()? as usize)).collect(),
+            highest_mode: about["highest_mode"].as_u64().map(|n| n as usize),
+        })
     }
 
     /// Returns the version of the program that wrote it; empty if the manifest does not say.
@@ -311,6 +372,25 @@ impl RunDirectory {
             }
         }
         Ok((rows, None))
+    }
+
+    /// Returns the rows of `history.csv` that can be read, whatever is between them. Its own header may be damaged: rows with as
+    /// many cells as another header are read with that one.
+    fn recorded_rows(&self, header: &str) -> Vec<Row> {
+        let bytes = fs::read(self.path.join(HISTORY)).unwrap_or_default();
+        let text = String::from_utf8_lossy(&bytes);
+        let mut lines = text.lines();
+        let own = lines.next().unwrap_or_default();
+        let cells = |line: &str| line.matches(',').count();
+        let header_of = |line: &str| match cells(line) == cells(header) {
+            true => header.to_owned(),
+            false => own.to_owned(),
+        };
+        let row = |line: &str| {
+            let table = format!("{}\n{line}\n", header_of(line));
+            record::rows_of(&table).pop()?
+        };
+        lines.filter_map(row).collect()
     }
 
     /// Returns the files of the saved states, in the order of their numbers.
@@ -384,9 +464,71 @@ impl RunDirectory {
         self.path.join(START)
     }
 
-    /// Removes the results of a stability analysis.
-    pub fn clear_stability(&self) -> Result<(), RunError> {
-        remove(stability_files(&self.path))
+    /// Removes the results of a stability analysis; returns whether there were any.
+    ///
+    /// # Errors
+    /// [`RunError::File`] if a file cannot be removed or the manifest cannot be written.
+    pub fn clear_stability(&self) -> Result<bool, RunError> {
+        let are_there = stability_files(&self.path).iter().any(|file| file.exists());
+        self.keep_stability(&[], None)?;
+        Ok(are_there)
+    }
+
+    /// Removes all results of stability analyses but these, by relative path, and writes to the manifest what they cover.
+    ///
+    /// # Errors
+    /// As [`RunDirectory::clear_stability`].
+    pub fn keep_stability(
+        &self,
+        names: &[String],
+        coverage: Option<StabilityCoverage>,
+    ) -> Result<(), RunError> {
+        let kept: Vec<PathBuf> = names.iter().map(|name| self.path.join(name)).collect();
+        let mut files = stability_files(&self.path);
+        files.retain(|file| !kept.contains(file));
+        remove(files)?;
+        let mut about = self.about();
+        let before = about.remove(STABILITY);
+        let now = coverage.map(|coverage| coverage.to_json());
+        if before == now {
+            return Ok(());
+        }
+        about.extend(now.map(|now| (STABILITY.to_owned(), now)));
+        self.write_manifest(&about)
+    }
+}
+
+/// The states and modes that a stability analysis covers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StabilityCoverage {
+    /// Numbers of the tested states, in ascending order.
+    pub states: Vec<usize>,
+    /// Highest circumferential mode tested; none for the lowest modes of three-dimensional states.
+    pub highest_mode: Option<usize>,
+}
+
+impl StabilityCoverage {
+    /// Returns the coverage for the manifest.
+    fn to_json(&self) -> serde_json::Value {
+        serde_json::json!({ "states": self.states, "highest_mode": self.highest_mode })
+    }
+
+    /// Returns the numbers of the states as a text, such as `0 to 12, 14`.
+    pub fn list(&self) -> String {
+        resume::list(&self.states)
+    }
+
+    /// Returns a statement on the states that are not covered, of those with these numbers; none if all are.
+    pub fn gaps(&self, saved: &[usize]) -> Option<String> {
+        let is_new = |number: &usize| !self.states.contains(number);
+        let missing: Vec<usize> = saved.iter().copied().filter(is_new).collect();
+        (!missing.is_empty()).then(|| {
+            format!(
+                "stability was tested at states {} only, not at {}",
+                self.list(),
+                resume::list(&missing)
+            )
+        })
     }
 }
 
@@ -424,6 +566,11 @@ fn is_leftover(file: &Path) -> bool {
 /// Returns the relative path of a state that is kept until the pictures are drawn.
 fn name_of_temporary_state(row: usize) -> String {
     format!("{TEMPORARY}/state-{row:04}.{STATE_ENDING}")
+}
+
+/// Returns the relative path of the walls of a state.
+fn name_of_profile(row: usize) -> String {
+    format!("{PROFILES}/state-{row:04}.csv")
 }
 
 /// Returns the relative path of the mode that gives an imperfection its shape.
@@ -505,6 +652,9 @@ mod tests {
             "energy.png",
             "vtk/walls/state-0003.vtp",
             "vtk/walls.pvd",
+            "vtk/walls.pvd.12-0.part",
+            "vtk/walls/state-0003.vtp.12-1.part",
+            "report.html.12-0.part",
             "vtk/mine.vtu",
             "pictures/energy-state-0003.png",
             "pictures/energy-path.apng",
@@ -527,6 +677,11 @@ mod tests {
         assert!(!stays("pictures/overhang-along-length_ratio-path.svg"));
         assert!(stays("vtk/mine.vtu") && !stays("vtk/walls.pvd"));
         assert!(!stays("vtk/walls/state-0003.vtp"));
+        for folder in ["", "vtk", "vtk/walls", "pictures"] {
+            assert!(
+                files(&path.join(folder)).all(|file| file.extension() != Some("part".as_ref()))
+            );
+        }
         fs::remove_dir_all(path).unwrap();
     }
 }

@@ -1,25 +1,54 @@
 //! Files for resuming a run: the truncated history, checkpoints, and temporary states for pictures.
 
+use super::checkpoint::with_recorded;
 use super::clear::{modes, remove};
 use super::write::table_of;
 use super::{
-    CHECKPOINTS, Checkpoint, HISTORY, IMPERFECTIONS, OF_STATES, RunDirectory, RunError, START,
-    STATE_ENDING, TEMPORARY, Verdict, name_of_temporary_state,
+    CHECKPOINTS, Checkpoint, Fault, HISTORY, IMPERFECTIONS, OF_STATES, Record, RunDirectory,
+    RunError, START, STATE_ENDING, TEMPORARY, Verdict, name_of_temporary_state,
 };
 use crate::saved_state::SavedState;
 use crate::study::{Plan, Row};
 use std::fs::{self, File};
 use std::path::PathBuf;
 
+/// A checkpoint that a run can be resumed from.
+#[derive(Clone, Debug)]
+pub struct Resumption {
+    /// The checkpoint.
+    pub checkpoint: Checkpoint,
+    /// The rows of the history up to its state.
+    pub rows: Vec<Row>,
+    /// Numbers of the states whose rows are damaged or missing in `history.csv`.
+    pub restored: Vec<usize>,
+    /// Whether `history.csv` has rows of later states.
+    pub has_later_rows: bool,
+    /// Reasons why a newer checkpoint is not used.
+    pub faults: Vec<String>,
+}
+
+/// Lists numbers of states, with ranges.
+pub(super) fn list(numbers: &[usize]) -> String {
+    let mut ranges: Vec<[usize; 2]> = vec![];
+    for &number in numbers {
+        match ranges.last_mut() {
+            Some([_, last]) if *last + 1 == number => *last = number,
+            _ => ranges.push([number; 2]),
+        }
+    }
+    let range = |[first, last]: &[usize; 2]| match first == last {
+        true => first.to_string(),
+        false => format!("{first} to {last}"),
+    };
+    ranges.iter().map(range).collect::<Vec<_>>().join(", ")
+}
+
 impl RunDirectory {
     /// Truncates the history to these rows, ready to append after them, and removes the files of later states.
     pub(super) fn truncate(&mut self, rows: &[Row]) -> Result<(), RunError> {
         self.history = None;
+        self.history_length = 0;
         let path = self.path.join(HISTORY);
-        let error_at = |source| RunError::File {
-            path: path.clone(),
-            source,
-        };
         let mut later = vec![];
         for (folder, ending) in OF_STATES {
             let beyond = |(number, file): (usize, PathBuf)| (number >= rows.len()).then_some(file);
@@ -42,14 +71,33 @@ impl RunDirectory {
                     .collect(),
             );
         }
-        self.write(HISTORY, &table_of(rows).map_err(error_at)?)?;
+        self.write_history(rows)
+    }
+
+    /// Writes `history.csv` with these rows, ready to append after them.
+    pub(super) fn write_history(&mut self, rows: &[Row]) -> Result<(), RunError> {
+        self.history = None;
+        self.history_length = 0;
+        let path = self.path.join(HISTORY);
+        if rows.is_empty() {
+            return remove(vec![path]);
+        }
+        let error_at = |source| RunError::File {
+            path: path.clone(),
+            source,
+        };
+        let bytes = table_of(rows).map_err(error_at)?;
+        self.write(HISTORY, &bytes)?;
         let file = File::options().append(true).open(&path);
         self.history = Some(file.map_err(error_at)?);
+        self.history_length = bytes.len() as u64;
         Ok(())
     }
 
     /// Writes a checkpoint and keeps the one before it.
     pub(super) fn write_checkpoint(&self, checkpoint: Checkpoint) -> Result<(), RunError> {
+        self.check_place()?;
+        let bytes = self.state_bytes(CHECKPOINTS[0], &checkpoint.into_state())?;
         let [now, before] = CHECKPOINTS.map(|name| self.path.join(name));
         let error_at = |source| RunError::File {
             path: now.clone(),
@@ -59,40 +107,122 @@ impl RunDirectory {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(error_at(e)),
             _ => {}
         }
-        self.write_saved(CHECKPOINTS[0], &checkpoint.into_state())
+        self.write(CHECKPOINTS[0], &bytes)
     }
 
-    /// Returns the newest checkpoint that can be used, and the faults of a newer one.
+    /// Returns the newest checkpoint that can be used, with the rows up to its state.
     ///
     /// # Errors
-    /// [`RunError::NoCheckpoint`] if none fits the plan and the rows.
-    pub fn checkpoint(
-        &self,
-        plan: &Plan,
-        rows: &[Row],
-    ) -> Result<(Checkpoint, Vec<String>), RunError> {
-        let mut reasons = vec![];
+    /// [`RunError::NoCheckpoint`] if none fits the plan and `history.csv`.
+    pub fn checkpoint(&self, plan: &Plan) -> Result<Resumption, RunError> {
+        let mut faults = vec![];
         for name in CHECKPOINTS {
             let path = self.path.join(name);
             if !path.exists() {
                 continue;
             }
             let read = SavedState::read(&path).and_then(Checkpoint::from_state);
-            match read.map_err(|error| error.to_string()) {
-                Ok(checkpoint) => match checkpoint.fits(plan, rows) {
-                    Ok(()) => return Ok((checkpoint, reasons)),
-                    Err(why) => reasons.push(format!("{name}: {why}")),
-                },
-                Err(why) => reasons.push(format!("{name}: {why}")),
+            let fits = read.map_err(|error| error.to_string());
+            let fits = fits.and_then(|one| {
+                let recorded = self.recorded_rows(one.record.header());
+                Ok((one.rows(plan, &recorded)?, one, recorded))
+            });
+            match fits {
+                Ok(((rows, restored), checkpoint, recorded)) => {
+                    let later = |row: &Row| row.step >= rows.len();
+                    return Ok(Resumption {
+                        has_later_rows: recorded.iter().any(later),
+                        checkpoint,
+                        rows,
+                        restored,
+                        faults,
+                    });
+                }
+                Err(why) => faults.push(format!("{name}: {why}")),
             }
         }
-        if reasons.is_empty() {
-            reasons.push("it has no checkpoint".into());
+        if faults.is_empty() {
+            faults.push("it has no checkpoint".into());
         }
         Err(RunError::NoCheckpoint {
             path: self.path.clone(),
-            reasons,
+            reasons: faults,
         })
+    }
+
+    /// Returns the record in the newest checkpoint that can be read.
+    pub fn record(&self) -> Option<Record> {
+        let read = |name| {
+            let state = SavedState::read(&self.path.join(name)).ok()?;
+            Some(Checkpoint::from_state(state).ok()?.record)
+        };
+        CHECKPOINTS.into_iter().find_map(read)
+    }
+
+    /// Returns the rows of the history, and the faults of `history.csv` and of saved files, in words. Rows that are damaged
+    /// come from the checkpoint, if it can be read. A damaged row without such a copy ends the history.
+    ///
+    /// # Errors
+    /// As [`RunDirectory::readable_history`], if there is no copy.
+    pub fn checked_history(&self) -> Result<(Vec<Row>, Option<String>, Vec<String>), RunError> {
+        // Before the history, which the run may write right now.
+        let record = self.record();
+        let recorded = self.recorded_rows(record.as_ref().map_or("", Record::header));
+        let own = record.as_ref().and_then(Record::rows).unwrap_or_default();
+        let mut faults = vec![];
+        if let Some(record) = &record {
+            let missing = record.missing(&self.path);
+            let fault = |(name, fault)| format!("{} is {fault}", self.path.join(name).display());
+            faults.extend(missing.into_iter().map(fault));
+        }
+        let (mut rows, restored) = with_recorded(own, &recorded);
+        let present = recorded.iter().filter(|row| row.step < rows.len()).count();
+        let is_foreign = 2 * (rows.len() - restored.len()) < present;
+        if rows.is_empty() || restored.is_empty() || is_foreign {
+            let (rows, damaged) = self.readable_history()?;
+            return Ok((rows, damaged, faults));
+        }
+        faults.push(format!(
+            "{} is damaged or incomplete at state {}; its copy in the checkpoint is used, and `plica resume` restores it",
+            self.path.join(HISTORY).display(),
+            list(&restored)
+        ));
+        for row in recorded {
+            if row.step == rows.len() {
+                rows.push(row);
+            }
+        }
+        Ok((rows, None, faults))
+    }
+
+    /// Restores `history.csv` of a complete run if it is damaged, and checks all profiles and saved states. Returns the
+    /// numbers of the states whose rows were restored.
+    ///
+    /// # Errors
+    /// [`RunError::Incomplete`] with the files that are missing or damaged.
+    pub fn mend(&mut self, plan: &Plan) -> Result<Vec<usize>, RunError> {
+        let Ok(found) = self.checkpoint(plan) else {
+            let name = CHECKPOINTS[0];
+            let fault = match self.path.join(name).exists() {
+                true => Fault::Damaged,
+                false => Fault::Missing,
+            };
+            return Err(RunError::Incomplete {
+                path: self.path.clone(),
+                files: vec![(name.into(), fault)],
+            });
+        };
+        if !found.restored.is_empty() {
+            self.write_history(&found.rows)?;
+        }
+        let files = found.checkpoint.record.damaged(&self.path);
+        match files.is_empty() {
+            true => Ok(found.restored),
+            false => Err(RunError::Incomplete {
+                path: self.path.clone(),
+                files,
+            }),
+        }
     }
 
     /// Returns whether the run has no checkpoint yet, at most one state, and nothing that would be lost.
@@ -110,11 +240,6 @@ impl RunDirectory {
     /// Removes a damaged newest checkpoint, so that it does not replace the one before it.
     pub(super) fn remove_newest_checkpoint(&self) -> Result<(), RunError> {
         remove(vec![self.path.join(CHECKPOINTS[0])])
-    }
-
-    /// Writes a state that is not saved but that pictures may need.
-    pub(super) fn write_temporary_state(&self, state: &SavedState) -> Result<(), RunError> {
-        self.write_saved(&name_of_temporary_state(state.row), state)
     }
 
     /// Reads a saved or temporary state by the number of its row.

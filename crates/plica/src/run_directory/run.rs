@@ -1,13 +1,16 @@
 //! A study that writes every state into a run directory.
 
-use super::checkpoint::{Checkpoint, Digest};
 use super::manifest::Manifest;
-use super::{RunDirectory, RunError, Snapshot, Summary};
+use super::resume::list;
+use super::{
+    Checkpoint, Record, RunDirectory, RunError, START, Snapshot, Summary, imperfection,
+    name_of_profile, name_of_temporary_state,
+};
 use crate::measure::{Face, Meridians};
 use crate::monitor::Monitor;
 use crate::saved_state::SavedState;
 use crate::study::{Ending, Plan, Row, Scale, State, Study, StudyError};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A study and the run directory that its states are written to.
 ///
@@ -22,7 +25,10 @@ pub struct Run<'a> {
     has_pressures: bool,
     rows: Vec<Row>,
     snapshots: Vec<Option<Snapshot>>,
-    digest: Digest,
+    /// What has been written, for the next checkpoint.
+    record: Record,
+    /// Files that were missing or damaged when the run was resumed.
+    missing: Vec<String>,
 }
 
 /// Runs a plan in a run directory to its end, or as far as the tube can be followed.
@@ -49,15 +55,26 @@ impl<'a> Run<'a> {
         let study = Study::new(plan)?;
         directory.lock()?;
         // Before the first state, so that a run with a state has all that it started from.
+        let mut inputs = vec![];
         for mode in &plan.modes {
-            directory.write_imperfection(mode)?;
+            inputs.push((imperfection(mode.imperfection), &mode.state));
         }
-        if let Some(start) = &plan.start {
-            directory.write_start(&start.state)?;
+        inputs.extend(
+            plan.start
+                .iter()
+                .map(|start| (START.to_owned(), &start.state)),
+        );
+        let mut record = Record::default();
+        for (name, state) in inputs {
+            let bytes = directory.state_bytes(&name, state)?;
+            directory.write(&name, &bytes)?;
+            record.add_file(&name, &bytes);
         }
         let manifest = Manifest::begin(plan, directory);
         directory.write_manifest(&manifest)?;
-        Ok(Self::new(plan, study, directory, manifest))
+        let mut run = Self::new(plan, study, directory, manifest);
+        run.record = record;
+        Ok(run)
     }
 
     /// Resumes a run after its last checkpoint, or after the one before if the last is damaged. States beyond the checkpoint
@@ -76,29 +93,46 @@ impl<'a> Run<'a> {
         crate::study::check_memory(plan)?;
         directory.lock()?;
         if directory.has_hardly_begun() {
-            monitor.notice("the run had hardly begun; it begins again");
+            monitor
+                .notice("the run has no checkpoint and at most its first state; it begins again");
             directory.truncate(&[])?;
             return Self::begin(plan, directory);
         }
-        let (rows, _) = directory.readable_history()?;
-        let (checkpoint, damaged) = directory.checkpoint(plan, &rows)?;
-        for why in &damaged {
+        let found = directory.checkpoint(plan)?;
+        for why in &found.faults {
             monitor.notice(&format!(
                 "not used: {why}; resuming from the checkpoint before"
             ));
         }
-        if !damaged.is_empty() {
+        if !found.faults.is_empty() {
             directory.remove_newest_checkpoint()?;
         }
+        if !found.restored.is_empty() {
+            monitor.notice(&format!(
+                "history.csv was damaged or incomplete at state {}; restored from the checkpoint",
+                list(&found.restored)
+            ));
+        }
+        let checkpoint = found.checkpoint;
         let number = checkpoint.state.row;
-        let recorded = rows.len();
-        let mut rows = rows[..=number].to_vec();
-        if rows.len() < recorded {
-            // Its results cover states that are computed again.
-            directory.clear_stability()?;
+        let mut record = checkpoint.record.clone();
+        let mut missing = vec![];
+        for (name, fault) in record.damaged(directory.path()) {
+            monitor.notice(&format!(
+                "warning: {} is {fault}; it is not computed again",
+                directory.path().join(&name).display()
+            ));
+            missing.push(name);
+        }
+        let mut rows = found.rows;
+        if found.has_later_rows && directory.clear_stability()? {
+            monitor.notice(
+                "the results of `plica stability` are removed: they cover states that are computed again",
+            );
         }
         if plan.has_pressures() {
             rows = rows.into_iter().map(Row::with_pressures).collect();
+            record.replace_rows(&rows);
         }
         let study = Study::resume(plan, checkpoint.into_continuation());
         let study = study.map_err(|error| match error {
@@ -113,6 +147,7 @@ impl<'a> Run<'a> {
         directory.write_manifest(&manifest)?;
         directory.truncate(&rows)?;
         let mut run = Self::new(plan, study, directory, manifest);
+        (run.record, run.missing) = (record, missing);
         run.restore(rows, monitor);
         Ok(run)
     }
@@ -132,7 +167,8 @@ impl<'a> Run<'a> {
             has_pressures: plan.has_pressures(),
             rows: vec![],
             snapshots: vec![],
-            digest: Digest::default(),
+            record: Record::default(),
+            missing: vec![],
         }
     }
 
@@ -158,7 +194,6 @@ impl<'a> Run<'a> {
         self.has_pressures = rows
             .first()
             .map_or(self.has_pressures, |row| row.potential.is_some());
-        self.digest = Digest::of(&rows);
         self.rows = rows;
     }
 
@@ -172,34 +207,40 @@ impl<'a> Run<'a> {
             Some(Err(StudyError::Lost(_))) | None => return Ok(None),
             Some(Err(error)) => return Err(error.into()),
         };
-        let written = self.write(&state);
+        let written = self.write(&state, monitor);
         if let Err(error @ RunError::NotFinite { .. }) = &written {
             self.manifest.fail(error, &self.rows);
             self.directory.write_manifest(&self.manifest)?;
         }
         written?;
-        if monitor.is_cancelled() {
-            // The stability test of the state may have been cut short, so it is computed again when the run is resumed.
-            self.study.stop();
-        } else if let Some(continuation) = self.study.continuation() {
-            self.directory.write_checkpoint(Checkpoint {
-                state: self.saved(&state),
-                stage: continuation.stage,
-                path: continuation.path,
-                history: self.digest.finish(),
-            })?;
-        }
         Ok(self.rows.last())
     }
 
     /// Closes the manifest and returns the result.
     ///
     /// # Errors
-    /// [`RunError::File`] if the manifest cannot be written.
+    /// [`RunError::File`] if the manifest cannot be written; [`RunError::Moved`], [`RunError::Changed`] or
+    /// [`RunError::Incomplete`] if the directory or files in it were removed or changed while the run wrote them.
     pub fn finish(mut self) -> Result<Summary, RunError> {
         let ending = self.study.ending().cloned().unwrap_or(Ending::Stopped);
+        let changed = self.restore_files()?;
+        let missing = self.record.missing(self.directory.path());
         self.manifest.end(&ending, &self.rows);
+        let names = missing.iter().map(|(name, _)| name);
+        let names = names.chain(&self.missing).cloned();
+        self.manifest.missing_files = BTreeSet::from_iter(names).into_iter().collect();
         self.directory.write_manifest(&self.manifest)?;
+        if let Some(error) = changed {
+            return Err(error);
+        }
+        let is_new = |(name, _): &(String, _)| !self.missing.contains(name);
+        let files: Vec<_> = missing.into_iter().filter(is_new).collect();
+        if !files.is_empty() {
+            return Err(RunError::Incomplete {
+                path: self.directory.path().to_owned(),
+                files,
+            });
+        }
         Ok(Summary::new(
             self.plan,
             self.rows,
@@ -209,30 +250,75 @@ impl<'a> Run<'a> {
         ))
     }
 
-    /// Writes the row, the walls and the unknowns of a state.
-    fn write(&mut self, state: &State) -> Result<(), RunError> {
+    /// Writes files again that another program has removed or changed; returns the error that stops the run.
+    fn restore_files(&mut self) -> Result<Option<RunError>, RunError> {
+        match self.directory.check_files() {
+            Ok(()) => Ok(None),
+            Err(error @ RunError::Changed(_)) => {
+                self.directory.restore(&self.rows)?;
+                Ok(Some(error))
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Writes the walls, the unknowns and the row of a state, and a checkpoint. Nothing of a state with a number that is not
+    /// finite is written.
+    fn write(&mut self, state: &State, monitor: &mut dyn Monitor) -> Result<(), RunError> {
         let row = Row::new(state, &self.scale, self.has_pressures, self.rows.last());
-        self.directory.append_row(&row)?;
+        let table = self.directory.row_table(&row)?;
         let output = &self.plan.output;
         let is_due =
             |every: usize| every > 0 && (state.ends_stage || row.step.is_multiple_of(every));
+        let mut files = vec![];
         if is_due(output.profiles_every) {
-            self.write_profile(state)?;
+            let name = name_of_profile(state.number);
+            files.push((self.profile(&name, state)?, name));
         }
+        let mut temporary = None;
         if is_due(output.states_every) {
-            self.directory.write_state(&self.saved(state))?;
+            let name = RunDirectory::name_of_state(state.number);
+            files.push((self.directory.state_bytes(&name, &self.saved(state))?, name));
         } else if output.pictures {
-            self.directory.write_temporary_state(&self.saved(state))?;
+            let name = name_of_temporary_state(state.number);
+            temporary = Some((self.directory.state_bytes(&name, &self.saved(state))?, name));
         }
+        let changed = self.restore_files()?;
+        for (bytes, name) in &files {
+            self.directory.write(name, bytes)?;
+            self.record.add_file(name, bytes);
+        }
+        if let Some((bytes, name)) = temporary {
+            self.directory.write(&name, &bytes)?;
+        }
+        self.directory.append_row(&table)?;
         if output.pictures {
             self.snapshots.push(Some(Snapshot {
                 load: state.load.clone(),
                 u: state.unknowns.clone(),
             }));
         }
-        self.digest.add(&row);
+        self.record.add_row(&row);
         self.rows.push(row);
-        Ok(())
+        if monitor.is_cancelled() {
+            // The stability test of the state may have been cut short, so it is computed again when the run is resumed.
+            self.study.stop();
+        } else if let Some(continuation) = self.study.continuation() {
+            self.directory.write_checkpoint(Checkpoint {
+                state: self.saved(state),
+                stage: continuation.stage,
+                path: continuation.path,
+                record: self.record.clone(),
+            })?;
+        }
+        match changed {
+            None => Ok(()),
+            Some(error) => {
+                self.manifest.halt(&error, &self.rows);
+                self.directory.write_manifest(&self.manifest)?;
+                Err(error)
+            }
+        }
     }
 
     fn saved(&self, state: &State) -> SavedState {
@@ -249,8 +335,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Writes the walls of a state: one meridian or, if the tube is not axisymmetric, those at crest and trough.
-    fn write_profile(&self, state: &State) -> Result<(), RunError> {
+    /// Returns the table of the walls of a state: one meridian or, if the tube is not axisymmetric, those at crest and trough.
+    fn profile(&self, name: &str, state: &State) -> Result<Vec<u8>, RunError> {
         let tube = self.study.tube();
         let z = tube.axial.positions(self.plan.output.wall_points);
         let meridians = Meridians::of(tube, &state.load, &state.unknowns);
@@ -283,7 +369,6 @@ impl<'a> Run<'a> {
             "trough_inner_r",
         ];
         let header = &header[..1 + 4 * angles.len()];
-        let name = format!("profiles/state-{:04}.csv", state.number);
-        self.directory.write_table(&name, header, rows)
+        self.directory.table(name, header, rows)
     }
 }

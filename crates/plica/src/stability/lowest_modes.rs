@@ -1,5 +1,6 @@
 //! Lowest eigenpairs of the saved states of a three-dimensional run.
 
+use super::spectra_table::PAIRS;
 use super::{Eigenvalue, Spectra, Spectrum, StabilityError, StateWithModes};
 use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
@@ -9,6 +10,7 @@ use crate::run_directory::RunDirectory;
 use crate::saved_state::{Array, SavedState};
 use crate::solve::{EQUILIBRIUM, Equilibrium, Lowest, Search};
 use crate::study::Plan;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Relative residual of converged eigenpairs; the relative error of an eigenvalue is about its square.
@@ -26,12 +28,21 @@ pub struct LowestModes<'a> {
     files: Vec<PathBuf>,
     /// Number of eigenpairs of each state.
     modes: usize,
-    result: Spectra,
+    /// Number of states done.
+    done: usize,
+    /// Results by the number of the state, those of earlier analyses included.
+    found: BTreeMap<usize, Analysed>,
+}
+
+/// Eigenvalues of a state and the files of its modes, relative to the run directory.
+struct Analysed {
+    spectrum: Spectrum,
+    files: Vec<String>,
 }
 
 impl<'a> LowestModes<'a> {
     /// Prepares the computation of the lowest `modes` eigenpairs of the states with the numbers `states`, or of all if
-    /// there are none. Removes the results of a previous stability test from the run directory.
+    /// there are none. Results of earlier analyses of other states are kept.
     ///
     /// # Errors
     /// [`StabilityError`] if the run is axisymmetric or a state was not saved.
@@ -47,31 +58,27 @@ impl<'a> LowestModes<'a> {
             return Err(StabilityError::OneRing);
         }
         let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
-        directory.clear_stability()?;
         Ok(Self {
             plan,
             directory,
             problem,
             files,
             modes,
-            result: Spectra {
-                states: vec![],
-                shown: None,
-                modes: vec![],
-            },
+            done: 0,
+            found: earlier(plan, directory),
         })
     }
 
-    /// Computes the eigenpairs of the next state and writes its modes into the run directory; none after the last
+    /// Computes the eigenpairs of the next state and writes them and its modes into the run directory; none after the last
     /// state.
     ///
     /// # Errors
-    /// [`StabilityError`] if a file is unusable or the monitor cancels; the modes of the states before stay written.
+    /// [`StabilityError`] if a file is unusable or the monitor cancels; the results of the states before stay written.
     pub fn next_state(
         &mut self,
         monitor: &mut dyn Monitor,
     ) -> Result<Option<&Spectrum>, StabilityError> {
-        let done = self.result.states.len();
+        let done = self.done;
         let Some(file) = self.files.get(done) else {
             return Ok(None);
         };
@@ -87,30 +94,113 @@ impl<'a> LowestModes<'a> {
             return Err(StabilityError::Cancelled);
         }
         let (spectrum, shapes) = spectrum(&self.problem, &state, found);
-        for (number, (shape, eigenvalue)) in shapes.iter().zip(&spectrum.lowest).enumerate() {
-            let name = format!("mode-state-{:04}-{}", state.row, number + 1);
+        let mut files = vec![];
+        for (number, (shape, eigenvalue)) in (1..).zip(shapes.iter().zip(&spectrum.lowest)) {
             let mode = saved(&state, shape, eigenvalue);
-            let name = self.directory.write_mode(&name, &mode)?;
-            self.result.modes.push(name);
+            files.push(self.directory.write_mode(&name(state.row, number), &mode)?);
         }
-        let shown = self.result.shown.as_ref();
-        let shows_unstable =
-            shown.is_some_and(|shown| self.result.states[shown.index].negative().0 > 0);
-        if !shows_unstable {
-            self.result.shown = Some(StateWithModes {
-                index: done,
-                state,
-                shapes,
-            });
-        }
-        self.result.states.push(spectrum);
-        Ok(self.result.states.last())
+        self.done += 1;
+        self.found.insert(state.row, Analysed { spectrum, files });
+        self.results().write(&self.plan.tube, self.directory)?;
+        Ok(self.found.get(&state.row).map(|found| &found.spectrum))
     }
 
-    /// Returns the eigenvalues of the states computed so far.
+    /// Returns the eigenvalues of all states that were analysed, now or earlier.
     pub fn finish(self) -> Spectra {
-        self.result
+        let mut results = self.results();
+        let is_unstable = |state: &Spectrum| state.negative().0 > 0;
+        let last = results.states.len().checked_sub(1);
+        let index = results.states.iter().position(is_unstable).or(last);
+        results.shown = index.and_then(|index| {
+            let row = results.states[index].row;
+            let modes = &self.found.get(&row)?.files;
+            let mut shapes = vec![];
+            let mut state = None;
+            for name in modes {
+                let mut mode = SavedState::read(&self.directory.path().join(name)).ok()?;
+                shapes.push(mode.arrays.remove(MODE)?.values);
+                mode.arrays.clear();
+                state = Some(mode);
+            }
+            let state = state?;
+            Some(StateWithModes {
+                index,
+                state,
+                shapes,
+            })
+        });
+        results
     }
+
+    /// Returns all results, without the shapes of modes.
+    fn results(&self) -> Spectra {
+        let found = self.found.values();
+        Spectra {
+            states: found.clone().map(|one| one.spectrum.clone()).collect(),
+            shown: None,
+            modes: found.flat_map(|one| one.files.clone()).collect(),
+        }
+    }
+}
+
+/// Name of the array with the shape of a mode.
+const MODE: &str = "mode";
+
+/// Returns the name of the file of a mode, without folder and extension; modes are counted from 1.
+fn name(row: usize, number: usize) -> String {
+    format!("mode-state-{row:04}-{number}")
+}
+
+/// Reads the results of earlier analyses, except for states whose modes are missing or damaged.
+fn earlier(plan: &Plan, directory: &RunDirectory) -> BTreeMap<usize, Analysed> {
+    let table = directory.records(PAIRS).unwrap_or_default();
+    let Some((header, lines)) = table.split_first() else {
+        return BTreeMap::new();
+    };
+    let column = |name: &str| header.iter().position(|head| head == name);
+    let (Some(state), Some(iterations)) = (column("state"), column("iterations")) else {
+        return BTreeMap::new();
+    };
+    let numbers = lines.iter().filter_map(|line| {
+        let number = |column: usize| line.get(column)?.parse::<usize>().ok();
+        Some((number(state)?, number(iterations)?))
+    });
+    let mut counted: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+    for (row, iterations) in numbers {
+        let (count, _) = counted.get(&row).copied().unwrap_or_default();
+        counted.insert(row, (count + 1, iterations));
+    }
+    let read = |(row, (count, iterations)): (usize, (usize, usize))| {
+        let mut found: Option<Analysed> = None;
+        for number in 1..=count {
+            let file = RunDirectory::name_of_mode(&name(row, number));
+            let mode = SavedState::read(&directory.path().join(&file)).ok()?;
+            plan.accepts(&mode).ok()?;
+            let scalar = |name: &str| mode.arrays.get(name)?.values.first().copied();
+            let residual = scalar("residual")?;
+            let eigenvalue = Eigenvalue {
+                value: scalar("eigenvalue")?,
+                residual,
+                found: residual <= ACCURACY,
+                shares: mode.arrays.get("shares")?.values.clone(),
+            };
+            let own = found.get_or_insert_with(|| Analysed {
+                spectrum: Spectrum {
+                    stage: mode.stage.clone(),
+                    row,
+                    along: mode.along,
+                    load: mode.load.clone(),
+                    lowest: vec![],
+                    iterations,
+                },
+                files: vec![],
+            });
+            own.spectrum.lowest.push(eigenvalue);
+            own.files.push(file);
+        }
+        Some((row, found?))
+    };
+    counted.into_iter().filter_map(read).collect()
 }
 
 /// Returns the files of the selected states.
@@ -122,14 +212,14 @@ fn selected(directory: &RunDirectory, rows: &[usize]) -> Result<Vec<PathBuf>, St
             found: 0,
         });
     }
-    let name = |row: usize| directory.path().join(RunDirectory::name_of_state(row));
-    if let Some(&row) = rows.iter().find(|row| !files.contains(&name(**row))) {
+    let path = |row: usize| directory.path().join(RunDirectory::name_of_state(row));
+    if let Some(&row) = rows.iter().find(|row| !files.contains(&path(**row))) {
         return Err(StabilityError::NoSuchState {
             row,
             directory: directory.path().to_owned(),
         });
     }
-    let wanted = |file: &PathBuf| rows.is_empty() || rows.iter().any(|&row| *file == name(row));
+    let wanted = |file: &PathBuf| rows.is_empty() || rows.iter().any(|&row| *file == path(row));
     Ok(files.into_iter().filter(wanted).collect())
 }
 
@@ -226,7 +316,7 @@ fn saved(state: &SavedState, shape: &[f64], eigenvalue: &Eigenvalue) -> SavedSta
         ..
     } = *eigenvalue;
     let arrays = [
-        ("mode", array(&state.layout.shape(), shape)),
+        (MODE, array(&state.layout.shape(), shape)),
         ("harmonic", array(&[], &[eigenvalue.harmonic() as f64])),
         ("eigenvalue", array(&[], &[value])),
         ("residual", array(&[], &[residual])),

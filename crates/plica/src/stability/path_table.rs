@@ -2,7 +2,7 @@
 
 use super::{PathStability, StabilityChange, TestedState, Transition};
 use crate::equilibrium::{UnstableMode, mode_effect};
-use crate::run_directory::{RunDirectory, RunError};
+use crate::run_directory::{RunDirectory, RunError, StabilityCoverage};
 use crate::saved_state::Array;
 use crate::tube::Tube;
 use std::fmt::Write;
@@ -38,17 +38,18 @@ impl PathStability {
     /// Returns the table of critical values that `plica stability` prints.
     pub fn table(&self, tube: &Tube) -> String {
         let mut page = String::new();
-        let states = self.states.iter().filter(|s| s.row.is_some()).count();
+        let states = self.coverage().states.len();
+        let numbers = self.coverage().list();
         let highest = self.highest;
         if self.changes.is_empty() {
             let unstable = |s: &TestedState| s.modes.iter().any(|mode| mode.negative > 0);
             return if self.states.iter().any(unstable) {
                 format!(
-                    "  all {states} states are unstable to the same of the circumferential modes 0 to {highest}\n"
+                    "  all {states} states ({numbers}) are unstable to the same of the circumferential modes 0 to {highest}\n"
                 )
             } else {
                 format!(
-                    "  all {states} states are stable to circumferential modes 0 to {highest}\n"
+                    "  all {states} states ({numbers}) are stable to circumferential modes 0 to {highest}\n"
                 )
             };
         }
@@ -104,7 +105,7 @@ impl PathStability {
             let _ = writeln!(page, "  {name:<22} {value}");
         };
         line(&mut page, "first loss", &first);
-        let tested = format!("{states} states, circumferential modes 0 to {highest}");
+        let tested = format!("{states} states ({numbers}), circumferential modes 0 to {highest}");
         line(&mut page, "tested", &tested);
         page
     }
@@ -114,7 +115,6 @@ impl PathStability {
     /// # Errors
     /// [`RunError`] if a file cannot be written.
     pub fn write(&self, tube: &Tube, directory: &RunDirectory) -> Result<Vec<String>, RunError> {
-        directory.clear_stability()?;
         let mut names = vec!["stability.csv".to_owned(), "eigenvalues.csv".to_owned()];
         directory.write_records(&names[0], self.critical_values(tube))?;
         directory.write_records(&names[1], self.eigenvalues(tube))?;
@@ -138,7 +138,17 @@ impl PathStability {
             let name = format!("mode-{number:02}-harmonic-{}", mode.harmonic);
             names.push(directory.write_mode(&name, &state)?);
         }
+        // Last, so that earlier results stay until these are complete.
+        directory.keep_stability(&names, Some(self.coverage()))?;
         Ok(names)
+    }
+
+    /// Returns the saved states and the modes that were tested.
+    pub fn coverage(&self) -> StabilityCoverage {
+        StabilityCoverage {
+            states: self.states.iter().filter_map(|state| state.row).collect(),
+            highest_mode: Some(self.highest),
+        }
     }
 
     fn critical_values(&self, tube: &Tube) -> Vec<Vec<String>> {

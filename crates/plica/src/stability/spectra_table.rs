@@ -1,9 +1,12 @@
 //! Tables of the lowest eigenvalues.
 
 use super::{Eigenvalue, Spectra, Spectrum};
-use crate::run_directory::{RunDirectory, RunError};
+use crate::run_directory::{RunDirectory, RunError, StabilityCoverage};
 use crate::tube::Tube;
 use std::fmt::Write;
+
+/// Name of the table.
+pub(super) const PAIRS: &str = "eigenpairs.csv";
 
 impl Spectra {
     /// Returns the table of eigenvalues that `plica stability` prints.
@@ -47,7 +50,16 @@ impl Spectra {
                 "  {inaccurate} eigenvalue(s) were not found to full accuracy; their residuals show the error"
             );
         }
+        let _ = writeln!(page, "  {:<22} states {}", "tested", self.coverage().list());
         page
+    }
+
+    /// Returns the states whose eigenvalues were computed.
+    pub fn coverage(&self) -> StabilityCoverage {
+        StabilityCoverage {
+            states: self.states.iter().map(|state| state.row).collect(),
+            highest_mode: None,
+        }
     }
 
     /// Writes `eigenpairs.csv` into the directory of the run.
@@ -90,9 +102,12 @@ impl Spectra {
                 ]);
             }
         }
-        let name = "eigenpairs.csv";
-        directory.write_records(name, rows)?;
-        Ok(name.into())
+        let name = PAIRS.to_owned();
+        directory.write_records(&name, rows)?;
+        let mut names = self.modes.clone();
+        names.push(name.clone());
+        directory.keep_stability(&names, Some(self.coverage()))?;
+        Ok(name)
     }
 }
 
