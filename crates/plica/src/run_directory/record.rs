@@ -146,13 +146,17 @@ impl Record {
 
 /// Returns the rows of a table with a header, none for those that cannot be read.
 pub(super) fn rows_of(table: &str) -> Vec<Option<Row>> {
-    let mut table = csv::ReaderBuilder::new().flexible(true).from_reader(table.as_bytes());
+    let mut table = csv::ReaderBuilder::new()
+        .flexible(true)
+        .from_reader(table.as_bytes());
     let reader = table.headers().map(RowReader::new);
     let Ok(Ok(reader)) = reader else {
         return vec![];
     };
     let records = table.records();
-    records.map(|record| reader.row(&record.ok()?).ok()).collect()
+    records
+        .map(|record| reader.row(&record.ok()?).ok())
+        .collect()
 }
 
 /// Returns a text as integers: its length in bytes, then six bytes in each number.
