@@ -59,6 +59,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
                 muscles.join(", ")
             },
         ),
+        ("stretches", stretches(plan)),
         ("symmetry", symmetry),
         (
             "mesh",
@@ -122,12 +123,12 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
     if !tube.imperfections.is_empty() {
         let imperfections = tube.imperfections.iter();
         let described: Vec<String> = imperfections.map(|i| imperfection(tube, i)).collect();
-        rows.insert(2, ("imperfect", described.join("; ")));
+        rows.insert(3, ("imperfect", described.join("; ")));
     }
     if let Some(start) = &plan.start {
         let (row, stage) = (start.state.row, &start.state.stage);
         rows.insert(
-            3,
+            4,
             ("start", format!("{}: state {row}, {stage}", start.file)),
         );
     }
@@ -137,6 +138,26 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         rows.insert(1, ("units", units));
     }
     rows
+}
+
+/// Describes the smallest or largest growth stretch that each muscle reaches, the one farther from 1.
+fn stretches(plan: &Plan) -> String {
+    let tube = &plan.tube;
+    let described = tube.muscles.iter().enumerate().map(|(m, muscle)| {
+        let ratios = plan.stages.iter().map(|stage| stage.load.muscles[m]);
+        let extremes = ratios.map(|ratio| {
+            let smallest = muscle.smallest_stretch(ratio, tube.length);
+            // The stretch is linear in the ratio, and 1 at 1.
+            let largest = 2.0 - muscle.smallest_stretch(2.0 - ratio, tube.length);
+            if smallest < 1.0 { smallest } else { largest }
+        });
+        let farther = |a: f64, b: f64| if b.ln().abs() > a.ln().abs() { b } else { a };
+        format!("{} {:.2}", muscle.name, extremes.fold(1.0, farther))
+    });
+    match tube.muscles.is_empty() {
+        true => "none".into(),
+        false => described.collect::<Vec<_>>().join(", "),
+    }
 }
 
 /// Describes an imperfection: part, shape and amplitude.
@@ -188,6 +209,7 @@ fn memory(bytes: f64) -> String {
 /// Formats a time in seconds.
 fn duration(seconds: f64) -> String {
     match seconds {
+        s if !s.is_finite() => "an unknown time".into(),
         s if s < 90.0 => format!("{:.0} s", s.ceil()),
         s if s < 5400.0 => format!("{:.0} min", s / 60.0),
         s => format!("{:.1} h", s / 3600.0),

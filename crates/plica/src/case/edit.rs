@@ -23,6 +23,14 @@ pub enum EditError {
         /// The part of the path that is not a table.
         step: String,
     },
+    /// The key is a table that is not written in braces, within other such tables or in a list.
+    #[error(
+        "{key}: a table that is not written in braces cannot be replaced here; change its keys"
+    )]
+    WithoutBraces {
+        /// The dotted key.
+        key: String,
+    },
 }
 
 /// Returns the text of a case with keys changed or added; comments and everything else stay, but a table with
@@ -54,19 +62,11 @@ pub fn edited<K: AsRef<str>, V: AsRef<str>>(
         };
         DeValue::parse(value).map_err(syntax)?;
         let root = DeTable::parse(&text).map_err(syntax)?;
-        let changed = match without_tables(&text, root.get_ref(), key) {
-            Some(others) => format!("{key} = {value}\n{others}"),
-            None => {
-                let (place, written) =
-                    find(&text, &root, key, value).map_err(|step| EditError::NotATable {
-                        key: key.into(),
-                        step,
-                    })?;
-                let mut changed = text.clone();
-                changed.replace_range(place, &written);
-                changed
-            }
-        };
+        let mut changed =
+            without_tables(&text, root.get_ref(), key).unwrap_or_else(|| text.clone());
+        let root = DeTable::parse(&changed).map_err(syntax)?;
+        let (place, written) = find(&changed, &root, key, value)?;
+        changed.replace_range(place, &written);
         DeTable::parse(&changed).map_err(syntax)?;
         text = changed;
     }
@@ -124,13 +124,17 @@ fn collect_headers(text: &str, table: &DeTable, path: &str, headers: &mut Vec<(u
 /// Returns the place where the value of a key belongs, and the text to write there.
 ///
 /// # Errors
-/// The step of the path that is not a table.
+/// [`EditError::NotATable`] and [`EditError::WithoutBraces`].
 fn find(
     text: &str,
     root: &Spanned<DeTable>,
     key: &str,
     value: &str,
-) -> Result<(Range<usize>, String), String> {
+) -> Result<(Range<usize>, String), EditError> {
+    let not_a_table = |step: &str| EditError::NotATable {
+        key: key.into(),
+        step: step.into(),
+    };
     let steps: Vec<&str> = key.split('.').collect();
     let mut table = root.get_ref();
     // The innermost table with braces or a header: where a key is inserted, the text before and after
@@ -139,7 +143,10 @@ fn find(
     let mut path: Vec<&str> = vec![];
     for (i, &step) in steps.iter().enumerate() {
         let (name, member) = match step.strip_suffix(']').and_then(|step| step.split_once('[')) {
-            Some((name, number)) => (name, Some(number.parse::<usize>().map_err(|_| step)?)),
+            Some((name, number)) => (
+                name,
+                Some(number.parse::<usize>().map_err(|_| not_a_table(step))?),
+            ),
             None => (step, None),
         };
         let found = match (table.get(name), member) {
@@ -153,13 +160,19 @@ fn find(
                 list.and_then(|list| list.get(n.checked_sub(1)?))
             }
         };
-        let found = found.ok_or(step)?;
+        let found = found.ok_or_else(|| not_a_table(step))?;
         let (span, is_last) = (found.span(), i + 1 == steps.len());
         let is_inline = text[span.clone()].starts_with('{');
         if is_last && (is_inline || !found.get_ref().is_table()) {
             return Ok((span, value.to_owned()));
         }
-        table = found.get_ref().as_table().ok_or(step)?;
+        if is_last {
+            return Err(EditError::WithoutBraces { key: key.into() });
+        }
+        table = found
+            .get_ref()
+            .as_table()
+            .ok_or_else(|| not_a_table(step))?;
         path.push(step);
         if is_inline {
             let after = if table.is_empty() { " " } else { "," };
@@ -258,6 +271,59 @@ drive.circular.diameter_ratio = 0.25 # narrow";
             changed.unwrap(),
             "solver = { scheme = 'static' }\na = [[1], [2]]\n[mesh]\ndegree = 2\n"
         );
+    }
+
+    #[test]
+    fn a_table_is_replaced_below_the_header_of_its_parent() {
+        let text =
+            "[solver]\nscheme = 'newmark'\n[solver.pseudo_time]\nramp = 3\n[mesh]\ndegree = 2\n";
+        let changed = edited(text, &[("solver.pseudo_time", "{ ramp = 4 }")]);
+        assert_eq!(
+            changed.unwrap(),
+            "[solver]\npseudo_time = { ramp = 4 }\nscheme = 'newmark'\n[mesh]\ndegree = 2\n"
+        );
+        // Without a header of its own, the parent gets one.
+        let text = "[solver.pseudo_time]\nramp = 3\n[solver.other.below]\n[mesh]\ndegree = 2\n";
+        for (key, other) in [
+            ("solver.pseudo_time", "other"),
+            ("solver.other", "pseudo_time"),
+        ] {
+            let changed = edited(text, &[(key, "{ x = 4 }")]).unwrap();
+            let table: toml::Table = changed.parse().unwrap();
+            let name = key.strip_prefix("solver.").unwrap();
+            assert_eq!(
+                table["solver"][name]["x"].as_integer(),
+                Some(4),
+                "{changed}"
+            );
+            assert!(table["solver"][other].is_table(), "{changed}");
+        }
+        let text = "[[stages]]\nsteps = 1\n[[stages]]\nsteps = 2\n[mesh]\n";
+        let changed = edited(text, &[("stages", "[{ steps = 3 }]")]).unwrap();
+        assert_eq!(changed, "stages = [{ steps = 3 }]\n[mesh]\n");
+    }
+
+    #[test]
+    fn a_table_without_braces_in_a_list_or_of_dotted_keys_is_not_replaced() {
+        let text =
+            "mesh.degree = 3\n[[stages]]\nsteps = 1\n[stages.drive.ring]\ndiameter_ratio = 0.5\n";
+        for key in [
+            "stages[1]",
+            "stages[1].drive",
+            "stages[1].drive.ring",
+            "mesh",
+        ] {
+            let error = edited(text, &[(key, "{ x = 1 }")]).unwrap_err();
+            assert_eq!(error, EditError::WithoutBraces { key: key.into() });
+            let rule =
+                "a table that is not written in braces cannot be replaced here; change its keys";
+            assert_eq!(error.to_string(), format!("{key}: {rule}"));
+        }
+        // Its keys are changed, and members in braces replaced.
+        let changed = edited(text, &[("stages[1].drive.ring.diameter_ratio", "0.25")]).unwrap();
+        assert!(changed.ends_with("diameter_ratio = 0.25\n"), "{changed}");
+        let changed = edited("a = [{ b = 1 }, { b = 2 }]\n", &[("a[2]", "{ c = 3 }")]).unwrap();
+        assert_eq!(changed, "a = [{ b = 1 }, { c = 3 }]\n");
     }
 
     #[test]

@@ -133,11 +133,6 @@ impl Rule {
         self
     }
 
-    pub const fn below(mut self, high: f64) -> Self {
-        self.range.high = Limit::Exclusive(high);
-        self
-    }
-
     pub const fn because(mut self, reason: &'static str) -> Self {
         self.range.reason = reason;
         self

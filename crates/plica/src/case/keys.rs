@@ -110,7 +110,7 @@ table! {
         /// Young's modulus E at small strains.
         youngs_modulus: f64 = default("1.0").unit(STRESS).from(1e-12).to(1e15);
         /// Poisson's ratio ν at small strains.
-        poisson_ratio: f64 = default("0.495").above(-1.0).below(0.5).because("the law is compressible");
+        poisson_ratio: f64 = default("0.495").from(-0.5).to(0.4999).because("the law is compressible; the solver loses its accuracy beyond");
         /// The volumetric energy: λ/2 (ln J)², as in the paper, or λ/4 (J² − 1 − 2 ln J), which stays
         /// elliptic where the wall expands strongly and needs ν ≥ 0.
         volumetric: Volumetric = default("logarithmic");
@@ -122,7 +122,7 @@ table! {
         /// Young's modulus E at small strains.
         youngs_modulus: f64 = default("1.0").unit(STRESS).from(1e-12).to(1e15);
         /// Poisson's ratio ν at small strains.
-        poisson_ratio: f64 = default("0.495").from(0.0).below(0.5).because("the law is compressible");
+        poisson_ratio: f64 = default("0.495").from(0.0).to(0.4999).because("the law is compressible; the solver loses its accuracy beyond");
         /// The share s of the second invariant I₂ in the shear modulus, at most ν/(1 − 2ν). The
         /// neo-Hookean law has s = 0.
         i2_share: f64 = default("0.5").from(0.0).to(1.0);

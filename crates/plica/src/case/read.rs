@@ -164,8 +164,14 @@ pub(super) fn choose<'a, 'i>(
         }
         DeValue::Table(table) => {
             let (values, unknown) = known_keys(problems, key.kind, path, table);
+            if values.len() > 1 {
+                let names: Vec<&str> = values.into_keys().collect();
+                let rule = format!("only one of {} may be given", names.join(" and "));
+                problems.key(path, rule, "");
+                return None;
+            }
             let mut values = values.into_iter();
-            if let (Some((name, (path, value))), None) = (values.next(), values.next()) {
+            if let Some((name, (path, value))) = values.next() {
                 let key = keys.iter().find(|key| key.name == name)?;
                 return Some((name, Some((key, path, value))));
             }

@@ -6,7 +6,7 @@
 //!
 //! Valid for J > 0. At a stretch s in some direction, a longitudinal wave in that direction has the
 //! stiffness μ (1 + s⁻²) + λ (1 − ln J) s⁻² with the first U. It is negative where
-//! ln J > 1 + (μ/λ)(1 + s²): at ν = 0.495 beyond J = 3, which nearly incompressible walls do not reach.
+//! ln J > 1 + (μ/λ)(1 + s²): at ν = 0.495 beyond a J between 2.75 and 3.0, which nearly incompressible walls do not reach.
 //! The second U is convex in J for λ ≥ 0; its stiffness μ (1 + s⁻²) + λ/2 (1 + J²) s⁻² is positive.
 
 use super::{Law, Moduli, TangentData};

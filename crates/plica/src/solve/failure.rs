@@ -67,7 +67,7 @@ impl std::fmt::Display for Cause {
 
 impl<E: std::error::Error> Failure<E> {
     /// Returns the linear solves that the failure counts: 1 of an indefinite tangent.
-    pub(super) fn linear_solves(&self) -> usize {
+    pub(crate) fn linear_solves(&self) -> usize {
         match self {
             Self::NotConverged { linear_solves, .. } => *linear_solves,
             Self::Indefinite { .. } => 1,

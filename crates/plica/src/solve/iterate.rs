@@ -13,7 +13,7 @@ use crate::monitor::Monitor;
 /// solver has already come further.
 const NEGATIVE_CURVATURE_STEP: f64 = 1e-3;
 
-/// The iterate of a solver: unknowns that satisfy the supports, with energy and residual.
+/// The iterate of a solver: unknowns with the prescribed values, with energy and residual.
 pub(super) struct Iterate<'a, P: Equilibrium> {
     problem: &'a P,
     load: &'a P::Load,

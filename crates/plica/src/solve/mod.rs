@@ -16,8 +16,8 @@
 //! - [`conjugate_gradients`] and [`lowest`] solve linear systems and eigenvalue problems with an
 //!   [`Operator`] that is never assembled.
 //!
-//! All count their work in [`Effort`], and report to a [`Monitor`](crate::monitor::Monitor), which may
-//! cancel them.
+//! A [`Monitor`](crate::monitor::Monitor) may cancel each of them. The solvers of equilibrium states count their work in
+//! [`Effort`].
 //!
 //! | letter | meaning | unit |
 //! |---|---|---|
@@ -37,6 +37,7 @@ mod equilibrium;
 mod failure;
 mod forcing;
 mod iterate;
+mod limit_point;
 mod line_search;
 mod lowest;
 mod newton;

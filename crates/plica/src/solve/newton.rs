@@ -14,7 +14,7 @@ use crate::monitor::Monitor;
 /// but slowly; damping makes the systems easier to solve.
 const INACCURATE_SOLVES: usize = 2;
 
-/// Solves R(u) = 0 by K Δu = −R (Okino et al. 2025, Eq. (14)), from a `u` that satisfies the supports.
+/// Solves R(u) = 0 by K Δu = −R (Okino et al. 2025, Eq. (14)), from a `u` with the prescribed values.
 ///
 /// Every step must lower the energy, and the tangent must be positive definite, as far as the solver
 /// finds out, at every iterate from which a step is taken. The tangent at the solution itself is not

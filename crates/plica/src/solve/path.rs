@@ -3,6 +3,7 @@
 use super::continuation::{ContinuationState, PreviousPoint};
 use super::equilibrium::{Equilibrium, ResidualEvaluation};
 use super::failure::{Cause, Failure};
+use super::limit_point::limit_point;
 use super::newton::newton;
 use super::pseudo_time::pseudo_time;
 use super::relaxation::relaxation;
@@ -55,6 +56,9 @@ type Attempts<E> = Vec<(Method, Failure<E>)>;
 pub struct PathError<E: std::error::Error> {
     /// The attempts in their order, with their failures.
     pub attempts: Attempts<E>,
+    /// Position on the segment at which the path turns back, if its states show that: the load has an extreme value
+    /// there. It lies between the last accepted state and the position of the attempts, or a little beyond.
+    pub limit_point: Option<f64>,
     /// Method and work up to the last accepted state, and the work of the attempts.
     pub step: Step,
 }
@@ -181,69 +185,71 @@ impl<P: Equilibrium> Path<P> {
             Scheme::Static => self.advance_static(t, &mut step, monitor),
             Scheme::PseudoTime(scheme) => self
                 .advance_damped(t, &scheme, &mut step, monitor)
-                .map_err(|attempt| vec![attempt]),
+                .map_err(|attempt| (vec![attempt], None)),
         };
         match advanced {
             Ok(()) => Ok(step),
-            Err(attempts) => Err(PathError { attempts, step }),
+            Err((attempts, limit_point)) => Err(PathError {
+                attempts,
+                limit_point,
+                step,
+            }),
         }
     }
 
     /// Advances part by part, and halves the parts where all methods fail.
+    ///
+    /// If Newton's method fails at a stable state, a shorter step may still follow a branch that bends; otherwise
+    /// relaxation descends to the next stable state. If there is none beyond a limit point of the path, relaxation is not
+    /// tried there again: the descent is the same from a state that is nearer.
     fn advance_static(
         &mut self,
         target: f64,
         step: &mut Step,
         monitor: &mut dyn Monitor,
-    ) -> Result<(), Attempts<P::EvaluationError>> {
+    ) -> Result<(), (Attempts<P::EvaluationError>, Option<f64>)> {
         let max_level = self.settings.max_step_halvings;
         let level = self.continuation.halving_level;
         let mut parts = StepController::new([self.reached(), target], level, max_level);
+        let mut descends_without_end = false;
         while let Some(t) = parts.next() {
-            match self.try_methods(t, parts.halves_before_relaxation(), step, monitor) {
-                Ok(()) => {
+            let Err(failed) = self.try_newton(t, step, monitor) else {
+                parts.accept();
+                self.continuation.halving_level = parts.level();
+                continue;
+            };
+            let limit_point = self.limit_point(t);
+            let relaxes = match failed {
+                Failure::Cancelled => false,
+                // A shorter step does not help where the linear solver misses its accuracy.
+                Failure::NotConverged {
+                    cause: Cause::InaccurateSolves,
+                    ..
+                } => true,
+                _ => !parts.halves_before_relaxation() || self.state.negative_pivots > 0,
+            };
+            let mut attempts = vec![(Method::Newton, failed)];
+            if relaxes && !(descends_without_end && limit_point.is_some()) {
+                let Err(failed) = self.try_relaxation(t, step, monitor) else {
                     parts.accept();
                     self.continuation.halving_level = parts.level();
-                }
-                Err(attempts) => {
-                    if is_cancelled(&attempts) || !parts.halve() {
-                        return Err(attempts);
-                    }
-                }
+                    continue;
+                };
+                attempts.push((Method::Relaxation, failed));
+                descends_without_end = limit_point.is_some();
+            }
+            if is_cancelled(&attempts) || !parts.halve() {
+                return Err((attempts, limit_point));
             }
         }
         Ok(())
     }
 
-    /// Tries Newton's method. If it fails at a stable state, a shorter step may still follow a branch
-    /// that bends; otherwise relaxation descends to the next stable state. A shorter step does not help
-    /// where the linear solver misses its accuracy.
-    fn try_methods(
-        &mut self,
-        t: f64,
-        may_halve: bool,
-        step: &mut Step,
-        monitor: &mut dyn Monitor,
-    ) -> Result<(), Attempts<P::EvaluationError>> {
-        let Err(failed) = self.try_newton(t, step, monitor) else {
-            return Ok(());
-        };
-        let ends_attempt = match failed {
-            Failure::Cancelled => true,
-            Failure::NotConverged {
-                cause: Cause::InaccurateSolves,
-                ..
-            } => false,
-            _ => may_halve && self.state.negative_pivots == 0,
-        };
-        let mut attempts = vec![(Method::Newton, failed)];
-        if ends_attempt {
-            return Err(attempts);
-        }
-        self.try_relaxation(t, step, monitor).map_err(|failed| {
-            attempts.push((Method::Relaxation, failed));
-            attempts
-        })
+    /// Returns the limit point that explains why no state was found at `t`; none without two states of the segment.
+    fn limit_point(&self, t: f64) -> Option<f64> {
+        let tangent = self.tangent.as_ref()?.as_ref()?;
+        let previous = self.continuation.previous.as_ref()?;
+        limit_point(previous, self.reached(), &self.state.u, tangent, t)
     }
 
     fn try_newton(
@@ -334,7 +340,8 @@ impl<P: Equilibrium> Path<P> {
         Ok(())
     }
 
-    fn load_at(&self, t: f64) -> P::Load {
+    /// Returns the load at position `t` of the segment.
+    pub fn load_at(&self, t: f64) -> P::Load {
         self.problem.between(&self.from, &self.to, t)
     }
 
@@ -346,8 +353,8 @@ impl<P: Equilibrium> Path<P> {
     }
 
     /// Returns du/dt at the state. None if the tangent stiffness is singular, the residual is not
-    /// defined, or the solver misses its accuracy or meets negative curvature; the state is then
-    /// recorded as unstable.
+    /// defined, or the solver misses its accuracy. None, too, if the solver meets negative curvature;
+    /// only then is the state recorded as unstable here.
     fn tangent(&mut self, effort: &mut Effort, monitor: &dyn Monitor) -> Option<Vec<f64>> {
         if self.tangent.is_none() {
             self.tangent = Some(self.solve_for_tangent(effort, monitor));

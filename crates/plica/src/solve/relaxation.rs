@@ -16,7 +16,7 @@ use crate::monitor::Monitor;
 /// within the tolerance: rounding keeps it from decreasing, whatever the damping.
 const REJECTIONS: usize = 3;
 
-/// Descends from a `u` that satisfies the supports to an equilibrium by (K + α C) Δu = −R, which is
+/// Descends from a `u` with the prescribed values to an equilibrium by (K + α C) Δu = −R, which is
 /// backward Euler in pseudo-time.
 ///
 /// A step is taken if K + α C is positive definite, no element inverts and the energy decreases; if

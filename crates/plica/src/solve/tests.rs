@@ -122,6 +122,19 @@ fn stiffening_spring() -> Toy<1> {
     }
 }
 
+/// A spring that softens: load = u − u², at most 1/4, with no equilibrium beyond. Another spring follows at twice the load.
+fn softening_spring() -> Toy<2> {
+    toy(|load, [u, v]| {
+        let w = v - 2.0 * load;
+        let energy = 0.5 * u * u - u * u * u / 3.0 - load * u + 0.5 * w * w;
+        (
+            energy,
+            [u - u * u - load, w],
+            [[1.0 - 2.0 * u, 0.0], [0.0, 1.0]],
+        )
+    })
+}
+
 fn path_from<P>(problem: &P, from: f64, u: impl Into<Vec<f64>>, to: f64) -> Path<&P>
 where
     P: Equilibrium<Load = f64, EvaluationError = BehindTheWall>,
@@ -282,6 +295,76 @@ fn a_path_ends_at_a_wall_as_close_as_its_halvings_permit() {
     assert_eq!(state.load, 2.0 * path.reached());
     assert!(state.in_equilibrium());
     assert_at(state, [state.load]);
+}
+
+#[test]
+fn a_path_that_ends_at_a_limit_point_reports_its_load() {
+    for wall in [f64::INFINITY, 1.0] {
+        let spring = Toy {
+            wall,
+            ..softening_spring()
+        };
+        let mut path = path_from(&spring, 0.0, [0.0, 0.0], 1.0);
+        path.advance(0.1, &mut ()).unwrap();
+        path.advance(0.2, &mut ()).unwrap();
+        let error = path.advance(0.3, &mut ()).unwrap_err();
+        let limit = error.limit_point.unwrap();
+        assert!((limit - 0.25).abs() < 1e-3, "{limit}");
+        assert_eq!(path.load_at(limit), limit);
+        assert!((0.249..0.25).contains(&path.reached()), "{error}");
+        // Relaxation, which has 200 at most, is tried once.
+        let solves = error.step.effort.linear_solves;
+        assert!(solves < 250, "{solves}");
+        // The states that lead to it may be in one large step.
+        let mut path = path_from(&spring, 0.0, [0.0, 0.0], 1.0);
+        let limit = path.advance(1.0, &mut ()).unwrap_err().limit_point.unwrap();
+        assert!((limit - 0.25).abs() < 1e-3, "{limit}");
+    }
+}
+
+#[test]
+fn a_limit_load_may_be_a_minimum() {
+    let spring = toy(|load, [u]| {
+        let energy = 0.5 * u * u + u * u * u / 3.0 - load * u;
+        (energy, [u + u * u - load], [[1.0 + 2.0 * u]])
+    });
+    let mut path = path_from(&spring, 0.0, [0.0], -0.5);
+    let limit = path.advance(1.0, &mut ()).unwrap_err().limit_point.unwrap();
+    assert!((path.load_at(limit) + 0.25).abs() < 1e-3, "{limit}");
+}
+
+#[test]
+fn neither_a_wall_nor_a_bifurcation_is_a_limit_point() {
+    let spring = spring_before_a_wall();
+    let mut path = path_from(&spring, 0.0, [0.0], 2.0);
+    assert_eq!(path.advance(1.0, &mut ()).unwrap_err().limit_point, None);
+    // The straight strut loses stability at x = 1, beyond which there is no stable state.
+    let strut = toy(|load, [x, y]| {
+        let energy = 0.5 * (x - load).powi(2) - 0.25 * y.powi(4) + 0.5 * (1.0 - x) * y * y;
+        let residual = [x - load - 0.5 * y * y, (1.0 - x - y * y) * y];
+        (energy, residual, [[1.0, -y], [-y, 1.0 - x - 3.0 * y * y]])
+    });
+    let mut path = path_from(&strut, 0.0, [0.0, 0.0], 2.0);
+    if let Err(error) = path.advance(1.0, &mut ()) {
+        assert_eq!(error.limit_point, None);
+    }
+    // With an imperfection, the load of the same strut has a maximum.
+    let strut = toy(|load, [x, y]| {
+        let energy =
+            0.5 * (x - load).powi(2) - 0.25 * y.powi(4) + 0.5 * (1.0 - x) * y * y - 1e-3 * y;
+        let residual = [x - load - 0.5 * y * y, (1.0 - x - y * y) * y - 1e-3];
+        (energy, residual, [[1.0, -y], [-y, 1.0 - x - 3.0 * y * y]])
+    });
+    let mut path = path_from(&strut, 0.0, [0.0, 1e-3], 2.0);
+    let limit = path.advance(1.0, &mut ()).unwrap_err().limit_point.unwrap();
+    // 1 − load = 3/2 y² + 1e-3/y is least at 3 y³ = 1e-3.
+    let y = (1e-3_f64 / 3.0).cbrt();
+    let exact = 1.0 - 1.5 * y * y - 1e-3 / y;
+    assert!(
+        (path.load_at(limit) / exact - 1.0).abs() < 1e-3,
+        "{} {exact}",
+        path.load_at(limit)
+    );
 }
 
 /// Cancels at once, and counts how often it is asked.

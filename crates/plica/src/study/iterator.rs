@@ -252,6 +252,7 @@ impl Study {
             .begin(rest.clone(), self.problem.tube.initial_guess())
             .map_err(|error| PathError {
                 attempts: vec![(Method::Rest, Failure::Evaluation(error))],
+                limit_point: None,
                 step,
             })?;
         if self.plan.tube.imperfections.is_empty() {
@@ -365,12 +366,14 @@ impl Study {
         } else {
             let path = self.path.as_ref().filter(|_| has_good_state);
             let last = path.map(|path| (&path.state().load, path.state().u.as_slice()));
+            let limit = path.and_then(|path| Some(path.load_at(error.limit_point?)));
             Ending::Lost(Box::new(Lost::new(
                 &self.plan,
                 self.tube(),
                 phase,
                 error,
                 last,
+                limit.as_ref(),
             )))
         });
     }

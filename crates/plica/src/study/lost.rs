@@ -1,6 +1,6 @@
 //! Where and why a tube could not be followed further.
 
-use super::{Plan, Scale};
+use super::{LimitPoint, Plan, Scale};
 use crate::assembly::{Inverted, Place, SplineTube};
 use crate::solve::{Cause, Failure, PathError};
 use crate::tube::Load;
@@ -15,6 +15,8 @@ pub struct Lost {
     pub error: PathError<Inverted>,
     /// Places of the wall that the failure points to.
     pub locations: Vec<Location>,
+    /// Extreme values of what the stage drives, if that is why it could not be followed further.
+    pub limit_points: Vec<LimitPoint>,
     /// Units in which the message gives places and stresses.
     scale: Scale,
 }
@@ -38,16 +40,23 @@ pub enum Phase {
 }
 
 impl Lost {
-    /// Locates a failure in the wall, by the last attempt and by the last good state.
+    /// Locates a failure in the wall, by the last attempt and by the last good state. `limit` is the load at which the
+    /// path turns back, if that explains the failure.
     pub(super) fn new(
         plan: &Plan,
         tube: &SplineTube,
         phase: Phase,
         error: PathError<Inverted>,
         last: Option<(&Load, &[f64])>,
+        limit: Option<&Load>,
     ) -> Self {
+        let limit_points = match (last, limit) {
+            (Some((last, _)), Some(limit)) => LimitPoint::between(plan, last, limit),
+            _ => vec![],
+        };
         Self {
             locations: locations(tube, &error, last),
+            limit_points,
             scale: Scale::of(plan.units.as_ref()),
             phase,
             error,
@@ -74,6 +83,9 @@ impl fmt::Display for Lost {
                 "the tube could not be followed further in stage `{name}`, step {step} of {steps} ({error}); the last good state is kept. "
             ),
         }?;
+        if !self.limit_points.is_empty() {
+            return f.write_str(&at_limit_point(&self.limit_points));
+        }
         for location in &self.locations {
             write!(f, "{}. ", location.describe(&self.scale))?;
         }
@@ -161,6 +173,20 @@ impl Location {
 /// Rounds to four digits.
 fn significant(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+/// Describes the limit points, and what to do.
+fn at_limit_point(limit_points: &[LimitPoint]) -> String {
+    let extremes: Vec<String> = limit_points.iter().map(LimitPoint::to_string).collect();
+    let it = match limit_points {
+        [_] => "it",
+        _ => "them together",
+    };
+    format!(
+        "The path turns back here: {}. No equilibrium beyond was found, and more steps or a finer mesh will not help. \
+         End the stage before, or hold {it} there and drive something else: a muscle or an end of the tube",
+        extremes.join(", and ")
+    )
 }
 
 /// Returns advice by where the tube was lost and how the last attempt failed.

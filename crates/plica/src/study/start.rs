@@ -5,7 +5,9 @@ use crate::assembly::{Inverted, SplineTube};
 use crate::equilibrium::{TubeProblem, prolong};
 use crate::monitor::Monitor;
 use crate::saved_state::Layout;
-use crate::solve::{Effort, Equilibrium, Method, PathError, Solution, Step, newton, relaxation};
+use crate::solve::{
+    Effort, Equilibrium, Failure, Method, PathError, Solution, Step, newton, relaxation,
+};
 use crate::tube::{Mesh, Symmetry, Tube};
 
 /// Transfers a saved state to the mesh of a problem and brings it to equilibrium.
@@ -21,24 +23,33 @@ pub(super) fn equilibrate(
     problem.apply_prescribed(&start.load, &mut u);
     let (load, settings) = (&start.load, &plan.solver);
     let mut effort = Effort::default();
-    let newton_failed = match newton(problem, load, u.clone(), settings, &mut effort, monitor) {
-        Ok(solution) => return Ok(step(Method::Newton, solution, effort)),
-        Err(failed) => failed,
-    };
-    match relaxation(problem, load, u, settings, &mut effort, monitor) {
-        Ok(solution) => Ok(step(Method::Relaxation, solution, effort)),
-        Err(failed) => Err(PathError {
-            attempts: vec![
-                (Method::Newton, newton_failed),
-                (Method::Relaxation, failed),
-            ],
-            step: Step {
-                method: Method::Relaxation,
-                effort,
-                damping_work: 0.0,
-            },
-        }),
+    let mut attempts = vec![];
+    for method in [Method::Newton, Method::Relaxation] {
+        let (u, effort) = (u.clone(), &mut effort);
+        let found = match method {
+            Method::Newton => newton(problem, load, u, settings, effort, monitor),
+            _ => relaxation(problem, load, u, settings, effort, monitor),
+        };
+        let failed = match found {
+            Ok(solution) => return Ok(step(method, solution, *effort)),
+            Err(failed) => failed,
+        };
+        effort.linear_solves += failed.linear_solves();
+        let is_cancelled = matches!(failed, Failure::Cancelled);
+        attempts.push((method, failed));
+        if is_cancelled {
+            break;
+        }
     }
+    Err(PathError {
+        attempts,
+        limit_point: None,
+        step: Step {
+            method: Method::Relaxation,
+            effort,
+            damping_work: 0.0,
+        },
+    })
 }
 
 /// Returns the unknowns and the step of a solution.

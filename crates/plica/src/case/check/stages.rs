@@ -155,7 +155,9 @@ fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
     }
     let names = || {
         let muscles = tube.muscles.iter().map(|muscle| muscle.name.as_str());
-        muscles.chain(ENDS).chain(WALLS)
+        // A muscle of such a name is reported by itself.
+        let is_free = |name: &&str| !ENDS.contains(name) && !WALLS.contains(name);
+        muscles.filter(is_free).chain(ENDS).chain(WALLS)
     };
     let near = match problems.len() < MANY {
         true => nearest(name, names()),

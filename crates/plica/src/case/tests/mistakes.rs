@@ -156,7 +156,7 @@ fn mistakes_of_all_kinds_are_reported_together_in_the_order_of_the_text() {
     );
     assert_eq!(
         found[1].to_string(),
-        "material.neo-hookean.poisson_ratio = 0.5: must be below 0.5 (the law is compressible); try 0.495"
+        "material.neo-hookean.poisson_ratio = 0.5: must be at most 0.4999 (the law is compressible; the solver loses its accuracy beyond); try 0.495"
     );
     assert_eq!(&text[found[2].span.clone()], "[1.0, 0.5]");
 }
