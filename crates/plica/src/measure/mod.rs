@@ -124,6 +124,7 @@ impl Measures {
                 &own_inner[narrowest],
                 angle,
                 tube.tube.diameter_ratio(load),
+                asymmetry.amplitude,
             ),
             asymmetry,
         }

@@ -19,12 +19,12 @@ pub enum Side {
 /// Shape of the contracting region.
 ///
 /// Okino et al. (2025), Fig. 4, name the first shapes without a measure; the thresholds are Plica's.
-/// V, U, square and invaginated describe a tube narrowed by its circular muscles. A tube without such a
-/// contraction that leaves its cylinder is swollen, with a single outward bulge, or else collapsed.
+/// V, U, square and invaginated describe a tube narrowed by its circular muscles, or by anything else in one round neck
+/// without a bulge. Any other tube that leaves its cylinder is swollen, with a single outward bulge, or else collapsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
-    /// The outer face stays within 2 % of D of the cylinder, or the circular muscles widen it.
+    /// The outer face stays within 2 % of D of the cylinder.
     Straight,
     /// Narrowed, with a flatness below 0.5, that of a raised cosine.
     #[serde(rename = "V")]
@@ -36,9 +36,9 @@ pub enum Shape {
     Square,
     /// Narrowed, with a wall angle of 90° or more: the wall overhangs.
     Invaginated,
-    /// Not contracted, wider than the cylinder by 2 % of D or more in one bulge, and nowhere narrower by as much.
+    /// Wider than the cylinder by 2 % of D or more in one bulge, and nowhere narrower by as much.
     Swollen,
-    /// Not contracted, and buckled out of the cylinder by 2 % of D or more; or the lumen is closed.
+    /// Buckled out of the cylinder by 2 % of D or more without contraction; or the lumen is closed.
     Collapsed,
 }
 
@@ -51,19 +51,27 @@ impl Shape {
     const SQUARE_ANGLE_DEG: f64 = 78.0;
 
     /// Classifies a tube by its narrowest outer meridian, the inner meridian there, its largest wall angle in degrees,
-    /// and its diameter ratio Dmin/D.
-    pub fn of(outer: &Wall, inner: &Wall, wall_angle_deg: f64, diameter_ratio: f64) -> Self {
+    /// its diameter ratio Dmin/D, and the amplitude of its asymmetry in D.
+    pub fn of(
+        outer: &Wall,
+        inner: &Wall,
+        wall_angle_deg: f64,
+        diameter_ratio: f64,
+        asymmetry: f64,
+    ) -> Self {
         let depth = Tube::OUTER_RADIUS - outer.narrowest().1;
         let widest = outer.points.iter().map(|p| p.1).fold(0.0, f64::max);
         let bulge = widest - Tube::OUTER_RADIUS;
         let contracted = diameter_ratio <= 1.0 - Self::MIN_DEPTH;
+        let is_one_neck =
+            bulge < Self::MIN_DEPTH && asymmetry < Self::MIN_DEPTH && narrows_once(outer);
         if inner.narrowest().1 <= 0.0 {
             Self::Collapsed
-        } else if depth.max(bulge) < Self::MIN_DEPTH || diameter_ratio > 1.0 {
+        } else if depth.max(bulge) < Self::MIN_DEPTH {
             Self::Straight
         } else if !contracted && depth < Self::MIN_DEPTH && bulges_once(outer) {
             Self::Swollen
-        } else if !contracted {
+        } else if !contracted && !is_one_neck {
             Self::Collapsed
         } else if wall_angle_deg >= 90.0 {
             Self::Invaginated
@@ -106,8 +114,17 @@ const MIN_RISE: f64 = 1e-3;
 
 /// Returns whether the radius rises along the wall at most once before it falls for good.
 fn bulges_once(wall: &Wall) -> bool {
+    rises_once(wall.points.iter().map(|p| p.1))
+}
+
+/// Returns whether the radius falls along the wall at most once before it rises for good.
+fn narrows_once(wall: &Wall) -> bool {
+    rises_once(wall.points.iter().map(|p| -p.1))
+}
+
+fn rises_once(mut values: impl Iterator<Item = f64>) -> bool {
     let (mut highest, mut lowest_since) = (f64::NEG_INFINITY, f64::INFINITY);
-    wall.points.iter().all(|&(_, r)| {
+    values.all(|r| {
         if r > highest {
             (highest, lowest_since) = (r, r);
         }
@@ -146,7 +163,7 @@ mod tests {
         for p in &mut inner.points {
             p.1 -= 0.06;
         }
-        Shape::of(&outer, &inner, outer.steepest_angle_deg(), diameter_ratio)
+        Shape::of(&outer, &inner, outer.steepest_angle_deg(), diameter_ratio, 0.0)
     }
 
     /// Returns a notch of radius `bottom` whose corners have the given axial positions.
@@ -188,7 +205,7 @@ mod tests {
             (89.9, Shape::Square),
             (90.0, Shape::Invaginated),
         ] {
-            let found = Shape::of(&outer, &inner, angle, 0.25);
+            let found = Shape::of(&outer, &inner, angle, 0.25, 0.0);
             assert_eq!(found, expected, "{angle}");
         }
     }
@@ -217,19 +234,46 @@ mod tests {
     }
 
     #[test]
-    fn only_a_contraction_of_two_percent_narrows_a_tube() {
-        let narrowed = notch([0.5, 0.75, 0.75, 1.0], 0.2);
-        for (diameter_ratio, expected) in [
-            (0.9799, Shape::V),
-            (0.9801, Shape::Collapsed),
-            (1.0, Shape::Collapsed),
-            (1.0001, Shape::Straight),
-        ] {
-            let found = shape(&narrowed, diameter_ratio);
-            assert_eq!(found, expected, "{diameter_ratio}");
-        }
+    fn one_round_neck_is_narrowed_whatever_drives_it() {
+        let neck = notch([0.5, 0.75, 0.75, 1.0], 0.2);
         let overhanging = notch([0.5, 0.4, 0.9, 1.0], 0.2);
-        assert_eq!(shape(&overhanging, 1.0), Shape::Collapsed);
+        for diameter_ratio in [0.25, 1.0, 1.03] {
+            assert_eq!(shape(&neck, diameter_ratio), Shape::V);
+            assert_eq!(shape(&overhanging, diameter_ratio), Shape::Invaginated);
+        }
+        let outer = wall(&neck);
+        let mut inner = outer.clone();
+        inner.points.iter_mut().for_each(|p| p.1 -= 0.06);
+        for (asymmetry, expected) in [(0.0199, Shape::V), (0.0201, Shape::Collapsed)] {
+            let found = Shape::of(&outer, &inner, 30.0, 1.0, asymmetry);
+            assert_eq!(found, expected, "{asymmetry}");
+        }
+    }
+
+    #[test]
+    fn only_a_contraction_of_two_percent_narrows_a_tube_with_bulges_or_two_necks() {
+        let neck = notch([0.5, 0.75, 0.75, 1.0], 0.2);
+        let mut bulging = neck.to_vec();
+        bulging.push((3.5, 0.53));
+        let mut twice = neck.to_vec();
+        twice.extend([(3.5, 0.4), (4.0, 0.5)]);
+        for corners in [bulging, twice] {
+            for (diameter_ratio, expected) in [
+                (0.9799, Shape::V),
+                (0.9801, Shape::Collapsed),
+                (1.0, Shape::Collapsed),
+                (1.1, Shape::Collapsed),
+            ] {
+                let found = shape(&corners, diameter_ratio);
+                assert_eq!(found, expected, "{diameter_ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_widened_tube_is_swollen() {
+        let bulge = notch([0.5, 0.75, 0.75, 1.0], 0.53);
+        assert_eq!(shape(&bulge, 1.06), Shape::Swollen);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `manifest.json`: the case, the machine, and how the run ended.
 
 use super::{PROGRAM, RunDirectory, RunError, STABILITY, Verdict};
+use crate::equilibrium::Stability;
 use crate::study::{Ending, Plan, Row, Scale};
 use serde::Serialize;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -51,6 +52,12 @@ pub(super) struct Manifest {
     pub states_out_of_equilibrium: usize,
     /// Number of unstable states.
     pub states_unstable: usize,
+    /// Number of states whose stability was not determined.
+    pub states_untested: usize,
+    /// Number of states in which a wall crosses itself.
+    pub states_crossing: usize,
+    /// Number of states in which the lumen is closed.
+    pub states_closed: usize,
     /// Profiles and saved states that are missing or damaged at the end of the run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_files: Vec<String>,
@@ -87,6 +94,9 @@ impl Manifest {
             states: 0,
             states_out_of_equilibrium: 0,
             states_unstable: 0,
+            states_untested: 0,
+            states_crossing: 0,
+            states_closed: 0,
             missing_files: vec![],
             stability: None,
             closed: false,
@@ -145,11 +155,12 @@ impl Manifest {
         self.verdict = verdict;
         self.verdict_text = text;
         self.states = rows.len();
-        self.states_out_of_equilibrium = rows.iter().filter(|row| !row.in_equilibrium).count();
-        self.states_unstable = rows
-            .iter()
-            .filter(|row| row.stability.is_unstable())
-            .count();
+        let count = |condition: fn(&Row) -> bool| rows.iter().filter(|row| condition(row)).count();
+        self.states_out_of_equilibrium = count(|row| !row.in_equilibrium);
+        self.states_unstable = count(|row| row.stability.is_unstable());
+        self.states_untested = count(|row| row.stability == Stability::Unknown);
+        self.states_crossing = count(Row::crosses_itself);
+        self.states_closed = count(Row::has_closed);
     }
 }
 

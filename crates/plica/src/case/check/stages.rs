@@ -12,6 +12,8 @@ use crate::study::Stage;
 use crate::tube::{EndDirection, Load, Part, Support, Tube};
 use std::collections::HashMap;
 
+/// Names of state 0 in tables, which no stage may have.
+const RESERVED: [&str; 2] = ["rest", "start"];
 /// Number of names that a message lists.
 const NAMES: usize = 12;
 /// Number of problems from which on no similar names are searched for.
@@ -47,6 +49,10 @@ pub(super) fn stages(
             && problems.is_as_written(&format!("stages[{}].name", other + 1))
         {
             problems.value(&key, "another stage has this name", "");
+        }
+        if RESERVED.contains(&name.as_str()) && problems.is_as_written(&key) {
+            let rule = "state 0 has this name";
+            problems.value(&key, rule, "choose another name");
         }
         for (target, drive) in &stage.drive {
             let key = join(&format!("{path}.drive"), target);

@@ -351,6 +351,7 @@ fn muscles_that_the_ratios_do_not_tell_apart_have_their_names() {
             name: name.into(),
             target,
             stretch: target,
+            work: 0.0,
         };
         ["upper", "lower"]
             .into_iter()
