@@ -45,6 +45,8 @@ pub enum Command {
     /// Write an HTML report of a run, or a comparison of several
     #[command(after_long_help = REPORT_EPILOGUE)]
     Report(ReportArguments),
+    /// Print the closing table of runs, or their findings as JSON
+    Table(TableArguments),
     /// Check a case and estimate its size and run time
     Check(CaseArguments),
     /// Write a commented example case
@@ -94,6 +96,10 @@ pub struct RunArguments {
     /// steps of the current stage, and later stages of the case may have changed
     #[arg(long, conflicts_with = "overwrite")]
     pub resume: bool,
+    /// Exit with code 4 if the run is complete, but a wall crosses itself, the lumen is closed, or a state is not in
+    /// equilibrium or was not tested for stability
+    #[arg(long)]
+    pub strict: bool,
     /// The case file and the directories that it may read from
     #[command(flatten)]
     pub case: CaseArguments,
@@ -108,6 +114,9 @@ pub struct ResumeArguments {
     /// Directory of the run
     #[arg(value_name = "RUN_DIR")]
     pub run: PathBuf,
+    /// Exit with code 4 as `plica run --strict` does
+    #[arg(long)]
+    pub strict: bool,
     /// The number of threads
     #[command(flatten)]
     pub threads: Threads,
@@ -192,6 +201,17 @@ pub struct ReportArguments {
     /// The number of threads
     #[command(flatten)]
     pub threads: Threads,
+}
+
+/// Arguments of `plica table`.
+#[derive(Args, Debug)]
+pub struct TableArguments {
+    /// Directories of runs
+    #[arg(value_name = "RUN_DIR", required = true)]
+    pub runs: Vec<PathBuf>,
+    /// Print one JSON array with the findings of every run, numbers and intervals of states included
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `plica reproduce`.

@@ -21,6 +21,8 @@ pub enum Failure {
         /// Its problems.
         error: CaseError,
     },
+    /// The run is complete, but some of its states do not describe a real tube.
+    Unphysical(String),
     /// Invalid arguments.
     Usage(String),
     /// Files could not be read or written.
@@ -46,6 +48,7 @@ impl Failure {
         let (message, code) = match self {
             Self::Unfinished => return ExitCode::from(1),
             Self::Case { path, text, error } => (diagnostics::render(path, text, error), 2),
+            Self::Unphysical(what) => (format!("error: {what}"), 4),
             Self::Usage(what) => (format!("error: {what}"), 2),
             Self::Files(what) => (format!("error: {what}"), 3),
             Self::Fault(what) => (format!("error: {what}"), 1),

@@ -18,6 +18,7 @@ mod report;
 mod reproduce;
 mod run;
 mod stability;
+mod table;
 mod threads;
 mod ticker;
 mod verify;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         Command::Plot(arguments) => plot::plot(&arguments),
         Command::Animate(arguments) => render::animate(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Table(arguments) => table::table(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::New { file } => new::new(&file),
         Command::Schema => new::schema(),

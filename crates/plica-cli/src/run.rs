@@ -7,7 +7,8 @@ use crate::progress::Progress;
 use crate::{case_file, console, threads};
 use plica::case::differences;
 use plica::run_directory::{Run, RunDirectory, RunError, Summary};
-use plica::study::{Ending, Plan, check_memory, forbidden_changes};
+use plica::study::findings::states_in;
+use plica::study::{Ending, Findings, Plan, check_memory, forbidden_changes};
 use plica_view::report::pictures;
 use std::path::{Path, PathBuf};
 
@@ -48,7 +49,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let interrupt = Interrupt::listen()?;
     check_memory(&plan).map_err(RunError::from)?;
     let mut directory = RunDirectory::create(&out, &text, &plan.title, arguments.overwrite)?;
-    follow(&plan, &mut directory, interrupt, false)
+    follow(&plan, &mut directory, interrupt, [false, arguments.strict])
 }
 
 /// Resumes a run with a case, which may differ from the one of the run in what is still ahead.
@@ -76,7 +77,7 @@ fn resume_with_case(arguments: &RunArguments, out: &Path) -> Result<(), Failure>
     if before != text.as_bytes() {
         directory.write_case(&text, &plan.title)?;
     }
-    follow(&plan, &mut directory, interrupt, true)
+    follow(&plan, &mut directory, interrupt, [true, arguments.strict])
 }
 
 /// Resumes a run.
@@ -88,7 +89,8 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
     if directory.is_complete() {
         return nothing_to_do(&mut directory, &plan);
     }
-    follow(&plan, &mut directory, Interrupt::listen()?, true)
+    let how = [true, arguments.strict];
+    follow(&plan, &mut directory, Interrupt::listen()?, how)
 }
 
 /// Prints that a run is complete, restores its history if that is damaged, and lists its damaged files.
@@ -128,12 +130,13 @@ fn check_changes(
     Err(Failure::Usage(message))
 }
 
-/// Follows a run to its end, shows its states, and draws its pictures.
+/// Follows a run to its end, shows its states, and draws its pictures. The last two arguments say whether an interrupted run
+/// is resumed, and whether unphysical states are an error.
 fn follow(
     plan: &Plan,
     directory: &mut RunDirectory,
     interrupt: Interrupt,
-    resume: bool,
+    [resume, strict]: [bool; 2],
 ) -> Result<(), Failure> {
     let out = directory.path().to_owned();
     console::message(&format!("{}\nwriting to {}", plan.title, out.display()));
@@ -160,7 +163,12 @@ fn follow(
     match summary.ending() {
         Ending::Complete => {
             let closed = directory.close();
-            return closed.map_err(|error| Failure::from(error).of_run(&out));
+            closed.map_err(|error| Failure::from(error).of_run(&out))?;
+            return if strict {
+                check_states(summary.findings())
+            } else {
+                Ok(())
+            };
         }
         Ending::Stopped => console::message("stopped on request; every state so far is kept"),
         Ending::Lost(lost) => console::message(&lost.to_string()),
@@ -172,6 +180,20 @@ fn follow(
         )));
     }
     Err(Failure::Unfinished)
+}
+
+/// Refuses states that do not describe a real tube, and states whose stability is not known.
+fn check_states(findings: &Findings) -> Result<(), Failure> {
+    let untested = states_in(&findings.untested);
+    if findings.unphysical_states() == 0 && untested == 0 {
+        return Ok(());
+    }
+    Err(Failure::Unphysical(format!(
+        "--strict: {} of {} states cross themselves, have a closed lumen or are not in equilibrium, and the stability of {untested} \
+        is not known; the table above lists them",
+        findings.unphysical_states(),
+        findings.work.states
+    )))
 }
 
 /// Returns a statement on the saved states that earlier results of `plica stability` do not cover.

@@ -16,6 +16,7 @@ mod reproduce;
 mod resume;
 mod stability;
 mod start_state;
+mod table;
 mod threads;
 mod unfinished;
 mod verify;

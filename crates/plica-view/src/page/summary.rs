@@ -248,7 +248,7 @@ fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
 pub fn no_warnings(run: &Run<'_>) -> String {
     let tested = match run.plan.symmetry {
         Symmetry::Axisymmetric => format!(
-            "no state is unstable (circumferential modes 0 to {} were tested; only mode 0 for twisted states)",
+            "no state is unstable (circumferential modes 0 to {} were tested)",
             run.plan.output.stability_modes
         ),
         _ => {

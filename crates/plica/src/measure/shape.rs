@@ -163,7 +163,13 @@ mod tests {
         for p in &mut inner.points {
             p.1 -= 0.06;
         }
-        Shape::of(&outer, &inner, outer.steepest_angle_deg(), diameter_ratio, 0.0)
+        Shape::of(
+            &outer,
+            &inner,
+            outer.steepest_angle_deg(),
+            diameter_ratio,
+            0.0,
+        )
     }
 
     /// Returns a notch of radius `bottom` whose corners have the given axial positions.

@@ -70,8 +70,8 @@ class Plot {
       grid: { stroke: ink("--rule"), width: 1 },
       ticks: { stroke: ink("--rule"), width: 1 },
       font: "12px system-ui, sans-serif",
-      // A long label must fit the height of the plot.
-      labelFont: `${label.length > 34 ? 9.5 : 11.5}px system-ui, sans-serif`,
+      // A long label must fit the height of the plot. uPlot scales whole numbers of pixels only.
+      labelFont: `${label.length > 34 ? 9 : 11}px system-ui, sans-serif`,
       values: ticks,
       ...more,
     });

@@ -20,8 +20,7 @@ impl NamedLoad {
         match self.unit.as_str() {
             "" => format!("{:.4}", self.value),
             "°" => format!("{:.2}", self.value),
-            _ if self.value == 0.0 => "0".into(),
-            _ => format!("{:.4e}", self.value),
+            _ => number(self.value, 4),
         }
     }
 
@@ -32,6 +31,19 @@ impl NamedLoad {
             "°" => format!("{}°", self.formatted()),
             unit => format!("{} {unit}", self.formatted()),
         }
+    }
+}
+
+/// Formats a number with a count of digits after the first: in scientific notation, unless it lies between 0.1 and 10⁴.
+pub fn number(value: f64, digits: usize) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        0.1..1e4 => {
+            let before = value.abs().log10().floor() as i32;
+            let after = digits as i32 - before;
+            format!("{value:.*}", usize::try_from(after).unwrap_or(0))
+        }
+        _ => format!("{value:.digits$e}"),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The closing table of a run.
 
-use super::loads::describe_range;
+use super::loads::{describe_range, number};
 use super::place::{Interval, list};
 use super::{Findings, Overhang, Return, StageEnd, states_in};
 use crate::equilibrium::UnstableMode;
@@ -31,7 +31,7 @@ impl Findings {
     }
 
     fn energy(&self, energy: f64) -> String {
-        format!("W = {energy:.6e} {}", self.energy_unit)
+        format!("W = {} {}", number(energy, 6), self.energy_unit)
     }
 
     fn length(&self, length: f64) -> String {
@@ -149,9 +149,9 @@ impl Findings {
         let line = if found.is_same {
             format!("{load} and is the same state: the tube has recovered")
         } else {
-            let [w, now] = energy;
+            let [w, now] = energy.map(|w| number(w, 6));
             let unit = &self.energy_unit;
-            let differ = format!("{now:.6e} against {w:.6e} {unit}, {after} against {before}");
+            let differ = format!("{now} against {w} {unit}, {after} against {before}");
             format!("{load} but is another state: W = {differ}")
         };
         ("return".into(), line)

@@ -61,6 +61,21 @@ fn line(findings: &Findings, name: &str) -> String {
 }
 
 #[test]
+fn numbers_have_the_same_digits_in_both_notations() {
+    for (value, expected) in [
+        (0.0, "0"),
+        (8.881449, "8.8814"),
+        (-0.1, "-0.10000"),
+        (0.0999, "9.9900e-2"),
+        (1234.5678, "1234.6"),
+        (12345.678, "1.2346e4"),
+        (6.671364e-4, "6.6714e-4"),
+    ] {
+        assert_eq!(loads::number(value, 4), expected);
+    }
+}
+
+#[test]
 fn a_path_without_states_has_no_findings() {
     assert!(findings(&[]).lines().is_empty());
     assert_eq!(findings(&[rest()]).stages, []);
@@ -94,7 +109,7 @@ fn a_minimum_and_a_maximum_inside_a_stage_are_found_with_their_load() {
     );
     assert_eq!(
         line(&found, "energy minimum"),
-        "W = 3.000000e0 E D^3 at state 2 (relax, Lmax/L = 1.2000)"
+        "W = 3.000000 E D^3 at state 2 (relax, Lmax/L = 1.2000)"
     );
 }
 
@@ -214,7 +229,7 @@ fn a_cycle_remembers_its_invagination_and_its_recovery() {
     );
     assert_eq!(
         line(&found, "stage open"),
-        "state 5, Dmin/D = 0.2500 to 1.0000; at the end W = 0.000000e0 E D^3, straight"
+        "state 5, Dmin/D = 0.2500 to 1.0000; at the end W = 0 E D^3, straight"
     );
     let names: Vec<_> = found
         .stages
@@ -310,7 +325,7 @@ fn every_driven_quantity_is_named_where_it_changes() {
     for (change, words) in [
         (
             (|row| row.ends[0].displacement = -0.2) as fn(&mut Row),
-            "colon end moved = 0 to -2.0000e-1 D",
+            "colon end moved = 0 to -0.20000 D",
         ),
         (
             |row| row.ends[1].twist_deg = 40.0,
