@@ -93,7 +93,7 @@ fn report_refuses_invalid_arguments() {
         (
             &["run", "run", "run", "run", "run"],
             2,
-            "no more were expected",
+            "5 runs are too many for one page; name 4 at most",
         ),
         (
             &["run", "--out", "no/such/page.html"],
@@ -150,16 +150,28 @@ fn damaged_states_and_rows_are_skipped_and_reported() {
     let history = fs::read_to_string(run.join("history.csv")).unwrap();
     let cut = history.len() - 40;
     fs::write(run.join("history.csv"), &history[..cut]).unwrap();
-    let output = plica(&directory, &["report", "run"]);
-    let stderr = text(&output.stderr);
-    assert!(output.status.success(), "{stderr}");
-    for what in ["state-0001.safetensors", "history.csv beyond state 2"] {
+    let report = || {
+        let output = plica(&directory, &["report", "run"]);
+        let stderr = text(&output.stderr);
+        assert!(output.status.success(), "{stderr}");
+        let page = fs::read_to_string(run.join("report.html")).unwrap();
+        assert!(page.contains("state-0001.safetensors: ") && page.contains("Could not read: "));
+        let rows = page_data(&run.join("report.html"))["runs"][0]["scene"]["rows"].clone();
+        (stderr, page, rows)
+    };
+    // The checkpoint has a copy of the rows.
+    let (stderr, _, rows) = report();
+    for what in [
+        "state-0001.safetensors",
+        "history.csv is damaged or incomplete at state 3",
+    ] {
         assert!(stderr.contains(what), "{stderr}");
     }
-    let page = fs::read_to_string(run.join("report.html")).unwrap();
-    assert!(page.contains("state-0001.safetensors: ") && page.contains("Could not read: "));
+    assert_eq!(rows, serde_json::json!([0, 2, 3]));
+    // Without it, the last state has lost its row and is not shown.
+    fs::remove_file(run.join("checkpoint.safetensors")).unwrap();
+    let (stderr, page, rows) = report();
+    assert!(stderr.contains("history.csv beyond state 2"), "{stderr}");
     assert!(page.contains("history.csv beyond state 2"));
-    let data = &page_data(&run.join("report.html"))["runs"][0];
-    // The last state has lost its row and is not shown.
-    assert_eq!(data["scene"]["rows"], serde_json::json!([0, 2]));
+    assert_eq!(rows, serde_json::json!([0, 2]));
 }

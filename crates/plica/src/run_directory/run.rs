@@ -207,7 +207,11 @@ impl<'a> Run<'a> {
             Some(Err(StudyError::Lost(_))) | None => return Ok(None),
             Some(Err(error)) => return Err(error.into()),
         };
-        let written = self.write(&state, monitor);
+        // A file may not be found because the directory has just been moved.
+        let written = self.write(&state, monitor).map_err(|error| match error {
+            RunError::File { .. } => self.directory.check_place().err().unwrap_or(error),
+            error => error,
+        });
         if let Err(error @ RunError::NotFinite { .. }) = &written {
             self.manifest.fail(error, &self.rows);
             self.directory.write_manifest(&self.manifest)?;

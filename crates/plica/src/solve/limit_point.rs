@@ -33,14 +33,14 @@ mod tests {
     use super::*;
 
     /// Returns the limit point that the states at 0.5 and 0.6 of a path show, where t is a function of the first unknown
-    /// and the second is three times t, if no state was found at `failed`.
+    /// and the second is 0.3 t, if no state was found at `failed`.
     fn found(u: fn(f64) -> f64, du_dt: fn(f64) -> f64, failed: f64) -> Option<f64> {
         let previous = PreviousPoint {
             t: 0.5,
-            u: vec![u(0.5), 1.5],
-            tangent: vec![du_dt(0.5), 3.0],
+            u: vec![u(0.5), 0.15],
+            tangent: vec![du_dt(0.5), 0.3],
         };
-        limit_point(&previous, 0.6, &[u(0.6), 1.8], &[du_dt(0.6), 3.0], failed)
+        limit_point(&previous, 0.6, &[u(0.6), 0.18], &[du_dt(0.6), 0.3], failed)
     }
 
     #[test]

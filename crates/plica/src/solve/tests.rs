@@ -311,7 +311,7 @@ fn a_path_that_ends_at_a_limit_point_reports_its_load() {
         let limit = error.limit_point.unwrap();
         assert!((limit - 0.25).abs() < 1e-3, "{limit}");
         assert_eq!(path.load_at(limit), limit);
-        assert!((0.249..0.25).contains(&path.reached()), "{error}");
+        assert!((0.249..=0.25).contains(&path.reached()), "{error}");
         // Relaxation, which has 200 at most, is tried once.
         let solves = error.step.effort.linear_solves;
         assert!(solves < 250, "{solves}");
