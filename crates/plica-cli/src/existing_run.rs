@@ -84,10 +84,11 @@ impl ExistingRun {
         let directory = RunDirectory::open(path)?;
         let mut saved = directory.numbered("states", "safetensors")?;
         let plan = case_file::of_run(&directory)?;
-        let (rows, error, faults) = directory.checked_history()?;
-        for fault in &faults {
+        let history = directory.checked_history()?;
+        for fault in &history.faults {
             console::message(&format!("warning: {fault}"));
         }
+        let rows = history.rows;
         if rows.is_empty() {
             return Err(Failure::Usage(format!(
                 "{}: the run has not reached its first state",
@@ -97,7 +98,7 @@ impl ExistingRun {
         // States without a row are ignored.
         let last = rows[rows.len() - 1].step;
         saved.retain(|&number, _| number <= last);
-        let unreadable = error.map(|why| {
+        let unreadable = history.unreadable.map(|why| {
             format!(
                 "{} beyond state {}: {why}",
                 path.join("history.csv").display(),

@@ -17,7 +17,7 @@ mod write;
 pub use checkpoint::Checkpoint;
 pub use error::RunError;
 pub use record::{Fault, Record};
-pub use resume::Resumption;
+pub use resume::{CheckedHistory, Resumption};
 pub use run::{Run, run};
 pub use summary::{Snapshot, Summary};
 pub use write::write_file;

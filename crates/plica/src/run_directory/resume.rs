@@ -27,6 +27,17 @@ pub struct Resumption {
     pub faults: Vec<String>,
 }
 
+/// The history of a run, and the faults of its files in words.
+#[derive(Clone, Debug)]
+pub struct CheckedHistory {
+    /// The rows; damaged ones come from the checkpoint, if it can be read.
+    pub rows: Vec<Row>,
+    /// Reason why the rows that follow could not be read; none if there are no others.
+    pub unreadable: Option<String>,
+    /// Faults of `history.csv`, and of profiles and saved states.
+    pub faults: Vec<String>,
+}
+
 /// Lists numbers of states, with ranges.
 pub(super) fn list(numbers: &[usize]) -> String {
     let mut ranges: Vec<[usize; 2]> = vec![];
@@ -164,7 +175,7 @@ impl RunDirectory {
     ///
     /// # Errors
     /// As [`RunDirectory::readable_history`], if there is no copy.
-    pub fn checked_history(&self) -> Result<(Vec<Row>, Option<String>, Vec<String>), RunError> {
+    pub fn checked_history(&self) -> Result<CheckedHistory, RunError> {
         // Before the history, which the run may write right now.
         let record = self.record();
         let recorded = self.recorded_rows(record.as_ref().map_or("", Record::header));
@@ -180,7 +191,11 @@ impl RunDirectory {
         let is_foreign = 2 * (rows.len() - restored.len()) < present;
         if rows.is_empty() || restored.is_empty() || is_foreign {
             let (rows, damaged) = self.readable_history()?;
-            return Ok((rows, damaged, faults));
+            return Ok(CheckedHistory {
+                rows,
+                unreadable: damaged,
+                faults,
+            });
         }
         faults.push(format!(
             "{} is damaged or incomplete at state {}; its copy in the checkpoint is used, and `plica resume` restores it",
@@ -192,7 +207,11 @@ impl RunDirectory {
                 rows.push(row);
             }
         }
-        Ok((rows, None, faults))
+        Ok(CheckedHistory {
+            rows,
+            unreadable: None,
+            faults,
+        })
     }
 
     /// Restores `history.csv` of a complete run if it is damaged, and checks all profiles and saved states. Returns the

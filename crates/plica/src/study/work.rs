@@ -86,7 +86,8 @@ impl WorkPoint {
         for (m, work) in muscles.iter_mut().enumerate() {
             let change = next.load.muscles[m] - self.load.muscles[m];
             if change != 0.0 {
-                let [from, to] = [&*self, &*next].map(|point| point.muscle_force(tube, m));
+                let from = self.muscle_force(tube, m);
+                let to = next.muscle_force(tube, m);
                 next.muscle_forces[m] = Some(to);
                 *work = trapezoid([from, to], change);
             }
