@@ -9,7 +9,7 @@
 //! closed by straight lines from its edge to its centre, which is a flat lid if the edge is plane. The integrands are
 //! polynomials on each element, and Gauss points integrate them exactly.
 //!
-//! Where the wall crosses itself, a region counts as often as the wall winds around it, with the sign of the winding.
+//! A region that the wall winds around several times, as it crosses itself, counts as often, with the sign of the winding.
 
 use super::POINTS_PER_ELEMENT;
 use crate::assembly::{SplineTube, SurfacePoint};
@@ -25,7 +25,7 @@ pub struct Dimensions {
     pub lumen_area_min: f64,
     /// Largest distance of a point of the outer face from the centre of its material ring.
     pub outer_radius_max: f64,
-    /// That distance at the middle of the length at rest, as the mean over the circumference.
+    /// Distance of the outer wall from the axis at the middle of the length at rest, as the mean over the circumference.
     pub outer_radius_mid: f64,
 }
 

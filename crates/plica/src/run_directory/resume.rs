@@ -21,7 +21,7 @@ pub struct Resumption {
     pub rows: Vec<Row>,
     /// Numbers of the states whose rows are damaged or missing in `history.csv`.
     pub restored: Vec<usize>,
-    /// Whether `history.csv` has rows of later states.
+    /// True if `history.csv` has rows of later states.
     pub has_later_rows: bool,
     /// Reasons why a newer checkpoint is not used.
     pub faults: Vec<String>,

@@ -25,7 +25,7 @@ pub struct Run<'a> {
     has_pressures: bool,
     rows: Vec<Row>,
     snapshots: Vec<Option<Snapshot>>,
-    /// What has been written, for the next checkpoint.
+    /// Record of the rows and files written so far, for the next checkpoint.
     record: Record,
     /// Files that were missing or damaged when the run was resumed.
     missing: Vec<String>,

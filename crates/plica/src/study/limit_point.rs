@@ -14,7 +14,7 @@ pub struct LimitPoint {
     pub value: f64,
     /// The unit; empty for a ratio.
     pub unit: String,
-    /// Whether the value is a maximum; else it is a minimum.
+    /// True for a maximum, false for a minimum.
     pub is_maximum: bool,
 }
 

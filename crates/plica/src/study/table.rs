@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 
-/// What a column of a history holds; it determines the unit.
+/// Kind of quantity in a column of a history; it determines the unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// A text.
@@ -39,7 +39,7 @@ pub enum Quantity {
 pub struct Cell {
     /// Name of the column.
     pub name: String,
-    /// What it holds.
+    /// Its kind of quantity.
     pub quantity: Quantity,
     /// The text in `history.csv`; a number has as many digits as it takes to read it back to the bit.
     pub text: String,

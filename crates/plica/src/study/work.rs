@@ -32,7 +32,7 @@ impl Work {
     }
 }
 
-/// What a state contributes to the work of the steps before and after it.
+/// Load, forces and energy of a state, from which the work of the steps before and after it is computed.
 #[derive(Clone, Debug)]
 pub(super) struct WorkPoint {
     load: Load,

@@ -11,9 +11,9 @@ pub struct Extreme {
     pub at: Place,
     /// Strain energy.
     pub energy: f64,
-    /// Whether it is a minimum; otherwise it is a maximum.
+    /// True for a minimum, false for a maximum.
     pub is_minimum: bool,
-    /// Whether relaxation leads to this minimum or away from this maximum, so that the energy jumps there.
+    /// True if relaxation leads to this minimum or away from this maximum, so that the energy jumps there.
     pub is_at_jump: bool,
 }
 

@@ -13,7 +13,7 @@ pub struct Return {
     pub earlier: Place,
     /// The last state.
     pub last: Place,
-    /// Whether both states are the same.
+    /// True if both states are the same.
     pub is_same: bool,
     /// Strain energies of the earlier and of the last state.
     pub energy: [f64; 2],
