@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use plica_view::report::ColourScale;
 use std::path::PathBuf;
 
 /// Simulate soft muscular tubes that contract, buckle and invaginate
@@ -303,9 +304,9 @@ pub struct LookArguments {
     /// View direction: oblique, front, above, colon, ileum, or three numbers UP,NEAR,ALONG
     #[arg(long, value_name = "VIEW", default_value = "oblique", value_parser = view, allow_hyphen_values = true)]
     pub view: Direction,
-    /// Limits of the colour bar [default: range of the field]
-    #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
-    pub range: Option<Limits>,
+    /// Colour range: `path` for that of all saved states, `shown` for that of the states drawn, or its two limits
+    #[arg(long, value_name = "RANGE", default_value = "path", value_parser = range, allow_hyphen_values = true)]
+    pub range: ColourScale,
     /// Width of the picture in pixels, from 600 to 8000
     #[arg(long, value_name = "PX", default_value = "1800", value_parser = clap::value_parser!(u16).range(600..=8000))]
     pub width: u16,
@@ -319,9 +320,6 @@ pub struct LookArguments {
 
 /// A direction of the viewer: (up, towards the viewer, along the tube).
 pub type Direction = [f64; 3];
-
-/// The two limits of a colour bar.
-pub type Limits = [f64; 2];
 
 /// Returns the names of all fields.
 fn fields() -> clap::builder::PossibleValuesParser {
@@ -363,11 +361,13 @@ fn view(text: &str) -> Result<Direction, String> {
     }
 }
 
-/// Parses the limits of a colour bar.
-fn range(text: &str) -> Result<Limits, String> {
-    match numbers::<2>(text) {
-        Some([low, high]) if low < high => Ok([low, high]),
-        _ => Err("must be two numbers LOW,HIGH with LOW < HIGH".into()),
+/// Parses a colour range.
+fn range(text: &str) -> Result<ColourScale, String> {
+    match (text, numbers::<2>(text)) {
+        ("path", _) => Ok(ColourScale::Path),
+        ("shown", _) => Ok(ColourScale::Shown),
+        (_, Some([low, high])) if low < high => Ok(ColourScale::Given([low, high])),
+        _ => Err("must be path, shown, or two numbers LOW,HIGH with LOW < HIGH".into()),
     }
 }
 

@@ -6,6 +6,8 @@ use crate::failure::Failure;
 use plica::run_directory::{RunDirectory, write_file};
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row};
+use plica_view::report::FieldScales;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -161,6 +163,13 @@ impl ExistingRun {
         let row = self.rows.iter().find(|row| row.step == number);
         let row = row.ok_or_else(|| message(&"history.csv has no such state"))?;
         Ok((state, row.clone()))
+    }
+
+    /// Returns the scales of the fields in all saved states, except those that cannot be read.
+    pub fn field_scales(&self) -> FieldScales {
+        let states = self.saved.par_iter();
+        let states = states.filter_map(|(&number, _)| Some(self.try_state(number).ok()?.0));
+        FieldScales::of_states(&self.plan, states)
     }
 
     /// Writes a picture to a file, by default to `pictures/` of the run, and prints its path.

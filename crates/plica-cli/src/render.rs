@@ -8,7 +8,8 @@ use crate::ticker::Ticker;
 use crate::video;
 use crate::{console, threads};
 use plica_view::draw::{DrawError, LAST_FRAME_FACTOR};
-use plica_view::report::{self, Appearance, Field, Shown};
+use plica_view::report::{self, Appearance, Field, FieldScales, Shown};
+use rayon::prelude::*;
 use std::sync::Mutex;
 
 /// Named directions towards the viewer: (up, near, along the tube).
@@ -43,7 +44,8 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     };
     let look = appearance(&arguments.look);
     let states: Result<Vec<Shown>, Failure> = numbers.iter().map(|&n| run.state(n)).collect();
-    let png = report::render(&run.plan, &states?, &look).map_err(failure)?;
+    let path = run.field_scales();
+    let png = report::render(&run.plan, &states?, &path, &look).map_err(failure)?;
     let names: Vec<String> = numbers.iter().map(|n| format!("{n:04}")).collect();
     let name = format!("{}-state-{}.png", look.field.name(), names.join("-"));
     run.write_picture(arguments.look.out.as_deref(), &name, &png)
@@ -80,7 +82,10 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), Failure> {
         !ticker.stop()
     };
     let seconds = 1.0 / arguments.fps;
-    let drawn = report::animate(&run.plan, &states, &run.rows, &look, seconds, &monitor);
+    let path = FieldScales::of_states(&run.plan, states.par_iter().map(|(state, _)| state));
+    let drawn = report::animate(
+        &run.plan, &states, &run.rows, &path, &look, seconds, &monitor,
+    );
     ticker
         .into_inner()
         .unwrap_or_else(|e| e.into_inner())
@@ -110,7 +115,7 @@ fn appearance(arguments: &LookArguments) -> Appearance {
         cutaway: arguments.cutaway,
         see_through: arguments.see_through,
         toward: arguments.view,
-        range: arguments.range,
+        scale: arguments.range,
         width: usize::from(arguments.width),
     }
 }

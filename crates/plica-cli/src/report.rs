@@ -6,6 +6,8 @@ use crate::failure::Failure;
 use crate::{console, threads};
 use plica::saved_state::SavedState;
 use plica_view::page::{PageError, Run, drawn, page};
+use plica_view::report::FieldScales;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Largest number of runs on one page.
@@ -64,6 +66,7 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
 struct ReportedRun {
     run: ExistingRun,
     states: Vec<SavedState>,
+    scales: FieldScales,
     left_out: usize,
     unread: Vec<String>,
 }
@@ -85,7 +88,13 @@ impl ReportedRun {
                 }
             }
         }
+        let scales = if chosen.len() == saved.len() {
+            FieldScales::of_states(&run.plan, states.par_iter())
+        } else {
+            run.field_scales()
+        };
         Ok(Self {
+            scales,
             left_out: saved.len() - chosen.len(),
             run,
             states,
@@ -100,6 +109,7 @@ impl ReportedRun {
             plan: &reported.run.plan,
             rows: &reported.run.rows,
             states: &reported.states,
+            scales: &reported.scales,
             saved: reported.run.saved.len(),
             left_out: reported.left_out,
             unread: &reported.unread,

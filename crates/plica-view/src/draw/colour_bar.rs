@@ -6,12 +6,13 @@ use super::range::{MAX_INTERVALS, ResolvedRange};
 use super::text::{HALF_CAP, TEXT_SIZE, text_width};
 use super::ticks::{format_number, power_of_ten, ticks};
 
-/// Draws a bar that ends before `right_limit`, with ticks and title. An arrow and a note show values beyond its ends.
+/// Draws a bar that ends before `right_limit`, with ticks and title. An arrow and a note show values beyond its ends, followed by
+/// the words that say of which states they are.
 pub(super) fn draw_colour_bar(
     canvas: &mut Canvas,
     (left, top): Position,
     right_limit: f64,
-    range: ResolvedRange,
+    (range, extremes_of): (ResolvedRange, &str),
     map: ColourMap,
     label: &str,
 ) {
@@ -33,12 +34,15 @@ pub(super) fn draw_colour_bar(
             (2..8).find(|&digits| format_number(value, digits) != format_number(end, digits));
         format_number(value, digits.unwrap_or(8))
     };
-    let note = match (below, above) {
+    let mut note = match (below, above) {
         (false, false) => String::new(),
         (false, true) => format!("up to {}", formatted(range.max)),
         (true, false) => format!("down to {}", formatted(range.min)),
         (true, true) => format!("{} to {}", formatted(range.min), formatted(range.max)),
     };
+    if !note.is_empty() && !extremes_of.is_empty() {
+        note += &format!(" {extremes_of}");
+    }
     let (tip, height) = (7.0, 8.0);
     let available = right_limit - left - tip - 4.0 - text_width(&note, TEXT_SIZE);
     let width = available.clamp(40.0, 240.0);

@@ -67,6 +67,8 @@ pub struct Cutaway {
     pub value_label: String,
     /// Rule for the ends of the colour bar.
     pub range: Range,
+    /// Words after the extreme values beyond the ends of the colour bar; empty for those of the picture.
+    pub extremes_of: &'static str,
     /// Colour map of the field.
     pub map: ColourMap,
     /// Direction towards the viewer in the coordinates of the tube; not along z.
@@ -89,6 +91,7 @@ impl Default for Cutaway {
             panels: Vec::new(),
             value_label: String::new(),
             range: Range::Automatic,
+            extremes_of: "",
             map: ColourMap::default(),
             toward: [0.42, 1.0, -0.35],
             bounds: Vec::new(),
@@ -245,7 +248,7 @@ impl Cutaway {
             &mut canvas,
             corner,
             limit,
-            range,
+            (range, self.extremes_of),
             self.map,
             &self.value_label,
         );

@@ -67,7 +67,7 @@ pub use image::{Compression, Image};
 pub use inset::Inset;
 pub(crate) use opening::linspace;
 pub use opening::{Opening, REAR_HALF};
-pub use range::{Range, ResolvedRange};
+pub use range::{Range, ResolvedRange, Spread};
 pub use surface::{Sides, Surface};
 pub(crate) use ticks::format_number;
 

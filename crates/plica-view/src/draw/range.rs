@@ -40,42 +40,100 @@ pub struct ResolvedRange {
     pub max: f64,
 }
 
+/// Extreme values of a field, and the values that 0.5 % of its points lie below and above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Smallest value.
+    pub min: f64,
+    /// Value that 0.5 % of the points lie below.
+    pub lower: f64,
+    /// Value that 0.5 % of the points lie above.
+    pub upper: f64,
+    /// Largest value.
+    pub max: f64,
+}
+
+impl Spread {
+    /// Returns the spread of the finite ones of some values; none without one.
+    pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut finite: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+        let last = finite.len().checked_sub(1)?;
+        let mut at = |rank: usize| *finite.select_nth_unstable_by(rank, f64::total_cmp).1;
+        let few = last / OUTLIER_RATIO;
+        Some(Self {
+            min: at(0),
+            lower: at(few),
+            upper: at(last - few),
+            max: at(last),
+        })
+    }
+
+    /// Returns the smallest spread that contains two others.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            lower: self.lower.min(other.lower),
+            upper: self.upper.max(other.upper),
+            max: self.max.max(other.max),
+        }
+    }
+
+    /// Multiplies all values by a positive factor.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            min: factor * self.min,
+            lower: factor * self.lower,
+            upper: factor * self.upper,
+            max: factor * self.max,
+        }
+    }
+}
+
 impl Range {
     /// Applies the rule to the values of a field; values that are not finite are ignored.
     ///
     /// # Errors
     /// [`DrawError::Empty`] without a finite value, [`DrawError::Range`] for an invalid given range.
     pub fn resolve(self, values: impl Iterator<Item = f64>) -> Result<ResolvedRange, DrawError> {
-        if let Self::Resolved(resolved) = self {
-            return Ok(resolved);
+        match self {
+            Self::Resolved(resolved) => Ok(resolved),
+            _ => self.of(Spread::of(values)),
         }
-        let mut finite: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-        let Some(last) = finite.len().checked_sub(1) else {
+    }
+
+    /// Applies the rule to the spread of a field.
+    ///
+    /// # Errors
+    /// As [`Range::resolve`].
+    pub fn of(self, spread: Option<Spread>) -> Result<ResolvedRange, DrawError> {
+        let Some(spread) = spread else {
             return Err(DrawError::Empty { what: "field" });
         };
-        let mut at = |rank: usize| *finite.select_nth_unstable_by(rank, f64::total_cmp).1;
-        let (min, max) = (at(0), at(last));
+        let Spread {
+            min,
+            lower,
+            upper,
+            max,
+        } = spread;
         let (low, high) = match self {
+            Self::Resolved(resolved) => return Ok(resolved),
             Self::Given(low, high) => {
                 if !(low.is_finite() && high.is_finite() && low < high) {
                     return Err(DrawError::Range { low, high });
                 }
                 (low, high)
             }
-            Self::Full | Self::Resolved(_) => (min, max),
+            Self::Full => (min, max),
             Self::Symmetric => {
-                let bound = at(last - last / OUTLIER_RATIO).max(-at(last / OUTLIER_RATIO));
+                let bound = upper.max(-lower);
                 rounded(-bound, bound)
             }
             Self::Automatic => {
-                let high = at(last - last / OUTLIER_RATIO);
-                let low = if min < 0.0 {
-                    at(last / OUTLIER_RATIO)
-                } else {
-                    min
-                };
-                let near = (0.0..0.25 * high).contains(&low);
-                rounded(if near { 0.0 } else { low }, high)
+                let low = if min < 0.0 { lower } else { min };
+                let near = (0.0..0.25 * upper).contains(&low);
+                rounded(if near { 0.0 } else { low }, upper)
             }
         };
         // A constant field still needs a bar; it is drawn in the lowest colour.
@@ -143,6 +201,19 @@ mod tests {
             .resolve([-0.3, 0.1, 1.0].into_iter())
             .unwrap();
         assert_eq!([spanned.low, spanned.high], [-1.0, 1.0]);
+    }
+
+    #[test]
+    fn the_range_of_several_states_contains_the_range_of_each() {
+        let spread = |factor: f64| Spread::of((0..=1000).map(|i| factor * f64::from(i) / 1000.0));
+        let [small, large] = [spread(0.3).unwrap(), spread(-1.0).unwrap()];
+        let both = small.union(large);
+        assert_eq!([both.min, both.max], [-1.0, 0.3]);
+        assert_eq!([both.lower, both.upper], [large.lower, small.upper]);
+        assert_eq!(both.times(2.0).max, 0.6);
+        assert!(spread(f64::NAN).is_none());
+        let whole = Range::Automatic.of(Some(both)).unwrap();
+        assert!(whole.low <= large.lower && whole.high >= small.upper);
     }
 
     #[test]

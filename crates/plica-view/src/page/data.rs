@@ -42,7 +42,7 @@ impl RunData {
         let all = columns.iter().map(plotted);
         let scene = match run.states {
             [] => Scene::without(run.plan, run.rows.iter().map(|row| row.step).collect()),
-            states => Scene::of(run.plan, states, run.upwards(), max_bytes),
+            states => Scene::of(run.plan, states, run.scales, run.upwards(), max_bytes),
         };
         Self {
             name: run.name.clone(),

@@ -24,9 +24,12 @@ mod stability;
 mod stops;
 mod summary;
 
+#[cfg(test)]
+pub(crate) use scene::scene_of_states;
+
 use crate::draw::ColourMap;
 use crate::draw::line_colour;
-use crate::report::{Column, upward_angle};
+use crate::report::{Column, FieldScales, upward_angle};
 use content::Content;
 use data::RunData;
 use minijinja::value::{Serde, Value};
@@ -53,6 +56,8 @@ pub struct Run<'a> {
     pub rows: &'a [Row],
     /// Saved states to draw, in increasing order; see [`drawn`].
     pub states: &'a [SavedState],
+    /// Scales of the fields in all saved states.
+    pub scales: &'a FieldScales,
     /// Number of saved states.
     pub saved: usize,
     /// Number of saved states that are not drawn.

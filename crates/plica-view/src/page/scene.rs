@@ -1,7 +1,9 @@
 //! Walls of a path for the browser: sampling, quantisation, compression.
 
 use crate::draw::ColourMap;
-use crate::report::Field;
+#[cfg(test)]
+use crate::draw::ResolvedRange;
+use crate::report::{Field, FieldScales};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -68,14 +70,41 @@ pub struct Colouring {
     pub label: String,
     /// True for a diverging colour map with zero in the middle.
     pub diverging: bool,
-    /// Colour range for the whole path.
+    /// Colour range and extreme values on the whole path.
+    pub path: Scale,
+    /// Colour range and extreme values in each state.
+    pub states: Vec<Scale>,
+    /// Smallest and largest value at the drawn points of each state, for the quantisation.
+    pub ends: Vec<[f64; 2]>,
+}
+
+/// A colour range and the extreme values of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Scale {
+    /// Ends of the colour bar.
     pub range: [f64; 2],
     /// Smallest value.
     pub min: f64,
     /// Largest value.
     pub max: f64,
-    /// Smallest and largest value in each state.
-    pub ends: Vec<[f64; 2]>,
+}
+
+impl Scale {
+    /// Returns the scale of a field; from 0 to 1 if it has no value.
+    fn of(scales: &FieldScales, field: Field, plan: &Plan) -> Self {
+        match scales.range(field, plan, None) {
+            Ok(found) => Self {
+                range: [found.low, found.high],
+                min: found.min,
+                max: found.max,
+            },
+            Err(_) => Self {
+                range: [0.0, 1.0],
+                min: 0.0,
+                max: 1.0,
+            },
+        }
+    }
 }
 
 /// A state before quantisation: by component or field, then by point.
@@ -118,8 +147,14 @@ impl Scene {
     }
 
     /// Samples the states of a path, starting at the meridian at the angle `upwards`, with the finest resolution that
-    /// `max_bytes` permits.
-    pub fn of(plan: &Plan, states: &[SavedState], upwards: f64, max_bytes: usize) -> Self {
+    /// `max_bytes` permits. `path` contains the scales of all saved states.
+    pub fn of(
+        plan: &Plan,
+        states: &[SavedState],
+        path: &FieldScales,
+        upwards: f64,
+        max_bytes: usize,
+    ) -> Self {
         let tube = tube_of(plan);
         let (points, sectors) = resolution(&tube, states.len(), max_bytes);
         let labels: Vec<(String, f64)> = Field::ALL.iter().map(|f| f.label(plan)).collect();
@@ -130,6 +165,10 @@ impl Scene {
                 let at = |point| tube.sample(&state.load, &state.u, point);
                 Wall::of(&tube, points, sectors, upwards, length, &labels, at)
             })
+            .collect();
+        let scales: Vec<FieldScales> = states
+            .par_iter()
+            .map(|state| FieldScales::of(&tube, &state.load, &state.u))
             .collect();
 
         let bounds = |i: usize| ends(walls.iter().flat_map(|wall| &wall.position[i]));
@@ -150,15 +189,16 @@ impl Scene {
         }
         let fields = Field::ALL.iter().zip(labels).enumerate();
         let colouring = fields.map(|(i, (field, (label, _)))| {
-            let values = walls.iter().flat_map(|wall| &wall.values[i]).copied();
-            let range = field.range().resolve(values).ok();
+            let field = *field;
             Colouring {
                 name: field.name(),
                 label: crate::draw::label::plain(&label),
                 diverging: field.map() == ColourMap::Diverging,
-                range: range.map_or([0.0, 1.0], |field| [field.low, field.high]),
-                min: range.map_or(0.0, |field| field.min),
-                max: range.map_or(1.0, |field| field.max),
+                path: Scale::of(path, field, plan),
+                states: scales
+                    .iter()
+                    .map(|scales| Scale::of(scales, field, plan))
+                    .collect(),
                 ends: walls
                     .iter()
                     .map(|wall| ends(wall.values[i].iter()))
@@ -181,12 +221,12 @@ impl Scene {
     }
 }
 
-/// Resectors the size of a state in bytes.
+/// Returns the size of a state in bytes.
 fn bytes(points: [usize; 3]) -> usize {
     points.iter().product::<usize>() * 2 * NUMBERS
 }
 
-/// Resectors the number of points along, through and around a sector, and the number of sectors.
+/// Returns the number of points along, through and around a sector, and the number of sectors.
 fn resolution(tube: &SplineTube, states: usize, max_bytes: usize) -> ([usize; 3], usize) {
     let along = 2 * tube.axial.elements() + 1;
     let sector = &tube.sector;
@@ -207,7 +247,7 @@ fn resolution(tube: &SplineTube, states: usize, max_bytes: usize) -> ([usize; 3]
 }
 
 impl Wall {
-    /// Resectors the largest distance of a point from the axis.
+    /// Returns the largest distance of a point from the axis.
     fn radius(&self) -> f64 {
         let [_, x, y] = &self.position;
         x.iter()
@@ -216,7 +256,7 @@ impl Wall {
             .fold(0.0, f64::max)
     }
 
-    /// Resectors the number of points with a missing value.
+    /// Returns the number of points with a missing value.
     fn missing(&self) -> usize {
         let points = 0..self.position[0].len();
         let none = |p: &usize| self.values.iter().any(|values| !values[*p].is_finite());
@@ -295,6 +335,28 @@ fn packed(data: &[u8]) -> String {
     STANDARD.encode(bytes.unwrap_or_default())
 }
 
+/// Returns the scene of states for tests.
+#[cfg(test)]
+pub(crate) fn scene_of_states(plan: &Plan, states: &[SavedState], path: &FieldScales) -> Scene {
+    Scene::of(plan, states, path, 0.0, 1 << 30)
+}
+
+#[cfg(test)]
+impl Scene {
+    /// Returns the ranges of a field on the path and in the last state.
+    pub fn ends(&self, field: Field) -> (ResolvedRange, ResolvedRange) {
+        let one = self.fields.iter().find(|one| one.name == field.name());
+        let one = one.unwrap();
+        let range = |scale: &Scale| ResolvedRange {
+            low: scale.range[0],
+            high: scale.range[1],
+            min: scale.min,
+            max: scale.max,
+        };
+        (range(&one.path), range(one.states.last().unwrap()))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -318,7 +380,11 @@ mod tests {
         let plan = plan(symmetry);
         let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(symmetry));
         let (states, upwards) = ([1, 2].map(|row| state(&plan, row)), 0.4);
-        let scene = Scene::of(&plan, &states, upwards, 1 << 30);
+        let scales = states
+            .each_ref()
+            .map(|state| FieldScales::of(&tube, &state.load, &state.u));
+        let path = FieldScales::union(scales);
+        let scene = Scene::of(&plan, &states, &path, upwards, 1 << 30);
         assert_eq!(scene.rows, [1, 2]);
         let [along, through, around] = scene.points;
         let count = along * through * around;

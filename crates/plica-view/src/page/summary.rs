@@ -67,7 +67,14 @@ fn final_shape(run: &Run<'_>, last: &Row, findings: &Findings) -> Vec<String> {
             found.earlier.state
         )
     });
-    let amplitude = format!("{:.3} {unit}", last.asymmetry);
+    // The prescribed imperfections make the first state asymmetric, too.
+    let amplitude = match run.rows.first().map_or(0.0, |first| first.asymmetry) {
+        0.0 => format!("{:.3} {unit}", last.asymmetry),
+        start => format!(
+            "{:.3} {unit}, from {start:.3} {unit} in the first state",
+            last.asymmetry
+        ),
+    };
     let asymmetry = match last.asymmetry_mode {
         _ if last.asymmetry <= VISIBLE_ASYMMETRY * scale.length => None,
         1 => Some(format!(

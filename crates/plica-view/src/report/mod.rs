@@ -2,6 +2,7 @@
 
 mod columns;
 mod field;
+mod field_scale;
 mod labels;
 mod modes;
 mod orientation;
@@ -16,10 +17,11 @@ mod walls;
 
 pub use columns::{Column, Role};
 pub use field::Field;
+pub use field_scale::FieldScales;
 pub use modes::mode_pictures;
 pub(crate) use orientation::{VISIBLE_ASYMMETRY, upward_angle};
 pub use pictures::pictures;
 pub use plots::{plot, plot_walls};
-pub use render::{Appearance, Shown, animate, render};
+pub use render::{Appearance, ColourScale, Shown, animate, render};
 pub use stability::stability_pictures;
 pub use surfaces::open_tube_surfaces;

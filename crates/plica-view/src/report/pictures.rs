@@ -1,12 +1,15 @@
 //! Standard pictures of a run.
 
-use super::Field;
 use super::labels::{scale_bar, unit};
 use super::orientation::upward_angle;
 use super::selection::{Abscissa, Selection};
 use super::surfaces::{SurfaceOptions, tube_surfaces};
 use super::walls::{Wall, walls};
-use crate::draw::{Chart, Compression, Curve, Cutaway, DrawError, Marker, Panel, VerticalLine};
+use super::{Field, FieldScales};
+use crate::draw::{
+    Chart, Compression, Curve, Cutaway, DrawError, Marker, Panel, Range, ResolvedRange,
+    VerticalLine,
+};
 use plica::assembly::SplineTube;
 use plica::run_directory::{Snapshot, Summary};
 use plica::study::findings::Interval;
@@ -15,9 +18,6 @@ use rayon::prelude::*;
 
 /// Width of the pictures in pixels; small, because they are drawn while the user waits.
 const WIDTH: usize = 1200;
-
-/// Intervals along the tube and points through the wall of the first sampling of the energy density, which peaks at the faces.
-const COARSE: [usize; 2] = [160, 5];
 
 /// Draws a run; returns file names and PNG data. The result is empty for a run without snapshots; a selected state without a
 /// snapshot appears only in the energy.
@@ -49,7 +49,15 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     }
     // The tube takes longest; rayon moves idle threads to it.
     let (tube, plots) = rayon::join(
-        || cutaway(plan, &tube, &chosen, upwards)?.png_with(WIDTH, Compression::Fast),
+        || {
+            let range = path_range(
+                plan,
+                &tube,
+                (summary.rows(), summary.snapshots()),
+                &selection.chosen,
+            )?;
+            cutaway(plan, &tube, &chosen, upwards, range)?.png_with(WIDTH, Compression::Fast)
+        },
         || Ok([energy()?, walls(plan, &tube, &chosen).png(WIDTH)?]),
     );
     let [energy, walls] = plots?;
@@ -113,7 +121,7 @@ fn energy(plan: &Plan, summary: &Summary, selection: &Selection<'_>) -> Chart {
         markers: minima
             .map(|row| Marker {
                 at: (x(row), row.energy),
-                label: format!("minimum at {}", selection.abscissa.format(row)),
+                label: format!("minimum at {}", selection.abscissa.place(row)),
                 colour: 2,
             })
             .collect(),
@@ -122,12 +130,40 @@ fn energy(plan: &Plan, summary: &Summary, selection: &Selection<'_>) -> Chart {
     }
 }
 
+/// Returns the colour range of the strain energy density for the states that are saved, or all if none is, and for those shown.
+fn path_range(
+    plan: &Plan,
+    tube: &SplineTube,
+    (rows, snapshots): (&[Row], &[Option<Snapshot>]),
+    shown: &[&Row],
+) -> Result<ResolvedRange, DrawError> {
+    let is_shown = |row: &Row| shown.iter().any(|one| one.step == row.step);
+    let is_saved = |i: usize| {
+        let ends_stage = rows
+            .get(i + 1)
+            .is_none_or(|next| next.stage != rows[i].stage);
+        match plan.output.states_every {
+            0 => true,
+            every => ends_stage || rows[i].step.is_multiple_of(every),
+        }
+    };
+    let scales = snapshots
+        .par_iter()
+        .enumerate()
+        .filter_map(|(i, snapshot)| {
+            let Snapshot { load, u } = snapshot.as_ref()?;
+            (is_saved(i) || is_shown(&rows[i])).then(|| FieldScales::of(tube, load, u))
+        });
+    FieldScales::union(scales.collect::<Vec<_>>()).range(Field::EnergyDensity, plan, None)
+}
+
 /// Draws the tube cut open at the selected states, with the angle `upwards` pointing up.
 fn cutaway(
     plan: &Plan,
     tube: &SplineTube,
     chosen: &[Wall<'_>],
     upwards: f64,
+    range: ResolvedRange,
 ) -> Result<Cutaway, DrawError> {
     let (value_label, factor) = Field::EnergyDensity.label(plan);
     let look = SurfaceOptions {
@@ -143,32 +179,96 @@ fn cutaway(
         title: plan.title.clone(),
         value_label,
         scale_bar: scale_bar(&Scale::of(plan.units.as_ref())),
+        range: Range::Resolved(range),
+        extremes_of: "on the path",
         ..Cutaway::default()
     };
     let drawn = |look: &SurfaceOptions| Cutaway {
         panels: chosen.par_iter().map(|state| panel(look, state)).collect(),
         ..picture.clone()
     };
-    let (fine, range) = look.fine(&drawn(&look.coarse(tube, COARSE)), WIDTH)?;
-    Ok(Cutaway {
-        range,
-        ..drawn(&fine)
-    })
+    let fine = look.fine(&drawn(&look.coarse(tube)), range, WIDTH)?;
+    Ok(drawn(&fine))
 }
 
 /// Returns the label of a state.
 fn label(selection: &Selection<'_>, scale: &Scale, row: &Row) -> String {
-    let (label, value) = (
-        selection.abscissa.label(scale),
-        selection.abscissa.format(row),
-    );
+    let abscissa = selection.abscissa;
+    let (label, value) = (abscissa.label(scale), abscissa.place(row));
+    let shape = row.shape;
     // The unit follows the number.
-    match label.rsplit_once(" (") {
-        Some((name, unit)) => format!(
-            "{name} = {value} {} ({})",
-            unit.trim_end_matches(')'),
-            row.shape
-        ),
-        None => format!("{label} = {value} ({})", row.shape),
+    match (abscissa, label.rsplit_once(" (")) {
+        (Abscissa::Step, _) => format!("{value} ({shape})"),
+        (_, Some((name, unit))) => {
+            format!("{name} = {value} {} ({shape})", unit.trim_end_matches(')'))
+        }
+        (_, None) => format!("{label} = {value} ({shape})"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+    use crate::page::scene_of_states;
+    use crate::report::render::{Appearance, ColourScale, Shown, cutaway as rendered};
+    use plica::tube::Symmetry;
+
+    #[test]
+    fn a_field_has_one_range_and_one_maximum_in_every_picture_and_on_the_page() {
+        for symmetry in [Symmetry::Axisymmetric, Symmetry::Fold(4)] {
+            let plan = fixture::plan(symmetry);
+            let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(symmetry));
+            let states = [0, 1, 2].map(|number| fixture::state(&plan, number));
+            let rows = [0, 1, 2].map(|step| Row {
+                step,
+                ..Row::zero(&[], ["colon", "ileum"])
+            });
+            let snapshot = |i: usize| {
+                let (load, u) = (states[i].load.clone(), states[i].u.clone());
+                Some(Snapshot { load, u })
+            };
+            let snapshots = [0, 1, 2].map(snapshot);
+            let path = path_range(&plan, &tube, (&rows, &snapshots), &[&rows[2]]).unwrap();
+            assert!(path.max > 0.0);
+
+            let all = FieldScales::of_states(&plan, states.par_iter());
+            let last: Shown = (states[2].clone(), rows[2].clone());
+            let range_of = |width, cutaway, scale| {
+                let look = Appearance {
+                    width,
+                    cutaway,
+                    scale,
+                    ..Appearance::default()
+                };
+                let picture = rendered(&plan, std::slice::from_ref(&last), &all, &look);
+                picture.unwrap().colour_range().unwrap()
+            };
+            assert_eq!(range_of(600, 180.0, ColourScale::Path), path);
+            assert_eq!(range_of(2000, 90.0, ColourScale::Path), path);
+            // The scale of one state is the same on the page.
+            let scene = scene_of_states(&plan, &states, &all);
+            assert_eq!(
+                scene.ends(Field::EnergyDensity),
+                (path, range_of(900, 0.0, ColourScale::Shown))
+            );
+        }
+    }
+
+    #[test]
+    fn states_are_named_by_number_and_loads_by_value() {
+        let row = Row {
+            step: 30,
+            ..Row::zero(&[], ["colon", "ileum"])
+        };
+        let scale = Scale::of(None);
+        let of = |abscissa| Selection {
+            abscissa,
+            rows: vec![],
+            chosen: vec![],
+        };
+        assert!(label(&of(Abscissa::Step), &scale, &row).starts_with("state 30 ("));
+        assert!(label(&of(Abscissa::LengthRatio), &scale, &row).contains("*L* = "));
+        assert_eq!(Abscissa::Step.place(&row), "state 30");
     }
 }

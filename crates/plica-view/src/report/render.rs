@@ -1,12 +1,13 @@
 //! Pictures of single states, and animations of a path.
 
-use super::Field;
 use super::labels::{scale_bar, state_label};
 use super::orientation::upward_angle;
 use super::pictures::energy_label;
-use super::surfaces::{MIN_ALONG, SurfaceOptions, tube_surfaces};
+use super::surfaces::{SurfaceOptions, tube_surfaces};
+use super::{Field, FieldScales};
 use crate::draw::{
-    Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, Surface, VerticalLine, animation,
+    Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, ResolvedRange, VerticalLine,
+    animation,
 };
 use plica::assembly::SplineTube;
 use plica::saved_state::SavedState;
@@ -16,9 +17,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Samples along each side of a pixel of a single picture.
 const SAMPLES: usize = 3;
-
-/// Intervals along the tube and points through the wall of the first sampling of fields, which may peak anywhere.
-const COARSE: [usize; 2] = [MIN_ALONG, 13];
 
 /// Appearance of states.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,8 +29,8 @@ pub struct Appearance {
     pub see_through: bool,
     /// Direction towards the viewer: (up, to the front, along the tube).
     pub toward: [f64; 3],
-    /// Ends of the colour bar; chosen from the values if `None`.
-    pub range: Option<[f64; 2]>,
+    /// Ends of the colour bar.
+    pub scale: ColourScale,
     /// Width in pixels.
     pub width: usize,
 }
@@ -44,37 +42,65 @@ impl Default for Appearance {
             cutaway: 180.0,
             see_through: false,
             toward: Cutaway::default().toward,
-            range: None,
+            scale: ColourScale::Path,
             width: 1800,
         }
     }
 }
 
+/// States that determine the colour range of a picture, or its ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ColourScale {
+    /// All saved states of the run, so that a colour has the same meaning in every picture.
+    #[default]
+    Path,
+    /// The states in the picture.
+    Shown,
+    /// The two given values.
+    Given([f64; 2]),
+}
+
 /// A saved state and its row of the history.
 pub type Shown = (SavedState, Row);
 
-/// Draws states, one below the other, with one colour bar; returns PNG data.
+/// Draws states, one below the other, with one colour bar; returns PNG data. `path` contains the scales of the saved states of
+/// the run.
 ///
 /// # Errors
 /// [`DrawError`] for an invalid size or range.
-pub fn render(plan: &Plan, states: &[Shown], look: &Appearance) -> Result<Vec<u8>, DrawError> {
+pub fn render(
+    plan: &Plan,
+    states: &[Shown],
+    path: &FieldScales,
+    look: &Appearance,
+) -> Result<Vec<u8>, DrawError> {
+    cutaway(plan, states, path, look)?.png(look.width)
+}
+
+pub(super) fn cutaway(
+    plan: &Plan,
+    states: &[Shown],
+    path: &FieldScales,
+    look: &Appearance,
+) -> Result<Cutaway, DrawError> {
     let tube = spline_tube(plan);
     let upwards = upward_angle(states.iter().map(|(_, row)| row), &scale(plan));
+    let range = range(plan, states, path, look)?;
     let coarse = coarse(&tube, plan, states, upwards, look);
-    let (finest, range) = surface_options(&tube, plan, look).fine(&coarse, look.width)?;
+    let finest = surface_options(&tube, plan, look).fine(&coarse, range, look.width)?;
     let panels = states
         .par_iter()
         .map(|shown| panel(&tube, shown, upwards, &finest, look));
-    let picture = Cutaway {
+    Ok(Cutaway {
         panels: panels.collect(),
         samples: SAMPLES,
-        range,
+        range: Range::Resolved(range),
         ..coarse
-    };
-    picture.png(look.width)
+    })
 }
 
-/// Draws an animated PNG of the tube above its energy, one frame per state, each shown for `seconds`.
+/// Draws an animated PNG of the tube above its energy, one frame per state, each shown for `seconds`. `path` contains the scales
+/// of the saved states of the run.
 ///
 /// `proceed` receives the number of finished frames and returns false to cancel; the result is then `None`.
 ///
@@ -84,34 +110,25 @@ pub fn animate(
     plan: &Plan,
     states: &[Shown],
     rows: &[Row],
+    path: &FieldScales,
     look: &Appearance,
     seconds: f64,
     proceed: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Option<Vec<u8>>, DrawError> {
     let tube = spline_tube(plan);
     let upwards = upward_angle(states.iter().map(|(_, row)| row), &scale(plan));
-    // A coarse sampling of all states determines their common bounds and colours; only these are kept.
-    let sampled = states.par_iter().map(|shown| {
+    // A coarse sampling of all states determines their common bounds.
+    let bounds = states.par_iter().map(|shown| {
         let state = coarse(&tube, plan, std::slice::from_ref(shown), upwards, look);
-        let surfaces = state.panels.iter().flat_map(|panel| &panel.surfaces);
-        let values: Vec<f64> = surfaces.flat_map(|s| &s.values).copied().collect();
-        Ok((state.bounding_box()?, values))
+        state.bounding_box()
     });
-    let sampled: Result<Vec<_>, DrawError> = sampled.collect();
-    let (bounds, values): (Vec<_>, Vec<_>) = sampled?.into_iter().unzip();
-    let surface = Surface {
-        values: values.concat(),
-        ..Surface::default()
-    };
-    let values = Panel {
-        surfaces: vec![surface],
-        ..Panel::default()
-    };
+    let bounds: Result<Vec<[[f64; 3]; 2]>, DrawError> = bounds.collect();
     let coarse = Cutaway {
-        bounds: bounds.concat(),
-        ..picture(plan, vec![values], look)
+        bounds: bounds?.concat(),
+        ..picture(plan, vec![Panel::default()], look)
     };
-    let (finest, range) = surface_options(&tube, plan, look).fine(&coarse, look.width)?;
+    let range = range(plan, states, path, look)?;
+    let finest = surface_options(&tube, plan, look).fine(&coarse, range, look.width)?;
     let done = AtomicUsize::new(0);
     let frame = |shown: &Shown| -> Result<Option<Image>, DrawError> {
         if !proceed(done.load(Ordering::Relaxed)) {
@@ -120,7 +137,7 @@ pub fn animate(
         let panel = panel(&tube, shown, upwards, &finest, look);
         let tube = Cutaway {
             bounds: coarse.bounds.clone(),
-            range,
+            range: Range::Resolved(range),
             ..picture(plan, vec![panel], look)
         };
         let tube = tube.image(look.width)?;
@@ -161,7 +178,7 @@ fn coarse(
     upwards: f64,
     look: &Appearance,
 ) -> Cutaway {
-    let coarse = surface_options(tube, plan, look).coarse(tube, COARSE);
+    let coarse = surface_options(tube, plan, look).coarse(tube);
     let panels = states
         .par_iter()
         .map(|shown| panel(tube, shown, upwards, &coarse, look));
@@ -192,16 +209,30 @@ fn picture(plan: &Plan, panels: Vec<Panel>, look: &Appearance) -> Cutaway {
         value_label: look.field.label(plan).0,
         scale_bar: scale_bar(&scale(plan)),
         toward: look.toward,
-        range: range(look),
         map: look.field.map(),
+        extremes_of: match look.scale {
+            ColourScale::Shown => "",
+            ColourScale::Path | ColourScale::Given(_) => "on the path",
+        },
         ..Cutaway::default()
     }
 }
 
-fn range(look: &Appearance) -> Range {
-    match look.range {
-        Some([low, high]) => Range::Given(low, high),
-        None => look.field.range(),
+/// Returns the colour range of the field of a picture.
+fn range(
+    plan: &Plan,
+    states: &[Shown],
+    path: &FieldScales,
+    look: &Appearance,
+) -> Result<ResolvedRange, DrawError> {
+    let shown = || {
+        let states = states.par_iter();
+        FieldScales::of_states(plan, states.map(|(state, _)| state))
+    };
+    match look.scale {
+        ColourScale::Path => path.range(look.field, plan, None),
+        ColourScale::Shown => shown().range(look.field, plan, None),
+        ColourScale::Given(ends) => path.range(look.field, plan, Some(ends)),
     }
 }
 

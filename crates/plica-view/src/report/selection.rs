@@ -50,12 +50,12 @@ impl Abscissa {
         }
     }
 
-    /// Formats the value at a state.
-    pub fn format(self, row: &Row) -> String {
+    /// Returns the value at a state as text; the number of a state follows the word.
+    pub fn place(self, row: &Row) -> String {
         let value = self.of(row);
         match self {
             Self::LengthRatio | Self::DiameterRatio => format!("{value:.2}"),
-            Self::Step => row.step.to_string(),
+            Self::Step => format!("state {}", row.step),
             _ if value == 0.0 => "0".into(),
             _ => format_number(value, 3),
         }

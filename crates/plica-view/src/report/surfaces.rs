@@ -2,7 +2,7 @@
 
 use super::Field;
 use super::sampling::{MeshInfo, Sampled, Tolerance};
-use crate::draw::{Cutaway, DrawError, Opening, REAR_HALF, Range, Surface};
+use crate::draw::{Cutaway, DrawError, Opening, REAR_HALF, ResolvedRange, Surface};
 use plica::assembly::{Point, SplineTube};
 use plica::tube::Load;
 use std::cell::RefCell;
@@ -32,7 +32,9 @@ pub(super) enum Sampling {
 }
 
 /// Minimum number of intervals along a tube.
-pub(super) const MIN_ALONG: usize = 200;
+const MIN_ALONG: usize = 200;
+/// Minimum number of intervals along a tube whose bounds are sought.
+const COARSE_ALONG: usize = 160;
 
 /// Maximum error of the drawn wall in pixels; subdividing along, merging along and subdividing around may use a third each.
 const MAX_ERROR_PIXELS: f64 = 0.4;
@@ -60,30 +62,33 @@ impl SurfaceOptions {
         self
     }
 
-    /// Selects a coarse uniform sampling with at least `along` intervals along the tube and `through` points through the wall. It
-    /// serves to find the bounds and the colour range, for which all points have equal weight.
+    /// Selects a coarse uniform sampling, which serves to find the bounds.
     #[must_use]
-    pub fn coarse(mut self, tube: &SplineTube, [along, through]: [usize; 2]) -> Self {
+    pub fn coarse(mut self, tube: &SplineTube) -> Self {
         let elements = tube.axial.elements();
-        let along = elements * along.div_ceil(elements.max(1));
+        let along = elements * COARSE_ALONG.div_ceil(elements.max(1));
         let around = if tube.sector.rings == 1 { 33 } else { 49 };
-        self.sampling = Sampling::Uniform([along + 1, around, through]);
+        self.sampling = Sampling::Uniform([along + 1, around, 2]);
         self
     }
 
-    /// Selects an adaptive sampling for a picture `width` pixels wide. `coarse` is the same picture with a coarse sampling, whose
-    /// colour range is returned and makes the colours independent of the size of the picture.
+    /// Selects an adaptive sampling for a picture `width` pixels wide with a colour range. `coarse` is the same picture with a
+    /// coarse sampling.
     ///
     /// # Errors
     /// As [`Cutaway::png`].
-    pub fn fine(mut self, coarse: &Cutaway, width: usize) -> Result<(Self, Range), DrawError> {
-        let range = coarse.colour_range()?;
+    pub fn fine(
+        mut self,
+        coarse: &Cutaway,
+        range: ResolvedRange,
+        width: usize,
+    ) -> Result<Self, DrawError> {
         self.sampling = Sampling::Adaptive(Tolerance {
             position: MAX_ERROR_PIXELS / coarse.pixels_per_unit(width)?,
             value: MAX_ERROR_COLOUR,
             colours: (range.low, range.high),
         });
-        Ok((self, Range::Resolved(range)))
+        Ok(self)
     }
 
     /// Returns the options for the part removed by [`SurfaceOptions::cut`], if any.

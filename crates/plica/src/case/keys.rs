@@ -4,6 +4,7 @@
 use super::key::{Key, Kind, LENGTH, STRESS, default, described, required};
 use super::problem::Problems;
 use super::read::{Fields, Read, Table, Value, choice, choose, table};
+use super::spelling::target;
 use crate::activation::{Direction, Profile};
 use crate::material::Volumetric;
 use crate::study::{LengthUnit, StressUnit};
@@ -254,7 +255,7 @@ table! {
 }
 
 table! {
-    Drive {
+    Drive meant by target {
         /// Target of a circular muscle: the smallest (or largest) stress-free diameter over the diameter
         /// at rest, Dmin/D.
         diameter_ratio: Option<f64> = described(BEFORE_1, "1.0").above(0.0).to(10.0);

@@ -1,6 +1,6 @@
 //! Problems of a case, each with its place in the text.
 
-use super::key::Key;
+use super::key::{Key, join};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Range;
@@ -66,6 +66,8 @@ pub(super) struct Problems<'t> {
     places: BTreeMap<String, [Range<usize>; 2]>,
     /// The keys that problems were found with.
     wrong: BTreeSet<String>,
+    /// The names of the unknown keys, by the index of their problem.
+    unknown: BTreeMap<usize, String>,
     /// The keys whose values a default or an example replaces.
     replaced: BTreeSet<String>,
 }
@@ -113,6 +115,22 @@ impl<'t> Problems<'t> {
             }
         };
         self.add(key, None, span, rule.into(), help.into());
+    }
+
+    /// Adds a key that its table does not have.
+    pub fn unknown(&mut self, key: &str, name: &str, help: String) {
+        self.unknown.insert(self.found.len(), name.to_owned());
+        self.key(key, "unknown key", help);
+    }
+
+    /// Replaces the help of all unknown keys of a table by that for their names.
+    pub fn advise_unknown(&mut self, table: &str, help: impl Fn(&str) -> String) {
+        for (&i, name) in &self.unknown {
+            let problem = &mut self.found[i];
+            if problem.key == join(table, name) {
+                problem.help = Some(help(name));
+            }
+        }
     }
 
     /// Marks a key whose value is not used: a default or an example replaces it, and rules that

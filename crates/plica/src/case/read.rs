@@ -43,6 +43,11 @@ pub(super) trait Table: Sized {
 
     /// Reads the values of all keys, in their order.
     fn from_fields(fields: Fields<'_, '_, '_>) -> Self;
+
+    /// Returns the name and the key that another name of a table of this kind stands for.
+    fn meant(_name: &str) -> Option<&'static str> {
+        None
+    }
 }
 
 /// The values of the keys of one table.
@@ -70,9 +75,10 @@ impl Fields<'_, '_, '_> {
 }
 
 /// Declares a table of the case file. `name: Type = rule;` is a key; its doc comment is its meaning in
-/// the reference page and the schema, and the rule its default, unit and range.
+/// the reference page and the schema, and the rule its default, unit and range. `meant by f` declares the
+/// function f as [`Table::meant`].
 macro_rules! table {
-    ($(#[doc = $about:literal])* $Table:ident {
+    ($(#[doc = $about:literal])* $Table:ident $(meant by $meant:ident)? {
         $($(#[doc = $doc:literal])+ $field:ident: $Type:ty = $rule:expr;)+
     }) => {
         $(#[doc = $about])*
@@ -92,6 +98,10 @@ macro_rules! table {
             fn from_fields(mut fields: Fields<'_, '_, '_>) -> Self {
                 Self { $($field: fields.next(),)+ }
             }
+
+            $(fn meant(name: &str) -> Option<&'static str> {
+                $meant(name)
+            })?
         }
     };
 }
@@ -214,7 +224,7 @@ fn known_keys<'a, 'i>(
         if tables.iter().any(|table| table.starts_with(&below)) {
             tables.retain(|table| table.starts_with(&below));
         }
-        problems.key(&own, "unknown key", unknown_help(name, near, kind, &tables));
+        problems.unknown(&own, name, unknown_help(name, near, kind, &tables));
         if let Some(key) = keys.iter().find(|key| Some(key.name) == near) {
             problems.replaced(join(path, key.name));
             values.entry(key.name).or_insert((own, value));
@@ -331,6 +341,11 @@ impl<T: Table> Read for BTreeMap<String, T> {
                 let help = format!("write {path}.NAME.{}, with a name", name.get_ref());
                 problems.key(&own, "must be a table", help);
                 problems.replaced(path);
+            } else if let Some(meant) =
+                T::meant(name.get_ref()).filter(|_| !member.get_ref().is_table())
+            {
+                problems.value(&own, "must be a table", format!("write {path}.{meant}"));
+                problems.replaced(own);
             } else if let Some(read) = T::read(problems, key, &own, member) {
                 members.insert(name.get_ref().clone().into_owned(), read);
             } else {

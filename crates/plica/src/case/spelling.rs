@@ -37,9 +37,45 @@ pub(super) fn nearest<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) 
     (least == 0 || letters > 3 || as_near == 1).then_some(nearest)
 }
 
+/// Returns the target in a stage that another name for it, such as that of a column of the history, stands for.
+pub(super) fn target(name: &str) -> Option<&'static str> {
+    let name = name.to_lowercase();
+    let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    let place = ["inner", "outer", "colon", "ileum"].map(|word| has(&[word]));
+    let place = place.iter().position(|is_meant| *is_meant)?;
+    let targets = match place {
+        0 => ["inner-wall.pressure", "inner-wall.dead_load"],
+        1 => ["outer-wall.pressure", "outer-wall.dead_load"],
+        2 => ["colon.displacement", "colon.twist_degrees"],
+        _ => ["ileum.displacement", "ileum.twist_degrees"],
+    };
+    let words: [&[&str]; 2] = match place {
+        0 | 1 => [&["press"], &["dead"]],
+        _ => [&["displ", "push", "move"], &["twist", "turn", "rot"]],
+    };
+    let which = [1, 0].into_iter().find(|&i| has(words[i]))?;
+    Some(targets[which])
+}
+
 #[cfg(test)]
 mod tests {
-    use super::nearest;
+    use super::{nearest, target};
+
+    #[test]
+    fn columns_of_the_history_stand_for_the_targets_that_they_hold() {
+        for (name, meant) in [
+            ("inner_pressure", Some("inner-wall.pressure")),
+            ("Outer-Pressure", Some("outer-wall.pressure")),
+            ("inner_dead_load", Some("inner-wall.dead_load")),
+            ("displacement_colon", Some("colon.displacement")),
+            ("twist_deg_ileum", Some("ileum.twist_degrees")),
+            ("pressure", None),
+            ("inner", None),
+            ("circular", None),
+        ] {
+            assert_eq!(target(name), meant, "{name}");
+        }
+    }
 
     #[test]
     fn a_misspelt_word_is_found_and_another_word_is_not() {

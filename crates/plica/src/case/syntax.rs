@@ -21,6 +21,11 @@ pub(super) fn parse<'t>(text: &'t str, problems: &mut Problems) -> Option<DeTabl
         .iter()
         .map(|error| (error.span().unwrap_or(0..0), error.message()))
         .collect();
+    // All other errors are consequences of one of nesting.
+    if let Some(&(ref span, message)) = errors.iter().find(|(_, message)| is_of_nesting(message)) {
+        report(text, span.clone(), message, problems);
+        return None;
+    }
     // The error of a value that is not closed is at its end; the mistake is where it begins.
     let mut unclosed = vec![];
     for (span, message) in &mut errors {
@@ -52,11 +57,26 @@ pub(super) fn parse<'t>(text: &'t str, problems: &mut Problems) -> Option<DeTabl
     None
 }
 
+/// Returns whether a message of the parser is of too many tables or lists in each other.
+fn is_of_nesting(message: &str) -> bool {
+    message.contains("recurs")
+}
+
 fn report(text: &str, span: Range<usize>, message: &str, problems: &mut Problems) {
     let word = &text[span.clone()];
     let (before, after) = text.split_at(span.start);
     let line = after.lines().next().unwrap_or_default();
     let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
+    if is_of_nesting(message) {
+        let rule = "tables and lists are nested too deeply";
+        let help = "no key of a case has more than five names";
+        let one = span.start
+            ..after
+                .chars()
+                .next()
+                .map_or(span.start, |c| span.start + c.len_utf8());
+        return problems.syntax(one, rule, help);
+    }
     let is_bare = [
         "invalid boolean",
         "invalid float",

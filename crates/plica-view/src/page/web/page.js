@@ -213,16 +213,16 @@ class Page {
     return this.now[this.drawn[tube].index][0];
   }
 
-  /** Returns the colour range: of all paths, or of the shown states. */
+  /** Returns the scales of a field: of all paths, or of the shown states. */
+  scales(field) {
+    const fields = this.drawn.map(({ run }) => run.scene.fields[field]);
+    return fields.map(({ path, states }, i) => ($("range").value === "path" ? path : states[this.state(i)]));
+  }
+
+  /** Returns the common colour range of several scales. */
   range(field) {
-    const ends = this.drawn.map(({ run }, i) => {
-      const one = run.scene.fields[field];
-      return $("range").value === "path" ? one.range : one.ends[this.state(i)];
-    });
-    let [low, high] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
-    // The range of a diverging map is symmetric about zero.
-    if (this.diverging(field)) [low, high] = [-1, 1].map((sign) => sign * Math.max(-low, high));
-    return high > low ? [low, high] : [low - 0.5, low + 0.5];
+    const ends = this.scales(field).map(({ range }) => range);
+    return [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
   }
 
   /** Describes the shown states: the varying part of the load, the energy and the shape. */
@@ -262,8 +262,8 @@ class Page {
   /** Draws the colour bar with round numbers below it, and notes values beyond its ends. */
   labelBar(field, [low, high]) {
     const fields = this.drawn.map(({ run }) => run.scene.fields[field]);
-    const ends = fields.map((one, i) => ($("range").value === "path" ? [one.min, one.max] : one.ends[this.state(i)]));
-    const [min, max] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
+    const scales = this.scales(field);
+    const [min, max] = [Math.min(...scales.map((one) => one.min)), Math.max(...scales.map((one) => one.max))];
     const tolerance = 1e-6 * (high - low);
     const outside = [min < low - tolerance && `down to ${formatted(min, 3)}`, max > high + tolerance && `up to ${formatted(max, 3)}`].filter(Boolean);
     const beyond = outside.length > 0 ? ` (${$("range").value === "path" ? "on the path" : "in this state"} ${outside.join(", ")})` : "";

@@ -7,7 +7,7 @@ use super::super::problem::Problems;
 use super::super::spelling::nearest;
 use super::stages::SMALLEST_STRETCH;
 use super::start::check_size;
-use super::zone::{tidy, zone};
+use super::zone::{length, tidy, zone};
 use crate::study::{ModeShape, Stage, inverted_by_imperfections};
 use crate::tube::{
     Axial, End, EndDirection, Imperfection, Mesh, Part, Random, Shape, Support, Symmetry, Tube,
@@ -47,7 +47,8 @@ pub(super) fn imperfections(
             keys::Shape::Random(written) => random(&path, written, of, run, problems),
             keys::Shape::Mode(file) => {
                 let file = InputFile::Mode(i + 1, file);
-                let Some((shape, mode)) = mode(&path, file, of, tube, run, open, problems) else {
+                let Some((shape, mode)) = mode(&path, file, of, (case, tube), run, open, problems)
+                else {
                     continue;
                 };
                 modes.push(mode);
@@ -156,7 +157,7 @@ fn amplitude(
     if amplitude.abs() > largest && problems.are_sound(&["tube.thickness", "tube.diameter"]) {
         let rule = format!(
             "must be at most a quarter of the wall's thickness, {}",
-            tidy(largest * diameter)
+            length(case, largest)
         );
         problems.value(&key, rule, format!("try {}", tidy(1e-4 * diameter)));
     }
@@ -238,7 +239,7 @@ fn mode(
     path: &str,
     input: InputFile<'_>,
     of: Part,
-    tube: &Tube,
+    (case, tube): (&Case, &Tube),
     (mesh, symmetry): Run<'_>,
     open: &OpenInput<'_>,
     problems: &mut Problems,
@@ -269,7 +270,7 @@ fn mode(
     }
     let n = mode.harmonic;
     if problems.are_sound(&["symmetry", "tube.length", "tube.thickness", "tube.diameter"]) {
-        check_size(&key, &state, tube, problems);
+        check_size(&key, &state, case, tube, problems);
         let wrong = match symmetry {
             Symmetry::Axisymmetric if n > 0 => {
                 Some("an axisymmetric run has mode 0 only".to_owned())
@@ -348,7 +349,7 @@ pub(super) fn check_wall(
         return;
     }
     if let Some(at) = inverted_by_imperfections(tube, mesh, symmetry) {
-        let z = tidy(at.place.z * case.tube.diameter);
+        let z = length(case, at.place.z);
         let rule = format!(
             "with it the stress-free wall is folded over, near z = {z}, {}",
             at.place.angle_and_depth()

@@ -3,10 +3,10 @@
 use super::super::key::join;
 use super::super::keys::{Case, Drive};
 use super::super::problem::Problems;
-use super::super::spelling::nearest;
+use super::super::spelling::{nearest, target};
 use super::muscles::{ENDS, WALLS};
 use super::tube::youngs_modulus;
-use super::zone::tidy;
+use super::zone::{stress, tidy};
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
 use crate::tube::{EndDirection, Load, Part, Support, Tube};
@@ -171,6 +171,10 @@ fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
     };
     let help = match near {
         Some(near) => format!("did you mean {near}?"),
+        None if target(name).is_some() => {
+            let drive = path.rsplit_once('.').map_or(path, |(drive, _)| drive);
+            format!("write {drive}.{}", target(name).unwrap_or_default())
+        }
         None => {
             let some: Vec<&str> = names().take(NAMES).collect();
             let more = if names().count() > NAMES { ", …" } else { "" };
@@ -197,6 +201,14 @@ fn apply(
         return problems.replaced(path);
     }
     let targets = driven.targets();
+    if problems.is_as_written(&format!("{}.direction", join("muscles", name))) {
+        problems.advise_unknown(path, |unknown| {
+            match nearest(unknown, targets.iter().copied()) {
+                Some(near) => format!("did you mean {near}?"),
+                None => format!("{} has {}", driven.words(), targets.join(" and ")),
+            }
+        });
+    }
     let written = [
         ("diameter_ratio", drive.diameter_ratio),
         ("length_ratio", drive.length_ratio),
@@ -213,6 +225,10 @@ fn apply(
         let Some(value) = value else { continue };
         let key = format!("{path}.{target}");
         if !targets.contains(&target) {
+            if !problems.is_as_written(&key) {
+                // A misspelt key, which has been reported.
+                continue;
+            }
             if !problems.is_as_written(&format!("{}.direction", join("muscles", name))) {
                 problems.replaced(key);
                 continue;
@@ -245,7 +261,7 @@ fn apply(
                     "pressure" => wall.follower = value,
                     _ => wall.dead = value,
                 }
-                check_pressure(&key, value, modulus, problems);
+                check_pressure(&key, value, case, problems);
                 if target == "pressure" && value != 0.0 {
                     check_closed(&key, tube, problems);
                 }
@@ -255,9 +271,9 @@ fn apply(
 }
 
 /// Checks the size of a pressure in E.
-fn check_pressure(key: &str, pressure: f64, youngs_modulus: f64, problems: &mut Problems) {
+fn check_pressure(key: &str, pressure: f64, case: &Case, problems: &mut Problems) {
     if pressure.abs() > LARGEST_PRESSURE && problems.are_sound(&[key, "material"]) {
-        let largest = tidy(LARGEST_PRESSURE * youngs_modulus);
+        let largest = stress(case, LARGEST_PRESSURE);
         let rule = format!("must be from -{largest} to {largest}, ten times Young's modulus");
         problems.value(key, rule, "");
     }

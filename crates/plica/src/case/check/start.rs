@@ -5,7 +5,7 @@ use super::super::key::join;
 use super::super::keys::Case;
 use super::super::problem::Problems;
 use super::stages::{check_closed, check_held, check_stretch};
-use super::zone::ROUNDING;
+use super::zone::{ROUNDING, length};
 use crate::activation::{Direction, Muscle};
 use crate::saved_state::{Layout, SavedState};
 use crate::study::Start;
@@ -38,14 +38,20 @@ pub(super) fn start(
         return None;
     }
     let before = problems.len();
-    check_size(KEY, &state, tube, problems);
+    check_size(KEY, &state, case, tube, problems);
     check_symmetry(&state.layout, mesh, symmetry, problems);
     let load = load(&state, tube, problems);
     (problems.len() == before).then_some(Start { file, load, state })
 }
 
 /// Checks that a state, or a mode, belongs to a tube of the same length and thickness.
-pub(super) fn check_size(key: &str, state: &SavedState, tube: &Tube, problems: &mut Problems) {
+pub(super) fn check_size(
+    key: &str,
+    state: &SavedState,
+    case: &Case,
+    tube: &Tube,
+    problems: &mut Problems,
+) {
     let layout = &state.layout;
     let sizes = [
         ("long", layout.length, tube.length),
@@ -53,7 +59,11 @@ pub(super) fn check_size(key: &str, state: &SavedState, tube: &Tube, problems: &
     ];
     for (what, found, expected) in sizes {
         if (found - expected).abs() > ROUNDING * expected {
-            let rule = format!("its tube is {found} D {what}, and this one is {expected} D {what}");
+            let [found, expected] = [found, expected].map(|x| match &case.units {
+                Some(_) => length(case, x),
+                None => format!("{x} D"),
+            });
+            let rule = format!("its tube is {found} {what}, and this one is {expected} {what}");
             problems.value(key, rule, "");
         }
     }

@@ -3,7 +3,7 @@
 use super::super::keys::{self, Case};
 use super::super::problem::Problems;
 use super::muscles::muscles;
-use super::zone::tidy;
+use super::zone::{length, tidy};
 use crate::material::{Material, MooneyRivlin, NeoHookean, Volumetric};
 use crate::tube::Tube;
 
@@ -14,19 +14,22 @@ pub(super) fn tube(case: &Case, problems: &mut Problems) -> Tube {
     let thickness = case.tube.thickness.map_or(0.06, |x| x / diameter);
     if problems.are_sound(&["tube.thickness", "tube.diameter"]) {
         if thickness >= 0.5 {
-            let rule = format!("must be below half the diameter, {}", 0.5 * diameter);
+            let rule = format!(
+                "must be below half the diameter, {}",
+                self::length(case, 0.5)
+            );
             let help = format!("try {}", tidy(0.06 * diameter));
             problems.value("tube.thickness", rule, help);
         } else if thickness < 1e-3 {
             let rule = format!(
                 "must be at least a thousandth of the diameter, {} (a thinner wall is a shell)",
-                tidy(1e-3 * diameter)
+                self::length(case, 1e-3)
             );
             problems.value("tube.thickness", rule, "");
         }
     }
     if problems.are_sound(&["tube.length", "tube.diameter"]) && !(0.01..=1000.0).contains(&length) {
-        let (low, high) = (tidy(0.01 * diameter), tidy(1000.0 * diameter));
+        let (low, high) = (tidy(0.01 * diameter), self::length(case, 1000.0));
         let rule = format!("must be from 0.01 to 1000 diameters, {low} to {high}");
         let help = format!("try {}", tidy(3.0 * diameter));
         problems.value("tube.length", rule, help);

@@ -2,6 +2,7 @@
 
 use super::super::keys::Case;
 use super::super::problem::Problems;
+use super::tube::youngs_modulus;
 
 /// Relative rounding error that is allowed for when lengths are scaled to D.
 pub(super) const ROUNDING: f64 = 1e-12;
@@ -27,13 +28,32 @@ pub(super) fn zone(
     } else if !problems.are_sound(&["tube.length", "tube.diameter"]) {
         return [from, to];
     } else if from < 0.0 || to > length * (1.0 + ROUNDING) {
-        let end = length * case.tube.diameter;
+        let end = self::length(case, length);
         problems.value(key, format!("must lie within the tube, 0 to {end}"), "");
     } else if to - from < 1e-3 {
-        let rule = "must be at least a thousandth of the diameter long";
+        let least = self::length(case, 1e-3);
+        let rule = format!("must be at least a thousandth of the diameter long, {least}");
         problems.value(key, rule, "");
     }
     [from, to.min(length)]
+}
+
+/// Writes a length, given in D, in the unit of the case.
+pub(super) fn length(case: &Case, in_diameters: f64) -> String {
+    let x = tidy(in_diameters * case.tube.diameter);
+    match &case.units {
+        Some(units) => format!("{x} {}", units.length),
+        None => x.to_string(),
+    }
+}
+
+/// Writes a stress, given in Young's moduli, in the unit of the case.
+pub(super) fn stress(case: &Case, in_moduli: f64) -> String {
+    let x = tidy(in_moduli * youngs_modulus(case));
+    match &case.units {
+        Some(units) => format!("{x} {}", units.stress),
+        None => x.to_string(),
+    }
 }
 
 /// Rounds away the digits that scaling leaves behind.

@@ -354,3 +354,104 @@ fn mistakes_of_syntax_get_help() {
         assert_eq!(found[0].help.as_deref().unwrap_or_default(), help, "{rest}");
     }
 }
+
+/// Returns the only problem of the usual case in millimetres with a line at its end.
+fn problem_with(line: &str) -> Problem {
+    let text = format!(
+        "[units]\nlength = 'mm'\nstress = 'kPa'\n\
+         [tube]\ndiameter = 25.0\nlength = 75.0\nthickness = 1.5\n\
+         [material.neo-hookean]\nyoungs_modulus = 20.0\n\
+         [muscles.ring]\ndirection = 'circular'\nzone = [20.0, 40.0]\n\
+         [[stages]]\ndrive.ring.diameter_ratio = 0.5\n{line}\n"
+    );
+    let mut found = problems(&text);
+    assert_eq!(found.len(), 1, "{line}: {found:#?}");
+    found.remove(0)
+}
+
+#[test]
+fn names_of_columns_in_a_stage_lead_to_their_targets() {
+    for (line, meant) in [
+        (
+            "drive.inner_pressure = 0.5",
+            "write stages[1].drive.inner-wall.pressure",
+        ),
+        (
+            "drive.inner_pressure.pressure = 0.5",
+            "write stages[1].drive.inner-wall.pressure",
+        ),
+        (
+            "drive.outer_dead_load = 0.5",
+            "write stages[1].drive.outer-wall.dead_load",
+        ),
+        (
+            "drive.displacement_ileum = 1",
+            "write stages[1].drive.ileum.displacement",
+        ),
+    ] {
+        assert_eq!(problem_with(line).help.as_deref(), Some(meant), "{line}");
+    }
+}
+
+#[test]
+fn only_targets_of_the_driven_thing_are_offered() {
+    for (line, help) in [
+        (
+            "drive.ring.displacment = 1.0",
+            "a circular muscle has diameter_ratio",
+        ),
+        (
+            "drive.colon.diameter_rat = 0.5",
+            "an end of the tube has displacement and twist_degrees",
+        ),
+        (
+            "drive.colon.displacment = 0.5",
+            "did you mean displacement?",
+        ),
+        (
+            "drive.inner-wall.foo = 0.5",
+            "a surface of the tube has pressure and dead_load",
+        ),
+    ] {
+        assert_eq!(problem_with(line).help.as_deref(), Some(help), "{line}");
+    }
+}
+
+#[test]
+fn limits_are_in_the_units_of_the_case() {
+    let wave = "shape = { wave = { mode = 0 } }";
+    for (line, rule) in [
+        (
+            format!("[[imperfections]]\nof = 'geometry'\namplitude = 1.0\n{wave}"),
+            "must be at most a quarter of the wall's thickness, 0.375 mm",
+        ),
+        (
+            "drive.inner-wall.dead_load = 300".into(),
+            "must be from -200 kPa to 200 kPa, ten times Young's modulus",
+        ),
+        (
+            "[muscles.more]\ndirection = 'longitudinal'\nzone = [70.0, 80.0]".into(),
+            "must lie within the tube, 0 to 75 mm",
+        ),
+    ] {
+        assert_eq!(problem_with(&line).rule, rule);
+    }
+}
+
+#[test]
+fn a_case_that_is_nested_too_deeply_gives_one_message() {
+    let deep = 20_000;
+    for text in [
+        format!("x = {}{}", "[".repeat(deep), "]".repeat(deep)),
+        format!("x = {}1{}", "{a=".repeat(deep), "}".repeat(deep)),
+        format!("x = {}", "[".repeat(deep)),
+        format!("{}b = 1", "a.".repeat(deep)),
+        format!("[{}b]", "a.".repeat(deep)),
+        format!("x = [\n{}", "[\n".repeat(deep)),
+    ] {
+        let found = problems(&text);
+        assert_eq!(found.len(), 1, "{:.20}: {:#?}", text, found);
+        assert_eq!(found[0].rule, "tables and lists are nested too deeply");
+        assert!(found[0].span.len() <= 1, "{:?}", found[0].span);
+    }
+}

@@ -116,13 +116,15 @@ pub struct Departure {
     pub mode: String,
 }
 
-/// The state with the largest asymmetry.
+/// The state with the largest asymmetry, beside the asymmetry of the start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LargestAsymmetry {
     /// The state.
     pub at: Place,
     /// Amplitude of the largest wave around the outer wall.
     pub amplitude: f64,
+    /// Amplitude at the first state, which the prescribed imperfections cause.
+    pub at_start: f64,
     /// Circumferential mode of the wave.
     pub mode: usize,
 }
@@ -259,6 +261,7 @@ fn asymmetry(path: &Path<'_>) -> Option<LargestAsymmetry> {
     Some(LargestAsymmetry {
         at: path.place(largest),
         amplitude: amplitude(largest),
+        at_start: amplitude(0),
         mode: path.rows[largest].asymmetry_mode,
     })
 }

@@ -127,9 +127,17 @@ impl Findings {
             ("invaginates".into(), invaginates),
         ];
         if let Some(largest) = &self.asymmetry {
-            let amplitude = self.length(largest.amplitude);
+            let [amplitude, start] = [largest.amplitude, largest.at_start].map(|x| self.length(x));
             let mode = UnstableMode::Circumferential(largest.mode).describe();
-            let most = format!("at most {amplitude}, in {mode}, at {}", largest.at);
+            // The prescribed imperfection is no result.
+            let most = if largest.at_start == 0.0 {
+                format!("at most {amplitude}, in {mode}, at {}", largest.at)
+            } else if amplitude == start {
+                format!("does not exceed the {start} of the first state")
+            } else {
+                let from = format!("from {start} in the first state to at most {amplitude}");
+                format!("grows {from}, in {mode}, at {}", largest.at)
+            };
             lines.push(("asymmetry".into(), most));
         }
         lines

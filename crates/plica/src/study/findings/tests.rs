@@ -419,3 +419,21 @@ fn the_largest_asymmetry_is_given_with_its_mode() {
         "at most 0.250 D, in circumferential mode 1 (tilts sideways), at state 1 (tilt, Lmax/L = 1.1000)"
     );
 }
+
+#[test]
+fn the_asymmetry_of_the_first_state_is_no_result() {
+    let mut rows = path(&[("tilt", relaxing(&[(1.1, 1.0), (1.2, 2.0)]))]);
+    for row in &mut rows {
+        (row.asymmetry, row.asymmetry_mode) = (3e-3, 1);
+    }
+    assert_eq!(
+        line(&findings(&rows), "asymmetry"),
+        "does not exceed the 3.0e-3 D of the first state"
+    );
+    rows[2].asymmetry = 0.25;
+    let grown = line(&findings(&rows), "asymmetry");
+    assert!(
+        grown.starts_with("grows from 3.0e-3 D in the first state to at most 0.250 D"),
+        "{grown}"
+    );
+}
