@@ -4,6 +4,7 @@ use crate::args::CaseArguments;
 use crate::failure::Failure;
 use crate::{case_file, console};
 use plica::material::{Material, NeoHookean, Volumetric};
+use plica::run_directory::DiskUse;
 use plica::spline::Circle;
 use plica::study::{Plan, check_memory, forecast};
 use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube};
@@ -105,6 +106,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
             "memory",
             format!("about {}", memory(forecast.memory_bytes as f64)),
         ),
+        ("disk", disk(plan)),
         (
             "time",
             format!(
@@ -138,6 +140,23 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         rows.insert(1, ("units", units));
     }
     rows
+}
+
+/// Describes the room that the run takes on the disk.
+fn disk(plan: &Plan) -> String {
+    let forecast = DiskUse::of(plan);
+    let mut parts = vec![];
+    for (name, bytes) in [
+        ("saved states", forecast.states),
+        ("profiles", forecast.profiles),
+        ("history", forecast.history),
+    ] {
+        if bytes > 0 {
+            parts.push(format!("{name} {}", memory(bytes as f64)));
+        }
+    }
+    let total = memory(forecast.total() as f64);
+    format!("about {total}: {}", parts.join(", "))
 }
 
 /// Describes the smallest or largest growth stretch that each muscle reaches, the one farther from 1.
@@ -201,6 +220,7 @@ fn grouped(n: usize) -> String {
 /// Formats a number of bytes.
 fn memory(bytes: f64) -> String {
     match bytes {
+        b if b < 1e6 => format!("{:.0} kB", (b / 1e3).ceil()),
         b if b < 1e9 => format!("{:.0} MB", (b / 1e6).ceil()),
         b => format!("{:.1} GB", b / 1e9),
     }

@@ -7,6 +7,9 @@ use crate::tube::{Support, Symmetry};
 
 /// Number of elements along a zone that resolves a fold.
 const FINE: usize = 30;
+/// Growth stretch above which a wall is likely to cross itself. In the tube of Okino et al. (2025), contracted to a quarter, the
+/// invaginated wall crosses itself from 6.5 on; the paper reaches 4.
+const LARGEST_STRETCH: f64 = 6.0;
 /// Deviation from the circle, in D, that affects energies.
 const ROUND: f64 = 1e-5;
 
@@ -24,6 +27,13 @@ pub fn advice(plan: &Plan) -> Vec<String> {
         if across < FINE {
             advice.push(format!(
                 "the zone of muscles.{name} is only {across} elements long; a fold needs {FINE} or more"
+            ));
+        }
+        let largest = largest_stretch(plan, muscle.name.as_str());
+        if largest > LARGEST_STRETCH {
+            advice.push(format!(
+                "muscles.{name} makes the wall grow {largest:.1}-fold within its zone; above about {LARGEST_STRETCH}-fold a wall folds \
+                 until it crosses itself, and there is no contact: choose a smaller target or a longer zone"
             ));
         }
         if muscle.profile == Profile::HalfSine {
@@ -58,4 +68,41 @@ pub fn advice(plan: &Plan) -> Vec<String> {
         ));
     }
     advice
+}
+
+/// Returns the largest growth stretch that a muscle reaches in its zone at the end of a stage.
+fn largest_stretch(plan: &Plan, name: &str) -> f64 {
+    let Some(m) = plan.tube.muscles.iter().position(|m| m.name == name) else {
+        return 1.0;
+    };
+    let muscle = &plan.tube.muscles[m];
+    let stretches = plan.stages.iter().map(|stage| {
+        let ratio = stage.load.muscles[m];
+        muscle.extreme_stretch(ratio, plan.tube.length)
+    });
+    stretches.fold(1.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::advice;
+
+    #[test]
+    fn a_growth_stretch_beyond_six_is_advised_against() {
+        let stretched = |zone: &str, ratio: f64| {
+            let text = format!(
+                "[muscles.long]\ndirection = 'longitudinal'\nzone = {zone}\n\
+                 [[stages]]\ndrive.long.length_ratio = {ratio}\n"
+            );
+            let plan = crate::case::read(&text, "case").unwrap();
+            let advice = advice(&plan);
+            advice.into_iter().find(|line| line.contains("-fold within its zone"))
+        };
+        // The paper's tube grows fourfold in the middle of the zone.
+        assert_eq!(stretched("[0.5, 1.0]", 1.25), None);
+        assert_eq!(stretched("[0.5, 1.0]", 1.41), None);
+        let line = stretched("[0.5, 1.0]", 1.43).unwrap();
+        assert!(line.starts_with("muscles.long makes the wall grow 6.2-fold"), "{line}");
+        assert!(stretched("[0.5, 0.6]", 1.25).unwrap().contains("16.0-fold"));
+    }
 }

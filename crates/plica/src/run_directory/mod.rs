@@ -4,6 +4,7 @@
 
 mod checkpoint;
 mod clear;
+mod disk;
 mod error;
 mod lock;
 mod manifest;
@@ -15,6 +16,7 @@ mod summary;
 mod write;
 
 pub use checkpoint::Checkpoint;
+pub use disk::DiskUse;
 pub use error::RunError;
 pub use record::{Fault, Record};
 pub use resume::{CheckedHistory, Resumption};

@@ -23,15 +23,38 @@ pub struct Forecast {
     pub seconds_estimate: f64,
 }
 
-/// Average number of linear solves per state.
-const SOLVES_PER_STATE: f64 = 10.0;
+/// Numbers of solves and of iterations of a path.
+struct Effort {
+    /// Linear solves per state.
+    solves: f64,
+    /// Conjugate-gradient iterations per solve with several rings.
+    iterations: f64,
+    /// Iterations for the test of the stability of a state with several rings.
+    tested: f64,
+}
+
+/// An axisymmetric path.
+const AXISYMMETRIC: Effort = Effort {
+    solves: 10.0,
+    iterations: 0.0,
+    tested: 0.0,
+};
+/// A path of several rings without imperfections, whose states stay round.
+const ROUND: Effort = Effort {
+    solves: 6.0,
+    iterations: 5.0,
+    tested: 60.0,
+};
+/// A path of several rings that is not round, as of the runs of which `docs/performance.md` lists the numbers.
+const NOT_ROUND: Effort = Effort {
+    solves: 20.0,
+    iterations: 25.0,
+    tested: 150.0,
+};
 /// Memory of the program itself and of its pictures.
 const PROGRAM_BYTES: u64 = 80 << 20;
 /// Elements along the piece of the tube on which the time of a solve is measured.
 const PIECE: usize = 16;
-
-/// Average number of conjugate-gradient iterations per linear solve with several rings.
-const ITERATIONS_PER_SOLVE: f64 = 10.0;
 
 /// Forecasts the size and the cost of a study.
 pub fn forecast(plan: &Plan) -> Forecast {
@@ -39,12 +62,21 @@ pub fn forecast(plan: &Plan) -> Forecast {
     let unknowns = 3 * mesh.axial * mesh.around * mesh.thickness;
     let rings = mesh.rings(plan.symmetry);
     let unknowns_solved = unknowns / mesh.around * rings;
+    let is_round = plan.tube.imperfections.is_empty() && plan.start.is_none();
+    let effort = match (rings, is_round) {
+        (1, _) => AXISYMMETRIC,
+        (_, true) => ROUND,
+        (_, false) => NOT_ROUND,
+    };
     let solves = match &plan.solver.scheme {
-        Scheme::Static => SOLVES_PER_STATE,
+        Scheme::Static => effort.solves,
         Scheme::PseudoTime(scheme) => 3.0 * (scheme.ramp as f64 + 0.2 * scheme.max_steps as f64),
     };
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
-    let seconds_estimate = states as f64 * solves * seconds_per_solve(plan, rings);
+    let cost = Cost::measured(plan, rings);
+    let iterations = solves * effort.iterations + effort.tested;
+    let per_state = solves * cost.solve + iterations * cost.iteration;
+    let seconds_estimate = states as f64 * per_state;
     Forecast {
         unknowns,
         elements: mesh.elements().iter().product(),
@@ -95,36 +127,47 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
     PROGRAM_BYTES + kept + 5 * matrix + (512 << 20).min(matrix)
 }
 
-/// Measures the time of a linear solve on a short piece of the tube with the same cross-section.
-fn seconds_per_solve(plan: &Plan, rings: usize) -> f64 {
-    let (mesh, p) = (&plan.mesh, plan.mesh.degree);
-    let whole = mesh.axial - p;
-    let piece = PIECE.min(whole);
-    let short = Mesh {
-        axial: piece + p,
-        refinements: vec![],
-        ..mesh.clone()
-    };
-    let problem = TubeProblem::new(SplineTube::new(&plan.tube, &short, rings));
-    let (load, u) = (plan.tube.rest(), problem.tube.initial_guess());
-    let mut seconds = f64::INFINITY;
-    for _ in 0..3 {
-        let start = Instant::now();
-        let solver = problem.tangent(&load, &u).into_shifted(0.0);
-        let tangent = start.elapsed().as_secs_f64();
-        let Ok(solver) = solver else { continue };
-        let mut b = vec![0.0; u.len()];
-        b[problem.tube.unknowns() / 2] = 1.0;
-        let start = Instant::now();
-        let solved = solver.solve(&mut b, 1e-3, &());
-        let solve = start.elapsed().as_secs_f64();
-        let more = match solved {
-            Ok(solved) if solved.iterations > 0 => ITERATIONS_PER_SOLVE / solved.iterations as f64,
-            _ => 1.0,
+/// Times on this machine, in seconds.
+struct Cost {
+    /// A linear solve: the tangent and its factors, or the preconditioner.
+    solve: f64,
+    /// An iteration of conjugate gradients; 0 with one ring.
+    iteration: f64,
+}
+
+impl Cost {
+    /// Measures the times on a short piece of the tube with the same cross-section.
+    fn measured(plan: &Plan, rings: usize) -> Self {
+        let (mesh, p) = (&plan.mesh, plan.mesh.degree);
+        let whole = mesh.axial - p;
+        let piece = PIECE.min(whole);
+        let short = Mesh {
+            axial: piece + p,
+            refinements: vec![],
+            ..mesh.clone()
         };
-        seconds = seconds.min(tangent + more * solve);
+        let problem = TubeProblem::new(SplineTube::new(&plan.tube, &short, rings));
+        let (load, u) = (plan.tube.rest(), problem.tube.initial_guess());
+        let mut least = [f64::INFINITY; 2];
+        for _ in 0..3 {
+            let start = Instant::now();
+            let solver = problem.tangent(&load, &u).into_shifted(0.0);
+            let tangent = start.elapsed().as_secs_f64();
+            let Ok(solver) = solver else { continue };
+            let mut b = vec![0.0; u.len()];
+            b[problem.tube.unknowns() / 2] = 1.0;
+            let start = Instant::now();
+            let solved = solver.solve(&mut b, 1e-3, &());
+            let solve = start.elapsed().as_secs_f64();
+            let times = match solved {
+                Ok(solved) if solved.iterations > 0 => [tangent, solve / solved.iterations as f64],
+                _ => [tangent + solve, 0.0],
+            };
+            least = [0, 1].map(|i| least[i].min(times[i]));
+        }
+        let [solve, iteration] = least.map(|seconds| seconds * whole as f64 / piece as f64);
+        Self { solve, iteration }
     }
-    seconds * whole as f64 / piece as f64
 }
 
 /// Refuses a study that needs more than the free memory of the machine, where the system reports it (Linux).
