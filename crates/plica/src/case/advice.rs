@@ -96,13 +96,18 @@ mod tests {
             );
             let plan = crate::case::read(&text, "case").unwrap();
             let advice = advice(&plan);
-            advice.into_iter().find(|line| line.contains("-fold within its zone"))
+            advice
+                .into_iter()
+                .find(|line| line.contains("-fold within its zone"))
         };
         // The paper's tube grows fourfold in the middle of the zone.
         assert_eq!(stretched("[0.5, 1.0]", 1.25), None);
         assert_eq!(stretched("[0.5, 1.0]", 1.41), None);
         let line = stretched("[0.5, 1.0]", 1.43).unwrap();
-        assert!(line.starts_with("muscles.long makes the wall grow 6.2-fold"), "{line}");
+        assert!(
+            line.starts_with("muscles.long makes the wall grow 6.2-fold"),
+            "{line}"
+        );
         assert!(stretched("[0.5, 0.6]", 1.25).unwrap().contains("16.0-fold"));
     }
 }

@@ -37,7 +37,11 @@ impl DiskUse {
         let meridians = if rings == 1 { 1 } else { 2 };
         let profile = output.wall_points as f64 * (1 + 4 * meridians) as f64 * PROFILE_NUMBER;
         let state = HEADER + NUMBER * (unknowns + (mesh.axial + mesh.around) as u64);
-        let rows = 1 + plan.stages.iter().map(|stage| stage.steps as u64).sum::<u64>();
+        let rows = 1 + plan
+            .stages
+            .iter()
+            .map(|stage| stage.steps as u64)
+            .sum::<u64>();
         let [row, of_muscle] = ROW;
         let row = row + of_muscle * plan.tube.muscles.len() as u64;
         let [others, vectors] = CHECKPOINT;

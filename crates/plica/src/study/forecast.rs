@@ -1,10 +1,11 @@
 //! Forecast of the size and the cost of a study.
 
 use super::{Plan, StudyError};
+use crate::activation::Direction;
 use crate::assembly::SplineTube;
 use crate::equilibrium::{HarmonicTangent, TubeProblem};
 use crate::solve::{Equilibrium, Scheme, Solver, Tangent};
-use crate::tube::{Imperfection, Integration, Mesh, Part};
+use crate::tube::{Imperfection, Integration, Mesh, Part, Symmetry, Tube};
 use std::time::Instant;
 
 /// The size and the cost of a study.
@@ -39,18 +40,21 @@ const AXISYMMETRIC: Effort = Effort {
     iterations: 0.0,
     tested: 0.0,
 };
-/// A path of several rings without imperfections, whose states stay round.
+/// States of several rings that are nearly round; on such paths 4.2 and 4.4 solves with 2 iterations each were counted.
 const ROUND: Effort = Effort {
-    solves: 6.0,
-    iterations: 5.0,
-    tested: 60.0,
+    solves: 4.5,
+    iterations: 2.0,
+    tested: 20.0,
 };
-/// A path of several rings that is not round, as of the runs of which `docs/performance.md` lists the numbers.
+/// States of several rings that have left the axisymmetric path. Under an outer pressure beyond the critical one, 32 solves with
+/// 30 iterations each were counted, and ten times as many iterations where the wall nearly touches itself.
 const NOT_ROUND: Effort = Effort {
-    solves: 20.0,
-    iterations: 25.0,
-    tested: 150.0,
+    solves: 30.0,
+    iterations: 80.0,
+    tested: 600.0,
 };
+/// Growth stretch along the tube beyond which an imperfect tube tilts (Okino et al. 2025, at Lmax/L above 1.17).
+const TILTING_STRETCH: f64 = 3.0;
 /// Memory of the program itself and of its pictures.
 const PROGRAM_BYTES: u64 = 80 << 20;
 /// Elements along the piece of the tube on which the time of a solve is measured.
@@ -62,21 +66,23 @@ pub fn forecast(plan: &Plan) -> Forecast {
     let unknowns = 3 * mesh.axial * mesh.around * mesh.thickness;
     let rings = mesh.rings(plan.symmetry);
     let unknowns_solved = unknowns / mesh.around * rings;
-    let is_round = plan.tube.imperfections.is_empty() && plan.start.is_none();
-    let effort = match (rings, is_round) {
-        (1, _) => AXISYMMETRIC,
-        (_, true) => ROUND,
-        (_, false) => NOT_ROUND,
-    };
-    let solves = match &plan.solver.scheme {
-        Scheme::Static => effort.solves,
-        Scheme::PseudoTime(scheme) => 3.0 * (scheme.ramp as f64 + 0.2 * scheme.max_steps as f64),
+    let cost = Cost::measured(plan, rings);
+    let seconds = |effort: Effort| {
+        let solves = match &plan.solver.scheme {
+            Scheme::Static => effort.solves,
+            Scheme::PseudoTime(scheme) => {
+                3.0 * (scheme.ramp as f64 + 0.2 * scheme.max_steps as f64)
+            }
+        };
+        solves * cost.solve + (solves * effort.iterations + effort.tested) * cost.iteration
     };
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
-    let cost = Cost::measured(plan, rings);
-    let iterations = solves * effort.iterations + effort.tested;
-    let per_state = solves * cost.solve + iterations * cost.iteration;
-    let seconds_estimate = states as f64 * per_state;
+    let seconds_estimate = if rings == 1 {
+        states as f64 * seconds(AXISYMMETRIC)
+    } else {
+        let others = states_not_round(plan);
+        (states - others) as f64 * seconds(ROUND) + others as f64 * seconds(NOT_ROUND)
+    };
     Forecast {
         unknowns,
         elements: mesh.elements().iter().product(),
@@ -125,6 +131,51 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
     let matrix = banded(row);
     // Tangent, its factor, the factor of the last state, the damping matrix, and the batches before their sum.
     PROGRAM_BYTES + kept + 5 * matrix + (512 << 20).min(matrix)
+}
+
+/// Returns the number of states at which a tube that is not perfectly axisymmetric has left the axisymmetric path.
+fn states_not_round(plan: &Plan) -> usize {
+    let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
+    if plan.start.is_some() {
+        return states;
+    }
+    if plan.tube.imperfections.is_empty() {
+        return 0;
+    }
+    let (mut from, mut count) = (plan.first_load(), 0);
+    for stage in &plan.stages {
+        let is_beyond = |step: &usize| {
+            let t = *step as f64 / stage.steps as f64;
+            let between = |a: f64, b: f64| a + t * (b - a);
+            let pressed = [&from, &stage.load].map(|load| {
+                let [inner, outer] = load.pressures.map(|wall| wall.follower + wall.dead);
+                outer - inner
+            });
+            let muscles = plan.tube.muscles.iter().enumerate();
+            let stretches = muscles.filter(|(_, m)| m.direction == Direction::Longitudinal);
+            let mut stretches = stretches.map(|(m, muscle)| {
+                let ratio = between(from.muscles[m], stage.load.muscles[m]);
+                muscle.extreme_stretch(ratio, plan.tube.length)
+            });
+            between(pressed[0], pressed[1]) > critical_pressure(plan)
+                || stretches.any(|stretch| stretch > TILTING_STRETCH)
+        };
+        count += (1..=stage.steps).filter(is_beyond).count();
+        from = stage.load.clone();
+    }
+    count
+}
+
+/// Returns the outer pressure, in E, at which a long incompressible tube buckles: (n² − 1)/9 · (H/R)³, with the smallest n ≥ 2
+/// that the symmetry admits.
+fn critical_pressure(plan: &Plan) -> f64 {
+    let n = match plan.symmetry {
+        Symmetry::Fold(m) => m.max(2) as f64,
+        Symmetry::Axisymmetric | Symmetry::None => 2.0,
+    };
+    let thickness = plan.tube.thickness;
+    let slenderness = thickness / (Tube::OUTER_RADIUS - 0.5 * thickness);
+    (n * n - 1.0) / 9.0 * slenderness.powi(3)
 }
 
 /// Times on this machine, in seconds.
@@ -199,4 +250,31 @@ fn available_memory() -> Option<u64> {
         .parse::<u64>()
         .ok()
         .map(|kib| kib * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn not_round(lines: &str) -> usize {
+        let text = format!(
+            "symmetry = {{ fold = 3 }}\n[tube]\nlength = 2.0\nthickness = 0.05\n\
+             [mesh]\ncontrol_points = {{ axial = 14, around = 36, thickness = 4 }}\n\
+             [muscles.long]\ndirection = 'longitudinal'\nzone = [0.5, 1.0]\n\
+             [[imperfections]]\nof = 'geometry'\namplitude = 1e-3\nshape = {{ wave = {{ mode = 3 }} }}\n{lines}"
+        );
+        states_not_round(&crate::case::read(&text, "case").unwrap())
+    }
+
+    #[test]
+    fn states_beyond_the_critical_pressure_and_tilted_ones_are_forecast_as_not_round() {
+        // Of ten equal steps to 8e-3, those above 8/9 (0.05/0.475)³ = 1.04e-3.
+        let pressed = "[[stages]]\nsteps = 10\ndrive.outer-wall.pressure = 8e-3\n";
+        assert_eq!(not_round(pressed), 9);
+        let inflated = "[[stages]]\nsteps = 10\ndrive.inner-wall.pressure = 8e-3\n";
+        assert_eq!(not_round(inflated), 0);
+        // θ = 1 + (Lmax/L − 1) 2/0.25 passes 3 at Lmax/L = 1.25.
+        let stretched = "[[stages]]\nsteps = 4\ndrive.long.length_ratio = 1.4\n";
+        assert_eq!(not_round(stretched), 2);
+    }
 }
