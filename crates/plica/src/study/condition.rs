@@ -1,0 +1,177 @@
+//! Conditions at which a run stops, as `shape = invaginated` or `overhang > 0.1`.
+
+use super::{Plan, Quantity, Row};
+use crate::measure::Shape;
+use std::fmt;
+
+/// A condition on an accepted state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    text: String,
+    test: Test,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Test {
+    /// The outer wall runs back along the axis.
+    Overhangs,
+    /// The state is unstable to a tested mode.
+    Unstable,
+    /// The cell of a column of texts is a word.
+    Is(String, String),
+    /// The cell of a column of numbers compares with a number.
+    Number(String, Comparison, f64),
+}
+
+/// A comparison of two numbers.
+type Comparison = fn(f64, f64) -> bool;
+
+/// The comparisons; one that contains another comes before it.
+const COMPARISONS: [(&str, Comparison); 5] = [
+    ("<=", |a, b| a <= b),
+    (">=", |a, b| a >= b),
+    ("<", |a, b| a < b),
+    (">", |a, b| a > b),
+    ("=", |a, b| a == b),
+];
+
+impl Condition {
+    /// Reads a condition on the states of a plan: `overhangs`, `unstable`, or the name of a column of the history, one of
+    /// `=`, `<`, `<=`, `>`, `>=`, and a number or, after `=` only, a word.
+    ///
+    /// # Errors
+    /// What is wrong with the text, in words.
+    pub fn parse(text: &str, plan: &Plan) -> Result<Self, String> {
+        let with = |test| Self {
+            text: text.trim().to_owned(),
+            test,
+        };
+        match text.trim() {
+            "overhangs" => return Ok(with(Test::Overhangs)),
+            "unstable" => return Ok(with(Test::Unstable)),
+            _ => {}
+        }
+        let parts = COMPARISONS.iter().find_map(|(sign, comparison)| {
+            let (name, value) = text.split_once(sign)?;
+            Some((name.trim(), *sign, *comparison, value.trim()))
+        });
+        let Some((name, sign, comparison, value)) = parts else {
+            let rule = "must be overhangs, unstable, or a column compared with a value";
+            return Err(format!("{rule}, as in \"shape = invaginated\" or \"overhang > 0.1\""));
+        };
+        let cells = zero(plan).cells();
+        let Some(cell) = cells.iter().find(|cell| cell.name == name) else {
+            let names: Vec<&str> = cells.iter().map(|cell| cell.name.as_str()).collect();
+            return Err(format!(
+                "`{name}` is not a column of this run; choose overhangs, unstable, or one of {}",
+                names.join(", ")
+            ));
+        };
+        if cell.quantity != Quantity::Text {
+            let number = value.parse().ok().filter(|x: &f64| x.is_finite());
+            let number = number.ok_or_else(|| format!("`{value}` is not a number"))?;
+            return Ok(with(Test::Number(name.to_owned(), comparison, number)));
+        }
+        if sign != "=" {
+            return Err(format!("`{name}` is a word; write {name} = {value}"));
+        }
+        check_word(name, value, plan)?;
+        Ok(with(Test::Is(name.to_owned(), value.to_owned())))
+    }
+
+    /// Returns whether a state fulfils the condition; its numbers are in the units of the history.
+    pub fn holds(&self, row: &Row) -> bool {
+        let cell = |name: &str| row.cells().into_iter().find(|cell| cell.name == name);
+        match &self.test {
+            Test::Overhangs => row.overhangs(),
+            Test::Unstable => row.stability.is_unstable(),
+            Test::Is(name, word) => cell(name).is_some_and(|cell| cell.text == *word),
+            Test::Number(name, comparison, number) => {
+                let value = cell(name).and_then(|cell| cell.number());
+                value.is_some_and(|value| comparison(value, *number))
+            }
+        }
+    }
+}
+
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// Returns a row with the columns of a plan.
+fn zero(plan: &Plan) -> Row {
+    let muscles = plan.tube.muscles.iter();
+    let muscles: Vec<&str> = muscles.map(|muscle| muscle.name.as_str()).collect();
+    let row = Row::zero(&muscles, plan.end_names.each_ref().map(String::as_str));
+    if plan.has_pressures() {
+        row.with_pressures()
+    } else {
+        row
+    }
+}
+
+/// Refuses words that a column never has.
+fn check_word(name: &str, word: &str, plan: &Plan) -> Result<(), String> {
+    let words: Vec<String> = match name {
+        "shape" => Shape::ALL.iter().map(ToString::to_string).collect(),
+        "side" => [&plan.end_names[..], &["none".to_owned()]].concat(),
+        "stage" => plan.stages.iter().map(|stage| stage.name.clone()).collect(),
+        "equilibrium" => ["yes", "no"].map(String::from).to_vec(),
+        _ => return Ok(()),
+    };
+    if words.iter().any(|own| own == word) {
+        return Ok(());
+    }
+    Err(format!("{name} is never `{word}`; choose one of {}", words.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::fixture;
+    use crate::tube::Symmetry;
+
+    fn holds(text: &str, change: impl Fn(&mut Row)) -> bool {
+        let plan = fixture::plan(Symmetry::Axisymmetric);
+        let mut row = zero(&plan);
+        change(&mut row);
+        Condition::parse(text, &plan).unwrap().holds(&row)
+    }
+
+    #[test]
+    fn conditions_compare_words_and_numbers_of_a_state() {
+        assert!(holds("shape = invaginated", |row| row.shape = Shape::Invaginated));
+        assert!(!holds("shape = invaginated", |row| row.shape = Shape::Square));
+        assert!(holds(" overhang >0.1", |row| row.overhang = 0.11));
+        assert!(!holds("overhang > 0.1", |row| row.overhang = 0.1));
+        assert!(holds("overhang>=0.1", |row| row.overhang = 0.1));
+        assert!(holds("lumen < 1e-2", |row| row.lumen = -1.0));
+        assert!(!holds("lumen <= -2", |row| row.lumen = -1.0));
+        assert!(holds("step = 3", |row| row.step = 3));
+        let unstable = |row: &mut Row| row.stability = "1:2".parse().unwrap();
+        assert!(holds("unstable", unstable) && !holds("unstable", |_| {}));
+        let overhangs = |row: &mut Row| {
+            (row.overhang, row.max_wall_angle_deg) = (0.3, 150.0);
+        };
+        assert!(holds("overhangs", overhangs) && !holds("overhangs", |_| {}));
+    }
+
+    #[test]
+    fn a_condition_that_never_holds_is_refused_with_the_reason() {
+        let plan = fixture::plan(Symmetry::Axisymmetric);
+        for (text, reason) in [
+            ("invaginated", "as in \"shape = invaginated\""),
+            ("beauty > 1", "`beauty` is not a column of this run"),
+            ("overhang > large", "`large` is not a number"),
+            ("overhang > nan", "`nan` is not a number"),
+            ("shape > V", "write shape = V"),
+            ("shape = W", "shape is never `W`; choose one of straight, V"),
+            ("side = right", "choose one of colon, ileum, none"),
+        ] {
+            let error = Condition::parse(text, &plan).unwrap_err();
+            assert!(error.contains(reason), "{text}: {error}");
+        }
+    }
+}
