@@ -97,6 +97,14 @@ pub struct RunArguments {
     /// steps of the current stage, and later stages of the case may have changed
     #[arg(long, conflicts_with = "overwrite")]
     pub resume: bool,
+    /// Change a key of the case, for example mesh.degree=2 or stages[2].steps=40; may be repeated. The case.toml of the run
+    /// has the change
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<Setting>,
+    /// Stop after the first state that fulfils a condition, for example "shape = invaginated", overhangs, unstable, or
+    /// "overhang > 0.1" with any column of history.csv. The run is then complete; plica resume goes on
+    #[arg(long, value_name = "CONDITION")]
+    pub until: Option<String>,
     /// Exit with code 4 if the run is complete, but a wall crosses itself, the lumen is closed, or a state is not in
     /// equilibrium or was not tested for stability
     #[arg(long)]
@@ -358,6 +366,19 @@ fn view(text: &str) -> Result<Direction, String> {
                 names.join(", ")
             ))
         }
+    }
+}
+
+/// A key of a case and its new value.
+pub type Setting = (String, String);
+
+/// Parses a changed key.
+fn setting(text: &str) -> Result<Setting, String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() && !value.trim().is_empty() => {
+            Ok((key.trim().to_owned(), value.trim().to_owned()))
+        }
+        _ => Err("must be KEY=VALUE, as in mesh.degree=2".into()),
     }
 }
 

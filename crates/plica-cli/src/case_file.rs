@@ -1,8 +1,8 @@
 //! Reads case files and the files that they name from disk.
 
-use crate::args::CaseArguments;
+use crate::args::{CaseArguments, Setting};
 use crate::failure::Failure;
-use plica::case::{self, InputFile, OpenInput};
+use plica::case::{self, EditError, InputFile, OpenInput};
 use plica::run_directory::{RunDirectory, RunError};
 use plica::saved_state::{SavedState, SavedStateError};
 use plica::study::{ModeShape, Plan};
@@ -16,8 +16,16 @@ const LARGEST: u64 = 1 << 20;
 /// Reads a case file, and returns its text and its plan. Paths in it are relative to its folder; the
 /// files lie in that folder, in the current one, or in the one that `--within` names.
 pub fn open(arguments: &CaseArguments) -> Result<(String, Plan), Failure> {
+    open_changed(arguments, &[])
+}
+
+/// Reads a case file with keys changed; else as [`open`].
+pub fn open_changed(
+    arguments: &CaseArguments,
+    changes: &[Setting],
+) -> Result<(String, Plan), Failure> {
     let folders = Folders::of(arguments)?;
-    open_with(&arguments.file, &|file| folders.read(file))
+    open_with(&arguments.file, changes, &|file| folders.read(file))
 }
 
 /// Returns advice on a case that is allowed but perhaps not meant, a sentence each.
@@ -71,8 +79,12 @@ impl<'a> Folders<'a> {
     }
 }
 
-/// Reads a case file; `open` reads the files that it names.
-pub fn open_with(path: &Path, open: &OpenInput<'_>) -> Result<(String, Plan), Failure> {
+/// Reads a case file with keys changed; `open` reads the files that it names.
+fn open_with(
+    path: &Path,
+    changes: &[Setting],
+    open: &OpenInput<'_>,
+) -> Result<(String, Plan), Failure> {
     let failure = |error| Failure::Files(format!("{}: {error}", path.display()));
     let too_large = || {
         let what = format!("{} is too large for a case", path.display());
@@ -94,6 +106,10 @@ pub fn open_with(path: &Path, open: &OpenInput<'_>) -> Result<(String, Plan), Fa
         let what = format!("{} is not text (a case is TOML, in UTF-8)", path.display());
         return Err(Failure::Usage(what));
     };
+    let text = match changes {
+        [] => text,
+        changes => changed(path, text, changes)?,
+    };
     match case::read_with(&text, &stem(path), open) {
         Ok(plan) => Ok((text, plan)),
         Err(error) => Err(Failure::Case {
@@ -102,6 +118,35 @@ pub fn open_with(path: &Path, open: &OpenInput<'_>) -> Result<(String, Plan), Fa
             error,
         }),
     }
+}
+
+/// Returns the text of a case with keys changed. A word without quotes that is no value is a text.
+fn changed(path: &Path, text: String, changes: &[Setting]) -> Result<String, Failure> {
+    // Mistakes of the file are reported as such.
+    if let Err(error) = case::check_syntax(&text) {
+        return Err(Failure::Case {
+            path: path.to_owned(),
+            text,
+            error,
+        });
+    }
+    changes.iter().try_fold(text, |text, (key, value)| {
+        let quoted = format!("\"{value}\"");
+        let is_word = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+        let edited = case::edited(&text, &[(key, value)]);
+        let edited = match edited {
+            Err(EditError::Syntax { .. }) if value.chars().all(is_word) => {
+                case::edited(&text, &[(key, &quoted)])
+            }
+            edited => edited,
+        };
+        edited.map_err(|error| match error {
+            EditError::Syntax { .. } => Failure::Usage(format!(
+                "--set {key}={value}: not a key and a value as in a case file"
+            )),
+            error => Failure::Usage(format!("--set {error}")),
+        })
+    })
 }
 
 /// Returns the plan of a run directory, with the start state and the modes that it keeps.
@@ -114,7 +159,7 @@ pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
         read.map_err(|source| Failure::Run(RunError::State { path, source }))?;
     }
     let case = directory.path().join("case.toml");
-    let (_, mut plan) = open_with(&case, &|file| kept(directory, file))?;
+    let (_, mut plan) = open_with(&case, &[], &|file| kept(directory, file))?;
     // Without a title of its own, a case has the name of its file, which is another one here.
     let manifest = directory.manifest();
     let titled = manifest["title"].as_str().filter(|title| !title.is_empty());
@@ -128,11 +173,12 @@ pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
 /// before are read from the run directory.
 pub fn open_again(
     arguments: &CaseArguments,
+    changes: &[Setting],
     directory: &RunDirectory,
     old: &Plan,
 ) -> Result<(String, Plan), Failure> {
     let folders = Folders::of(arguments)?;
-    open_with(&arguments.file, &|wanted| {
+    open_with(&arguments.file, changes, &|wanted| {
         let is_same = match wanted {
             InputFile::State(file) => old.start.iter().any(|start| start.file == file),
             InputFile::Mode(number, file) => {

@@ -8,7 +8,7 @@ use crate::{case_file, console, threads};
 use plica::case::differences;
 use plica::run_directory::{Run, RunDirectory, RunError, Summary};
 use plica::study::findings::states_in;
-use plica::study::{Ending, Findings, Plan, check_memory, forbidden_changes};
+use plica::study::{Condition, Ending, Findings, Plan, check_memory, forbidden_changes};
 use plica_view::report::pictures;
 use std::path::{Path, PathBuf};
 
@@ -45,11 +45,36 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if arguments.resume && RunDirectory::exists(&out) {
         return resume_with_case(arguments, &out);
     }
-    let (text, plan) = case_file::open(&arguments.case)?;
+    let (text, plan) = case_file::open_changed(&arguments.case, &arguments.set)?;
+    let until = until(arguments, &plan)?;
     let interrupt = Interrupt::listen()?;
     check_memory(&plan).map_err(RunError::from)?;
     let mut directory = RunDirectory::create(&out, &text, &plan.title, arguments.overwrite)?;
-    follow(&plan, &mut directory, interrupt, [false, arguments.strict])
+    let how = How {
+        resume: false,
+        strict: arguments.strict,
+        until,
+    };
+    follow(&plan, &mut directory, interrupt, &how)
+}
+
+/// Returns the condition at which a run is to stop.
+fn until(arguments: &RunArguments, plan: &Plan) -> Result<Option<Condition>, Failure> {
+    let parsed = arguments.until.as_deref();
+    let parsed = parsed.map(|text| Condition::parse(text, plan));
+    parsed
+        .transpose()
+        .map_err(|error| Failure::Usage(format!("--until: {error}")))
+}
+
+/// The manner in which a run is followed.
+struct How {
+    /// Whether an interrupted run is resumed.
+    resume: bool,
+    /// Whether unphysical states are an error.
+    strict: bool,
+    /// Condition at which it stops.
+    until: Option<Condition>,
 }
 
 /// Resumes a run with a case, which may differ from the one of the run in what is still ahead.
@@ -58,10 +83,11 @@ fn resume_with_case(arguments: &RunArguments, out: &Path) -> Result<(), Failure>
     directory.lock()?;
     let before = directory.read("case.toml").unwrap_or_default();
     let (text, plan) = if directory.has_hardly_begun() {
-        case_file::open(&arguments.case)?
+        case_file::open_changed(&arguments.case, &arguments.set)?
     } else {
         let old = case_file::of_run(&directory)?;
-        let (text, plan) = case_file::open_again(&arguments.case, &directory, &old)?;
+        let (text, plan) =
+            case_file::open_again(&arguments.case, &arguments.set, &directory, &old)?;
         if before == text.as_bytes() {
             if directory.is_complete() {
                 return nothing_to_do(&mut directory, &plan);
@@ -72,12 +98,17 @@ fn resume_with_case(arguments: &RunArguments, out: &Path) -> Result<(), Failure>
         }
         (text, plan)
     };
+    let how = How {
+        resume: true,
+        strict: arguments.strict,
+        until: until(arguments, &plan)?,
+    };
     let interrupt = Interrupt::listen()?;
     check_memory(&plan).map_err(RunError::from)?;
     if before != text.as_bytes() {
         directory.write_case(&text, &plan.title)?;
     }
-    follow(&plan, &mut directory, interrupt, [true, arguments.strict])
+    follow(&plan, &mut directory, interrupt, &how)
 }
 
 /// Resumes a run.
@@ -89,8 +120,12 @@ pub fn resume(arguments: &ResumeArguments) -> Result<(), Failure> {
     if directory.is_complete() {
         return nothing_to_do(&mut directory, &plan);
     }
-    let how = [true, arguments.strict];
-    follow(&plan, &mut directory, Interrupt::listen()?, how)
+    let how = How {
+        resume: true,
+        strict: arguments.strict,
+        until: None,
+    };
+    follow(&plan, &mut directory, Interrupt::listen()?, &how)
 }
 
 /// Prints that a run is complete, restores its history if that is damaged, and lists its damaged files.
@@ -130,13 +165,12 @@ fn check_changes(
     Err(Failure::Usage(message))
 }
 
-/// Follows a run to its end, shows its states, and draws its pictures. The last two arguments say whether an interrupted run
-/// is resumed, and whether unphysical states are an error.
+/// Follows a run to its end, shows its states, and draws its pictures.
 fn follow(
     plan: &Plan,
     directory: &mut RunDirectory,
     interrupt: Interrupt,
-    [resume, strict]: [bool; 2],
+    how: &How,
 ) -> Result<(), Failure> {
     let out = directory.path().to_owned();
     console::message(&format!("{}\nwriting to {}", plan.title, out.display()));
@@ -144,7 +178,7 @@ fn follow(
         console::message(&format!("warning: {warning}"));
     }
     let mut progress = Progress::new(plan, interrupt.clone());
-    let summary = all_states(plan, directory, &mut progress, resume);
+    let summary = all_states(plan, directory, &mut progress, how);
     progress.finish();
     let summary = summary.map_err(|error| Failure::OfRun {
         error,
@@ -164,7 +198,13 @@ fn follow(
         Ending::Complete => {
             let closed = directory.close();
             closed.map_err(|error| Failure::from(error).of_run(&out))?;
-            return if strict {
+            if let Some(condition) = directory.stopped_at() {
+                console::message(&format!(
+                    "stopped at the first state with {condition}, as asked; `plica resume {}` goes on",
+                    out.display()
+                ));
+            }
+            return if how.strict {
                 check_states(summary.findings())
             } else {
                 Ok(())
@@ -207,15 +247,19 @@ fn all_states(
     plan: &Plan,
     directory: &mut RunDirectory,
     progress: &mut Progress,
-    resume: bool,
+    how: &How,
 ) -> Result<Summary, RunError> {
-    let mut run = if resume {
+    let mut run = if how.resume {
         Run::resume(plan, directory, progress)?
     } else {
         Run::begin(plan, directory)?
     };
     while let Some(row) = run.next_row(progress)? {
         progress.show(row);
+        if let Some(condition) = how.until.as_ref().filter(|until| until.holds(row)) {
+            run.stop_at(condition);
+            break;
+        }
     }
     run.finish()
 }

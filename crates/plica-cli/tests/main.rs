@@ -3,6 +3,7 @@
 mod common;
 
 mod broken;
+mod changed_cases;
 mod command_line;
 mod export;
 mod faults;

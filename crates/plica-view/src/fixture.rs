@@ -43,6 +43,7 @@ pub fn plan(symmetry: Symmetry) -> Plan {
         solver: Default::default(),
         output: Output::default(),
         units: None,
+        end_names: Plan::usual_end_names(),
     }
 }
 

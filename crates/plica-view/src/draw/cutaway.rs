@@ -9,13 +9,17 @@ use super::colour_bar::draw_colour_bar;
 use super::image::MIN_SIDE;
 use super::range::{Range, ResolvedRange};
 use super::render::render;
-use super::text::{HALF_CAP, TITLE_SIZE, truncated};
+use super::text::{HALF_CAP, TEXT_SIZE, TITLE_SIZE, text_width, truncated};
 use super::vec3::dot;
 use super::view::View;
 use super::{Compression, DrawError, Image, Surface};
 
-/// Margin for "colon" and "ileum" beside the tubes, in points.
-const SIDE: f64 = 36.0;
+/// Smallest margin for the names of the ends beside the tubes, in points.
+const MIN_SIDE_MARGIN: f64 = 36.0;
+/// Largest width of the name of an end, in points.
+const MAX_NAME: f64 = 80.0;
+/// Distance between the name of an end and the tube, and the edge of the picture, in points.
+const GAP: f64 = 7.0;
 /// Maximum height of a panel in points.
 const MAX_HEIGHT: f64 = 190.0;
 /// Smallest projected length of a unit along z for which the scale bar applies to all directions.
@@ -78,6 +82,8 @@ pub struct Cutaway {
     pub bounds: Vec<[f64; 3]>,
     /// Samples along each side of a pixel, 1 to 4: 2 give smooth edges, 3 are finer and take longer.
     pub samples: usize,
+    /// Names of the ends on the left and on the right.
+    pub ends: [String; 2],
     /// Length of the scale bar in units of D, and the text below it.
     pub scale_bar: (f64, String),
     /// Printed width in points.
@@ -96,6 +102,7 @@ impl Default for Cutaway {
             toward: [0.42, 1.0, -0.35],
             bounds: Vec::new(),
             samples: 2,
+            ends: ["colon", "ileum"].map(String::from),
             scale_bar: (1.0, "*D*".into()),
             width_pt: 510.0,
         }
@@ -156,6 +163,18 @@ impl Cutaway {
         Ok(self.points_per_unit()? * width_px as f64 / self.width_pt)
     }
 
+    /// Returns the names of the ends, shortened if they are long.
+    fn end_names(&self) -> [String; 2] {
+        let shortened = |name: &String| truncated(name, TEXT_SIZE, MAX_NAME);
+        self.ends.each_ref().map(shortened)
+    }
+
+    /// Returns the margin beside the tubes, in points.
+    fn side_margin(&self) -> f64 {
+        let widths = self.end_names().map(|name| text_width(&name, TEXT_SIZE));
+        MIN_SIDE_MARGIN.max(widths[0].max(widths[1]) + 2.0 * GAP)
+    }
+
     /// Returns the printed points per unit of D; the maximum height limits the width of a short tube.
     fn points_per_unit(&self) -> Result<f64, DrawError> {
         let [right, up, _] = View::axes(self.toward);
@@ -164,7 +183,7 @@ impl Cutaway {
         for panel in &self.panels {
             highest = highest.max(self.extent([panel].into_iter(), up)?.1);
         }
-        Ok(((self.width_pt - 2.0 * SIDE) / width).min(MAX_HEIGHT / highest))
+        Ok(((self.width_pt - 2.0 * self.side_margin()) / width).min(MAX_HEIGHT / highest))
     }
 
     /// Returns the picture as pixels.
@@ -182,6 +201,7 @@ impl Cutaway {
         // A short tube is centred.
         let inset = 0.5 * (self.width_pt - width * per_unit);
 
+        let side = self.side_margin();
         let mut tops = Vec::new();
         let mut bottom = if self.title.is_empty() { 4.0 } else { 24.0 };
         for panel in &self.panels {
@@ -192,8 +212,12 @@ impl Cutaway {
         }
         let mut canvas = Canvas::new(self.width_pt, bottom + 44.0, width_px)?;
         if !self.title.is_empty() {
-            let title = truncated(&self.title, TITLE_SIZE, self.width_pt - 2.0 * SIDE);
-            canvas.title((SIDE, 13.0), &title, Anchor::Start);
+            let title = truncated(
+                &self.title,
+                TITLE_SIZE,
+                self.width_pt - 2.0 * self.side_margin(),
+            );
+            canvas.title((side, 13.0), &title, Anchor::Start);
         }
         let margin = 2.0; // points around a tube, for the line along its edge
         let pixels = canvas.pixels_per_point();
@@ -218,21 +242,18 @@ impl Cutaway {
         for ((panel, (top, _, height)), tube) in self.panels.iter().zip(tops).zip(tubes?) {
             let mut top = top;
             if !panel.label.is_empty() {
-                canvas.text((SIDE, top + 8.0), &panel.label, Anchor::Start);
+                canvas.text((side, top + 8.0), &panel.label, Anchor::Start);
                 top += 13.0;
             }
             canvas.overlay(tube, (inset - margin, top - margin));
             let middle = top + height / 2.0 + HALF_CAP;
-            canvas.text((inset - 7.0, middle), "colon", Anchor::End);
-            canvas.text(
-                (self.width_pt - inset + 7.0, middle),
-                "ileum",
-                Anchor::Start,
-            );
+            let [left, right] = self.end_names();
+            canvas.text((inset - GAP, middle), &left, Anchor::End);
+            canvas.text((self.width_pt - inset + GAP, middle), &right, Anchor::Start);
         }
         let (length, name) = &self.scale_bar;
         let length = length * per_unit * right[2];
-        let (end, base) = (self.width_pt - SIDE, bottom + 13.0);
+        let (end, base) = (self.width_pt - side, bottom + 13.0);
         canvas.line((end - length, base), (end, base), Pen::new(INK, 1.2));
         canvas.text(
             (end - length / 2.0, base + 10.5), // In an oblique view the bar applies only to lengths along the tube.
@@ -243,7 +264,7 @@ impl Cutaway {
             },
             Anchor::Middle,
         );
-        let (corner, limit) = ((SIDE + 8.0, bottom + 6.0), end - length - 12.0);
+        let (corner, limit) = ((side + 8.0, bottom + 6.0), end - length - 12.0);
         draw_colour_bar(
             &mut canvas,
             corner,

@@ -10,6 +10,8 @@ use serde::Serialize;
 #[derive(Serialize)]
 pub struct RunData {
     name: String,
+    /// Names of the ends at z = 0 and z = L.
+    ends: [String; 2],
     /// Walls of all drawn states.
     pub scene: Scene,
     /// Stage of every row of the history.
@@ -46,6 +48,7 @@ impl RunData {
         };
         Self {
             name: run.name.clone(),
+            ends: run.plan.end_names.clone(),
             scene,
             stages: run.rows.iter().map(|row| row.stage.clone()).collect(),
             shapes: run.rows.iter().map(|row| row.shape.to_string()).collect(),

@@ -21,13 +21,16 @@ pub fn headline(run: &Run<'_>, findings: &Findings) -> String {
             run.rows.len()
         );
     }
-    let ended = match run.directory.verdict() {
-        Verdict::Complete => "All stages were completed.",
-        Verdict::Lost => "No equilibrium was found beyond the last state.",
-        Verdict::Stopped => "The run was stopped before it was complete.",
-        Verdict::Running => "The run is still in progress or was killed.",
+    let ended = match (run.directory.verdict(), run.directory.stopped_at()) {
+        (Verdict::Complete, Some(condition)) => {
+            format!("The run was stopped at the first state with {condition}, as asked.")
+        }
+        (Verdict::Complete, None) => "All stages were completed.".into(),
+        (Verdict::Lost, _) => "No equilibrium was found beyond the last state.".into(),
+        (Verdict::Stopped, _) => "The run was stopped before it was complete.".into(),
+        (Verdict::Running, _) => "The run is still in progress or was killed.".into(),
     };
-    let mut sentences = vec![ended.to_owned()];
+    let mut sentences = vec![ended];
     if let Some(last) = run.rows.last() {
         sentences.extend(final_shape(run, last, findings));
         sentences.extend(unstable(findings));
@@ -45,7 +48,8 @@ fn final_shape(run: &Run<'_>, last: &Row, findings: &Findings) -> Vec<String> {
             format!("In the last state the tube is {}.", described(last.shape))
         }
         (side, true) => format!(
-            "In the last state the tube invaginates toward the {side} with an overhang of {:.3} {unit}.",
+            "In the last state the tube invaginates toward the {} with an overhang of {:.3} {unit}.",
+            last.name_of(side),
             last.overhang
         ),
     };

@@ -94,6 +94,7 @@ fn modes(plan: &Plan, spectrum: &Spectrum, shown: &StateWithModes) -> Cutaway {
             .collect(),
         value_label: "radial displacement of the mode".into(),
         range: Range::Given(-1.0, 1.0),
+        ends: plan.end_names.clone(),
         map: ColourMap::Diverging,
         ..Cutaway::default()
     }

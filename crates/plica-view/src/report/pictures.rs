@@ -181,6 +181,7 @@ fn cutaway(
         scale_bar: scale_bar(&Scale::of(plan.units.as_ref())),
         range: Range::Resolved(range),
         extremes_of: "on the path",
+        ends: plan.end_names.clone(),
         ..Cutaway::default()
     };
     let drawn = |look: &SurfaceOptions| Cutaway {

@@ -210,6 +210,7 @@ fn picture(plan: &Plan, panels: Vec<Panel>, look: &Appearance) -> Cutaway {
         scale_bar: scale_bar(&scale(plan)),
         toward: look.toward,
         map: look.field.map(),
+        ends: plan.end_names.clone(),
         extremes_of: match look.scale {
             ColourScale::Shown => "",
             ColourScale::Path | ColourScale::Given(_) => "on the path",

@@ -120,7 +120,7 @@ fn chart(plan: &Plan, found: &PathStability, stage: &str) -> Chart {
         .filter(|c| c.negative.contains(&0) && c.transition == Transition::Smooth)
         .collect();
     Chart {
-        x_label: label(quantity, &plan.tube),
+        x_label: label(quantity, plan),
         y_label: "lowest eigenvalue *λ*/*λ*_{begin}".into(),
         curves,
         markers: marked
@@ -161,15 +161,16 @@ fn name(harmonic: usize) -> String {
 }
 
 /// Returns the label of an axis.
-fn label(quantity: Quantity, tube: &Tube) -> String {
+fn label(quantity: Quantity, plan: &Plan) -> String {
+    let moved = |end: usize| format!("displacement of the {} end/*D*", plan.end_names[end]);
     match quantity {
         Quantity::LengthRatio => "*L*_{max}/*L*".into(),
         Quantity::DiameterRatio => "*D*_{min}/*D*".into(),
-        Quantity::ColonDisplacement => "displacement of the colon end/*D*".into(),
-        Quantity::IleumDisplacement => "displacement of the ileum end/*D*".into(),
+        Quantity::ColonDisplacement => moved(0),
+        Quantity::IleumDisplacement => moved(1),
         Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
         Quantity::DeadLoad(wall) => format!("dead load/*E* {}", ["inside", "outside"][wall]),
-        Quantity::Muscle(_) => quantity.name(tube),
+        Quantity::Muscle(_) => quantity.name(&plan.tube),
     }
 }
 
@@ -179,7 +180,7 @@ fn first_mode(plan: &Plan, change: &StabilityChange, mode: &Mode) -> Result<Vec<
     let meridian = Meridian::new(&tube, mode);
     let at = format!(
         "{} = {}",
-        label(change.quantity, &plan.tube),
+        label(change.quantity, plan),
         change.quantity.format(change.critical, 4)
     );
     let n = mode.harmonic;
@@ -213,6 +214,7 @@ fn first_mode(plan: &Plan, change: &StabilityChange, mode: &Mode) -> Result<Vec<
         ],
         value_label: "radial displacement of the mode".into(),
         range: Range::Given(-1.0, 1.0),
+        ends: plan.end_names.clone(),
         map: ColourMap::Diverging,
         width_pt: PAGE,
         ..Cutaway::default()

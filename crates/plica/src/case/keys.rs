@@ -179,6 +179,11 @@ table! {
         colon: Support = default("fixed");
         /// The support of the end at L.
         ileum: Support = default("fixed");
+        /// The name of the end at 0 in tables and pictures, such as `proximal`. At most 40 letters, digits, - and _. In the
+        /// case file itself the end is called `colon`.
+        colon_name: String = default("colon");
+        /// The name of the end at L, which is called `ileum` in the case file itself.
+        ileum_name: String = default("ileum");
     }
 }
 

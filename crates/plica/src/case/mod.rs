@@ -63,6 +63,16 @@ use toml::de::DeValue;
 /// A commented case file to start from: the tube of Okino et al. (2025), which invaginates.
 pub const STARTER: &str = include_str!("starter.toml");
 
+/// Checks that a text is TOML.
+///
+/// # Errors
+/// All syntax errors, in the order of the text.
+pub fn check_syntax(text: &str) -> Result<(), CaseError> {
+    let mut problems = Problems::of(text, Case::KEYS);
+    syntax::parse(text, &mut problems);
+    problems.into_result()
+}
+
 /// Reads and checks the text of a case file that names no other files. `name` is its title if it gives
 /// none: the name of the file without the extension.
 ///

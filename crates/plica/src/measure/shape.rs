@@ -43,6 +43,16 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// All shapes.
+    pub const ALL: [Self; 7] = [
+        Self::Straight,
+        Self::V,
+        Self::U,
+        Self::Square,
+        Self::Invaginated,
+        Self::Swollen,
+        Self::Collapsed,
+    ];
     /// Depth or bulge, in D, below which a tube is straight; also the least contraction 1 − Dmin/D.
     pub const MIN_DEPTH: f64 = 0.02;
     /// Flatness from which a narrowed region is a U.

@@ -103,7 +103,7 @@ mod tests {
                  [output]\npictures = false\nstates_every = 2\n"
             );
             let plan = crate::case::read(&text, "case").unwrap();
-            assert_eq!((due(&plan, 2), due(&plan, 1), due(&plan, 0)), (4, 6, 0));
+            assert_eq!((due(&plan, 2), due(&plan, 1), due(&plan, 0)), (5, 6, 0));
             let path = scratch("disk").join("run");
             let mut directory = RunDirectory::create(&path, &text, "case", false).unwrap();
             run(&plan, &mut directory, &mut ()).unwrap();

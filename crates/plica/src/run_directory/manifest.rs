@@ -46,6 +46,9 @@ pub(super) struct Manifest {
     pub verdict: Verdict,
     /// The verdict in a sentence.
     pub verdict_text: String,
+    /// Condition at which the run was asked to stop, and did; `plica resume` goes on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub until: Option<String>,
     /// Number of accepted states, rest included.
     pub states: usize,
     /// Number of states out of equilibrium, which a pseudo-time scheme may accept.
@@ -91,6 +94,7 @@ impl Manifest {
             ended_unix: None,
             verdict: Verdict::Running,
             verdict_text: "the run has not ended (or was killed)".into(),
+            until: None,
             states: 0,
             states_out_of_equilibrium: 0,
             states_unstable: 0,
@@ -129,13 +133,17 @@ impl Manifest {
 
     /// Closes the manifest at the end of a run.
     pub fn end(&mut self, ending: &Ending, rows: &[Row]) {
-        let (verdict, text) = match ending {
-            Ending::Complete => (Verdict::Complete, "every stage was completed".into()),
-            Ending::Stopped => (
+        let (verdict, text) = match (ending, &self.until) {
+            (Ending::Complete, Some(condition)) => (
+                Verdict::Complete,
+                format!("stopped at the first state with {condition}, as asked"),
+            ),
+            (Ending::Complete, None) => (Verdict::Complete, "every stage was completed".into()),
+            (Ending::Stopped, _) => (
                 Verdict::Stopped,
                 "stopped on request; every state so far is kept".into(),
             ),
-            Ending::Lost(lost) => (Verdict::Lost, lost.to_string()),
+            (Ending::Lost(lost), _) => (Verdict::Lost, lost.to_string()),
         };
         self.close(verdict, text, rows);
     }

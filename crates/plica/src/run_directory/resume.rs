@@ -291,8 +291,14 @@ impl RunDirectory {
         Ok(())
     }
 
-    /// Returns whether the run is complete and its pictures are drawn.
+    /// Returns whether all stages of the run are complete and its pictures are drawn.
     pub fn is_complete(&self) -> bool {
-        self.manifest()["closed"] == true && self.verdict() == Verdict::Complete
+        let is_whole = self.stopped_at().is_none();
+        self.manifest()["closed"] == true && self.verdict() == Verdict::Complete && is_whole
+    }
+
+    /// Returns the condition at which the run was asked to stop before the end of its stages, and did.
+    pub fn stopped_at(&self) -> Option<String> {
+        self.manifest()["until"].as_str().map(String::from)
     }
 }

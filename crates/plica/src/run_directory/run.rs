@@ -9,7 +9,7 @@ use super::{
 use crate::measure::{Face, Meridians};
 use crate::monitor::Monitor;
 use crate::saved_state::SavedState;
-use crate::study::{Ending, Plan, Row, Scale, State, Study, StudyError};
+use crate::study::{Condition, Ending, Plan, Row, Scale, State, Study, StudyError};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A study and the run directory that its states are written to.
@@ -220,13 +220,22 @@ impl<'a> Run<'a> {
         Ok(self.rows.last())
     }
 
+    /// Ends the run after the last state, which fulfils the condition at which it was to stop. The run is complete, and can be
+    /// resumed.
+    pub fn stop_at(&mut self, condition: &Condition) {
+        self.manifest.until = Some(condition.to_string());
+    }
+
     /// Closes the manifest and returns the result.
     ///
     /// # Errors
     /// [`RunError::File`] if the manifest cannot be written; [`RunError::Moved`], [`RunError::Changed`] or
     /// [`RunError::Incomplete`] if the directory or files in it were removed or changed while the run wrote them.
     pub fn finish(mut self) -> Result<Summary, RunError> {
-        let ending = self.study.ending().cloned().unwrap_or(Ending::Stopped);
+        let ending = match self.manifest.until {
+            Some(_) => Ending::Complete,
+            None => self.study.ending().cloned().unwrap_or(Ending::Stopped),
+        };
         let changed = self.restore_files()?;
         let missing = self.record.missing(self.directory.path());
         self.manifest.end(&ending, &self.rows);

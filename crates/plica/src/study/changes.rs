@@ -20,6 +20,10 @@ pub fn forbidden_changes(old: &Plan, new: &Plan, progress: Option<(usize, f64)>)
     require(old.mesh == new.mesh, "the mesh".into());
     require(old.symmetry == new.symmetry, "the symmetry".into());
     require(old.units == new.units, "the units".into());
+    require(
+        old.end_names == new.end_names,
+        "the names of the ends".into(),
+    );
     // The name of the file may change.
     fn start(plan: &Plan) -> Option<(&Load, &SavedState)> {
         let start = plan.start.as_ref();

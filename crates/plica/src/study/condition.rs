@@ -19,21 +19,23 @@ enum Test {
     Unstable,
     /// The cell of a column of texts is a word.
     Is(String, String),
-    /// The cell of a column of numbers compares with a number.
-    Number(String, Comparison, f64),
+    /// The cell of a column of numbers is, for example, less than a number: column, sign and number.
+    Number(String, &'static str, f64),
 }
 
-/// A comparison of two numbers.
-type Comparison = fn(f64, f64) -> bool;
+/// The signs of comparisons; one that contains another comes before it.
+const SIGNS: [&str; 5] = ["<=", ">=", "<", ">", "="];
 
-/// The comparisons; one that contains another comes before it.
-const COMPARISONS: [(&str, Comparison); 5] = [
-    ("<=", |a, b| a <= b),
-    (">=", |a, b| a >= b),
-    ("<", |a, b| a < b),
-    (">", |a, b| a > b),
-    ("=", |a, b| a == b),
-];
+/// Returns whether a comparison holds.
+fn compares(a: f64, sign: &str, b: f64) -> bool {
+    match sign {
+        "<=" => a <= b,
+        ">=" => a >= b,
+        "<" => a < b,
+        ">" => a > b,
+        _ => a == b,
+    }
+}
 
 impl Condition {
     /// Reads a condition on the states of a plan: `overhangs`, `unstable`, or the name of a column of the history, one of
@@ -51,13 +53,15 @@ impl Condition {
             "unstable" => return Ok(with(Test::Unstable)),
             _ => {}
         }
-        let parts = COMPARISONS.iter().find_map(|(sign, comparison)| {
+        let parts = SIGNS.into_iter().find_map(|sign| {
             let (name, value) = text.split_once(sign)?;
-            Some((name.trim(), *sign, *comparison, value.trim()))
+            Some((name.trim(), sign, value.trim()))
         });
-        let Some((name, sign, comparison, value)) = parts else {
+        let Some((name, sign, value)) = parts else {
             let rule = "must be overhangs, unstable, or a column compared with a value";
-            return Err(format!("{rule}, as in \"shape = invaginated\" or \"overhang > 0.1\""));
+            return Err(format!(
+                "{rule}, as in \"shape = invaginated\" or \"overhang > 0.1\""
+            ));
         };
         let cells = zero(plan).cells();
         let Some(cell) = cells.iter().find(|cell| cell.name == name) else {
@@ -70,7 +74,7 @@ impl Condition {
         if cell.quantity != Quantity::Text {
             let number = value.parse().ok().filter(|x: &f64| x.is_finite());
             let number = number.ok_or_else(|| format!("`{value}` is not a number"))?;
-            return Ok(with(Test::Number(name.to_owned(), comparison, number)));
+            return Ok(with(Test::Number(name.to_owned(), sign, number)));
         }
         if sign != "=" {
             return Err(format!("`{name}` is a word; write {name} = {value}"));
@@ -86,9 +90,9 @@ impl Condition {
             Test::Overhangs => row.overhangs(),
             Test::Unstable => row.stability.is_unstable(),
             Test::Is(name, word) => cell(name).is_some_and(|cell| cell.text == *word),
-            Test::Number(name, comparison, number) => {
+            Test::Number(name, sign, number) => {
                 let value = cell(name).and_then(|cell| cell.number());
-                value.is_some_and(|value| comparison(value, *number))
+                value.is_some_and(|value| compares(value, sign, *number))
             }
         }
     }
@@ -124,7 +128,10 @@ fn check_word(name: &str, word: &str, plan: &Plan) -> Result<(), String> {
     if words.iter().any(|own| own == word) {
         return Ok(());
     }
-    Err(format!("{name} is never `{word}`; choose one of {}", words.join(", ")))
+    Err(format!(
+        "{name} is never `{word}`; choose one of {}",
+        words.join(", ")
+    ))
 }
 
 #[cfg(test)]

@@ -46,7 +46,7 @@ fn quantities(plan: &Plan, load: &Load) -> Vec<(String, f64, String)> {
         };
         all.push((format!("{}.{target}", muscle.name), *ratio, String::new()));
     }
-    for (end, motion) in ["colon", "ileum"].iter().zip(&load.ends) {
+    for (end, motion) in plan.end_names.iter().zip(&load.ends) {
         let displacement = scale.length * motion.displacement;
         let (twist, degrees) = (motion.twist.to_degrees(), "degrees".to_owned());
         all.push((

@@ -8,9 +8,11 @@
 //! - [`Lost`]: where and why a tube could not be followed further;
 //! - [`Row`]: a state as a row of `history.csv`, in the units of the case; [`RowReader`] reads one back;
 //! - [`Findings`]: statements about a whole path;
+//! - [`Condition`]: a condition on a state, at which a run stops;
 //! - [`forecast`]: size and cost of a study before it runs.
 
 mod changes;
+mod condition;
 mod error;
 pub mod findings;
 #[cfg(test)]
@@ -28,6 +30,7 @@ mod units;
 mod work;
 
 pub use changes::forbidden_changes;
+pub use condition::Condition;
 pub use error::StudyError;
 pub use findings::Findings;
 pub use forecast::{Forecast, check_memory, forecast};

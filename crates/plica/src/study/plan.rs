@@ -28,6 +28,8 @@ pub struct Plan {
     pub output: Output,
     /// The units of the case, for results in real units.
     pub units: Option<Units>,
+    /// Names of the ends at z = 0 and z = L in tables and pictures.
+    pub end_names: [String; 2],
 }
 
 /// A saved state that a study starts from.
@@ -160,6 +162,11 @@ impl fmt::Display for StressUnit {
 }
 
 impl Plan {
+    /// Returns the names of ends that are not named otherwise.
+    pub fn usual_end_names() -> [String; 2] {
+        ["colon", "ileum"].map(String::from)
+    }
+
     /// Returns the load of the first state.
     pub fn first_load(&self) -> Load {
         match &self.start {

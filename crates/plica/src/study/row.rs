@@ -69,7 +69,7 @@ pub struct Row {
     pub max_wall_angle_deg: f64,
     /// Largest distance over which the outer wall runs back along the axis.
     pub overhang: f64,
-    /// The side on which the wall overhangs: colon, ileum or none.
+    /// The side on which the wall overhangs; in a table the name of the end on that side, or none.
     pub side: Side,
     /// Axial extent of the outer wall beyond ¾ of the depth of narrowing, over that beyond ¼; 0 for a tube that is not narrowed.
     pub flatness: f64,
@@ -148,7 +148,7 @@ impl Row {
             work: 0.0,
         });
         let end = |i: usize| EndRow {
-            name: ["colon", "ileum"][i].into(),
+            name: state.end_names[i].clone(),
             displacement: length * state.load.ends[i].displacement,
             twist_deg: state.load.ends[i].twist.to_degrees(),
             axial_force: scale.force * state.reactions[i].axial_force(),
@@ -325,6 +325,15 @@ impl Row {
         }
     }
 
+    /// Returns the name of the end on a side, or none.
+    pub fn name_of(&self, side: Side) -> &str {
+        match side {
+            Side::Colon => &self.ends[0].name,
+            Side::Ileum => &self.ends[1].name,
+            Side::None => "none",
+        }
+    }
+
     /// Visits the columns in the order of `history.csv`. A column of a muscle or an end is named by its quantity, an
     /// underscore and the name in the case.
     pub(super) fn visit(&mut self, visitor: &mut impl Visitor) {
@@ -390,7 +399,11 @@ impl Row {
         v.cell("z_at_min", Length, &mut self.z_at_min);
         v.cell("max_wall_angle_deg", Degrees, &mut self.max_wall_angle_deg);
         v.cell("overhang", Length, &mut self.overhang);
-        v.cell("side", Text, &mut self.side);
+        let sides = [Side::Colon, Side::Ileum, Side::None];
+        let names = sides.map(|side| self.name_of(side).to_owned());
+        let mut index = sides.iter().position(|side| *side == self.side);
+        v.word("side", &names, &mut index);
+        self.side = index.map_or(Side::None, |i| sides[i]);
         v.cell("flatness", Ratio, &mut self.flatness);
         v.cell("gap", Length, &mut self.gap);
         v.cell("lumen", Length, &mut self.lumen);

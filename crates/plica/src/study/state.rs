@@ -23,6 +23,8 @@ pub struct State {
     pub load: Load,
     /// The muscles, in the order of the tube.
     pub muscles: Vec<MuscleState>,
+    /// Names of the ends at z = 0 and z = L.
+    pub end_names: [String; 2],
     /// Displacements of the control points of the cyclic sector, in D; [`crate::saved_state::Layout::shape`] has
     /// the order of the indices.
     pub unknowns: Vec<f64>,
@@ -129,6 +131,7 @@ impl State {
             stage: at.stage.to_owned(),
             ends_stage: at.ends_stage,
             muscles: muscles(plan, &accepted.load),
+            end_names: plan.end_names.clone(),
             stage_fraction: at.stage_fraction,
             energy: above_rounding(forces.energy),
             energy_ungrown_volume: above_rounding(forces.energy_ungrown),

@@ -55,6 +55,9 @@ pub(super) trait Visitor {
         value: &mut T,
     );
 
+    /// Visits the cell of a column of words, of which the index is given.
+    fn word(&mut self, name: &str, words: &[String], index: &mut Option<usize>);
+
     /// Visits the cell of a column that not every history has.
     fn optional(&mut self, name: &str, quantity: Quantity, value: &mut Option<f64>) {
         if let Some(value) = value {
@@ -106,6 +109,14 @@ impl Visitor for Cells {
             name: name.into(),
             quantity,
             text: text(value),
+        });
+    }
+
+    fn word(&mut self, name: &str, words: &[String], index: &mut Option<usize>) {
+        self.0.push(Cell {
+            name: name.into(),
+            quantity: Quantity::Text,
+            text: index.map_or(String::new(), |i| words[i].clone()),
         });
     }
 }
@@ -182,6 +193,16 @@ impl Visitor for Reading<'_> {
         }
     }
 
+    fn word(&mut self, name: &str, words: &[String], index: &mut Option<usize>) {
+        let mut text = String::new();
+        self.cell(name, Quantity::Text, &mut text);
+        *index = words.iter().position(|word| *word == text);
+        if index.is_none() {
+            let error = || format!("`{text}` is not a value of the column `{name}`");
+            self.error.get_or_insert_with(error);
+        }
+    }
+
     fn optional(&mut self, name: &str, quantity: Quantity, value: &mut Option<f64>) {
         if self.columns.contains_key(name) {
             self.cell(name, quantity, value.insert(0.0));
@@ -221,6 +242,9 @@ mod tests {
                 }
             }
         }
+        fn word(&mut self, _: &str, _: &[String], index: &mut Option<usize>) {
+            *index = Some(1);
+        }
         fn optional(&mut self, name: &str, quantity: Quantity, value: &mut Option<f64>) {
             self.cell(name, quantity, value.insert(0.0));
         }
@@ -242,6 +266,9 @@ mod tests {
             let back = reader.row(row.record().iter().map(String::as_str));
             assert_eq!(back.unwrap(), row);
             assert_eq!(header.contains(&"potential".to_owned()), pressures);
+            let side = header.iter().position(|name| name == "side").unwrap();
+            let word = if pressures { "distal" } else { "none" };
+            assert_eq!(row.record()[side], word);
         }
     }
 

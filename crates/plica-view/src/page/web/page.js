@@ -71,6 +71,9 @@ class Page {
     $("cut").addEventListener("input", update);
     $("state").addEventListener("input", () => this.go(Number($("state").value)));
     ["measure", "along"].forEach((id) => $(id).addEventListener("change", () => this.replot()));
+    // The names that the case gives the ends.
+    const toEnds = $("view").querySelectorAll("option[value]");
+    toEnds.forEach((option, i) => (option.textContent = this.runs[0].ends[i]));
     $("view").addEventListener("change", () => this.view.look($("view").value));
     $("play").addEventListener("click", () => this.play());
     $("save").addEventListener("click", () => this.save());

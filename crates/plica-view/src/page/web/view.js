@@ -42,10 +42,10 @@ class View {
       return tube;
     });
     this.length = Math.max(...runs.map(({ scene }) => scene.high[0] - scene.low[0]));
-    this.labels = runs.flatMap(({ name, scene }, i) => {
+    this.labels = runs.flatMap(({ name, ends, scene }, i) => {
       const half = 0.5 * (scene.high[0] - scene.low[0]) + 0.22 * scene.diameter;
       const y = this.tubes[i].group.position.y;
-      const labels = [this.label("colon", "end", -half, y), this.label("ileum", "end", half, y)];
+      const labels = [this.label(ends[0], "end", -half, y), this.label(ends[1], "end", half, y)];
       return runs.length > 1 ? [...labels, this.label(name, "end name", -0.5 * (scene.high[0] - scene.low[0]), y + 0.5 * this.lane)] : labels;
     });
     this.controls = new THREE.OrbitControls(this.camera, canvas);

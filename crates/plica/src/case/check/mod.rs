@@ -54,6 +54,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
             stability_modes: output.stability_modes,
             wall_points: output.wall_points,
         },
+        end_names: muscles::end_names(case, problems),
         units: case.units.as_ref().map(|units| Units {
             length: units.length,
             stress: units.stress,

@@ -29,12 +29,42 @@ pub(super) fn muscles(case: &Case, length: f64, problems: &mut Problems) -> Vec<
     muscles
 }
 
-fn check_name(path: &str, name: &str, problems: &mut Problems) {
+/// Checks the names of the ends and returns them.
+pub(super) fn end_names(case: &Case, problems: &mut Problems) -> [String; 2] {
+    let names = [&case.ends.colon_name, &case.ends.ileum_name];
+    let keys = ["ends.colon_name", "ends.ileum_name"];
+    for (i, (name, key)) in names.into_iter().zip(keys).enumerate() {
+        let other = names[1 - i];
+        let is_taken = case.muscles.contains_key(name)
+            || WALLS.contains(&name.as_str())
+            || name == ENDS[1 - i]
+            || name == "none"
+            || (i == 1 && name == other);
+        if !problems.is_as_written(key) || !problems.are_sound(&["muscles"]) {
+            continue;
+        }
+        if !is_name(name) {
+            let rule = "must consist of letters, digits, - and _, at most 40 of them";
+            problems.value(key, rule, "try proximal or distal");
+        } else if is_taken {
+            let rule = "a muscle, a surface, the other end or the absence of a side has this name";
+            problems.value(key, rule, "choose another name");
+        }
+    }
+    names.map(String::clone)
+}
+
+/// Returns whether a text may be a part of the name of a column.
+fn is_name(name: &str) -> bool {
     let allowed = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    !name.is_empty() && name.chars().count() <= 40 && name.chars().all(allowed)
+}
+
+fn check_name(path: &str, name: &str, problems: &mut Problems) {
     if ENDS.contains(&name) || WALLS.contains(&name) {
         let rule = "an end or a surface of the tube has this name";
         problems.key(path, rule, "choose another name for the muscle");
-    } else if name.is_empty() || name.chars().count() > 40 || !name.chars().all(allowed) {
+    } else if !is_name(name) {
         let rule = "a muscle's name must consist of letters, digits, - and _, at most 40 of them";
         problems.key(path, rule, "");
     }

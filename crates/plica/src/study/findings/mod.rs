@@ -78,7 +78,11 @@ pub struct StageEnd {
     /// Shape of its last state.
     pub shape: Shape,
     /// Side of the overhang of its last state.
+    #[serde(skip)]
     pub side: Side,
+    /// Name of the end on that side, or none.
+    #[serde(rename = "side")]
+    pub toward: String,
     /// Overhang of its last state.
     pub overhang: f64,
     /// Strain energy of its last state.
@@ -93,7 +97,11 @@ pub struct Overhang {
     /// Axial distance by which the outer wall runs back.
     pub overhang: f64,
     /// Side to which it invaginates.
+    #[serde(skip)]
     pub side: Side,
+    /// Name of the end on that side, or none.
+    #[serde(rename = "side")]
+    pub toward: String,
 }
 
 /// States that are unstable to a mode.
@@ -157,6 +165,7 @@ impl Findings {
                 to,
                 shape: last.shape,
                 side: last.side,
+                toward: last.name_of(last.side).to_owned(),
                 overhang: last.overhang,
                 energy: last.energy,
             }
@@ -221,6 +230,9 @@ fn deepest(path: &Path<'_>) -> Option<Overhang> {
         at: path.place(deepest),
         overhang: overhang(deepest),
         side: path.rows[deepest].side,
+        toward: path.rows[deepest]
+            .name_of(path.rows[deepest].side)
+            .to_owned(),
     })
 }
 

@@ -57,7 +57,7 @@ impl Findings {
         let end = match (stage.shape, stage.side) {
             (Shape::Invaginated, Side::Colon | Side::Ileum) => format!(
                 "invaginated toward the {}, overhang {}",
-                stage.side,
+                stage.toward,
                 self.length(stage.overhang)
             ),
             (shape, _) => shape.to_string(),
@@ -108,10 +108,15 @@ impl Findings {
         };
         let invaginates = match &self.deepest {
             None => "no".to_owned(),
-            Some(Overhang { at, overhang, side }) => {
+            Some(Overhang {
+                at,
+                overhang,
+                side,
+                toward: end,
+            }) => {
                 let toward = match side {
                     Side::None => "toward both sides alike".to_owned(),
-                    side => format!("toward the {side}"),
+                    _ => format!("toward the {end}"),
                 };
                 let most = format!("at most by {} at {at}", self.length(*overhang));
                 if self.invaginated == self.overhanging {
