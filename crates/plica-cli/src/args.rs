@@ -498,10 +498,11 @@ solve; the same command then resumes after the last completed run. A second Ctrl
 const EXPORT_EPILOGUE: &str = "\
 Output in the directory of the run:
   vtk/walls.pvd    the surface of the wall at every saved state; open this in ParaView
+  vtk/meridian.pvd of an axisymmetric run, a meridian section at every saved state, in small files
   vtk/volume.pvd   the wall at the selected states, as curved Lagrange cells that represent the splines exactly
   vtk/linear.pvd   with --linear, the same as linear cells
   vtk/walls.vtkhdf with --hdf, the surfaces of all states in one file
-  vtk/walls/, vtk/volume/, vtk/linear/
+  vtk/walls/, vtk/meridian/, vtk/volume/, vtk/linear/
                    the files of the states
 
 Fields: displacement, det Fe, growth stretches, strain energy density, Cauchy stress, von Mises stress, principal \

@@ -7,6 +7,7 @@ use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use crate::{console, threads};
 use plica::run_directory::RunDirectory;
+use plica::tube::Symmetry;
 use plica_view::export::{Exporter, Geometry};
 use plica_view::vtk::collection;
 use std::collections::BTreeMap;
@@ -28,6 +29,9 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         .keys()
         .map(|&state| (Geometry::Walls, state))
         .collect();
+    if run.plan.symmetry == Symmetry::Axisymmetric {
+        files.extend(run.saved.keys().map(|&state| (Geometry::Meridian, state)));
+    }
     for state in run.saved.keys().copied().filter(|&state| selected(state)) {
         files.push((Geometry::Volume, state));
         if arguments.linear {

@@ -24,6 +24,15 @@ fn export_writes_all_walls_and_the_requested_volumes() {
     assert_eq!(names(&vtk.join("walls")).len(), 4);
     assert_eq!(names(&vtk.join("volume")), ["state-0001.vtu"]);
     assert_eq!(names(&vtk.join("linear")), ["state-0001.vtu"]);
+    // 9 elements along, thrice, and one through the wall, thrice.
+    assert_eq!(names(&vtk.join("meridian")).len(), 4);
+    let meridian = fs::read(vtk.join("meridian/state-0001.vtp")).unwrap();
+    let head = String::from_utf8_lossy(&meridian[..4000]);
+    assert!(
+        head.contains(&format!("NumberOfPoints=\"{}\"", 28 * 4)),
+        "{head}"
+    );
+    assert!(head.contains("Name=\"cauchy_stress\"") && meridian.len() < 30_000);
     let volume = fs::read(vtk.join("volume/state-0001.vtu")).unwrap();
     let head = String::from_utf8_lossy(&volume[..4000]);
     // 9 × 8 × 1 elements of 4³ nodes, of which neighbours share a face.
@@ -40,7 +49,11 @@ fn export_writes_all_walls_and_the_requested_volumes() {
         &directory,
         &["run", "case.toml", "--out", "run", "--overwrite"],
     );
-    assert!(names(&vtk.join("walls")).is_empty() && !vtk.join("volume.pvd").exists());
+    assert!(
+        names(&vtk.join("walls")).is_empty()
+            && names(&vtk.join("meridian")).is_empty()
+            && !vtk.join("volume.pvd").exists()
+    );
 }
 
 #[test]
@@ -102,4 +115,39 @@ fn several_exports_and_pages_of_a_run_at_a_time_succeed() {
     assert!(crate::common::files(&directory, "part").is_empty());
     let collection = fs::read_to_string(run.join("vtk/volume.pvd")).unwrap();
     assert_eq!(collection.matches("<DataSet").count(), 4, "{collection}");
+}
+
+#[test]
+fn a_reader_without_plica_evaluates_the_spline_of_a_saved_state() {
+    let python = |arguments: &[&str]| {
+        let output = std::process::Command::new("python3")
+            .args(arguments)
+            .output();
+        output.ok().filter(|output| output.status.success())
+    };
+    if python(&["-c", "import numpy"]).is_none() {
+        return;
+    }
+    let directory = scratch("evaluate");
+    let run = short_run(&directory);
+    let profile = fs::read_to_string(run.join("profiles/state-0003.csv")).unwrap();
+    let state = run.join("states/state-0003.safetensors");
+    let script = crate::common::root().join("docs/evaluate_state.py");
+    for line in profile.lines().skip(1).step_by(150) {
+        let numbers: Vec<f64> = line.split(',').map(|x| x.parse().unwrap()).collect();
+        let z = numbers[0].to_string();
+        let paths = [script.to_str().unwrap(), state.to_str().unwrap()];
+        let printed = python(&[paths[0], paths[1], &z, "0.5", "0.0"]).unwrap();
+        let found: Vec<f64> = crate::common::text(&printed.stdout)
+            .split_whitespace()
+            .map(|x| x.parse().unwrap())
+            .collect();
+        // The profile has ten digits.
+        for (a, b) in [
+            (found[2], numbers[1]),
+            (found[0].hypot(found[1]), numbers[2]),
+        ] {
+            assert!((a - b).abs() < 1e-8, "{line}: {found:?}");
+        }
+    }
 }

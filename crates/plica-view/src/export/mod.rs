@@ -26,7 +26,7 @@ use fields::FIELDS;
 use plica::assembly::SplineTube;
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row, Scale};
-use points::{Points, boundary_lattice, volume_lattice};
+use points::{Points, boundary_lattice, meridian_lattice, volume_lattice};
 
 /// Converts states of a run to VTK files.
 pub struct Exporter {
@@ -39,6 +39,8 @@ pub struct Exporter {
 pub enum Geometry {
     /// Surface of the wall (`.vtp`).
     Walls,
+    /// Meridian at angle zero (`.vtp`); for axisymmetric runs.
+    Meridian,
     /// Wall as Lagrange hexahedra of the degree of the spline (`.vtu`).
     Volume,
     /// Wall as linear hexahedra between the same points (`.vtu`).
@@ -47,12 +49,13 @@ pub enum Geometry {
 
 impl Geometry {
     /// All geometries.
-    pub const ALL: [Self; 3] = [Self::Walls, Self::Volume, Self::Linear];
+    pub const ALL: [Self; 4] = [Self::Walls, Self::Meridian, Self::Volume, Self::Linear];
 
     /// Returns the name of its folder and its collection.
     pub fn name(self) -> &'static str {
         match self {
             Self::Walls => "walls",
+            Self::Meridian => "meridian",
             Self::Volume => "volume",
             Self::Linear => "linear",
         }
@@ -61,7 +64,7 @@ impl Geometry {
     /// Returns the extension of its files.
     pub fn extension(self) -> &'static str {
         match self {
-            Self::Walls => "vtp",
+            Self::Walls | Self::Meridian => "vtp",
             Self::Volume | Self::Linear => "vtu",
         }
     }
@@ -69,6 +72,9 @@ impl Geometry {
 
 /// Number of facets of a surface, around and along, that is sufficient without subdividing elements.
 const FACETS: [usize; 2] = [96, 240];
+
+/// Number of intervals of a meridian, through the wall and along, that is sufficient without subdividing elements.
+const INTERVALS: [usize; 2] = [4, 240];
 
 /// Name of the field with the face of the wall that a cell of the surface belongs to.
 const FACE: &str = "face";
@@ -88,9 +94,13 @@ impl Exporter {
         let (tube, length) = (&self.tube, self.scale.length);
         let lattice = match geometry {
             Geometry::Walls => boundary_lattice(tube, FACETS),
+            Geometry::Meridian => meridian_lattice(tube, INTERVALS),
             Geometry::Volume | Geometry::Linear => volume_lattice(tube),
         };
-        let points = Points::sample(tube, &state.load, &state.u, lattice);
+        let points = match geometry {
+            Geometry::Meridian => Points::meridian(tube, &state.load, &state.u, lattice),
+            _ => Points::sample(tube, &state.load, &state.u, lattice),
+        };
         let positions: Vec<[f64; 3]> = points
             .evaluate(|point, rotation| rotation.vector(point.position))
             .map(|x| x.map(|x| length * x))
@@ -98,6 +108,7 @@ impl Exporter {
         let mut file = match geometry {
             Geometry::Volume => Document::grid(&positions, &lattice.lagrange()),
             Geometry::Linear => Document::grid(&positions, &lattice.linear()),
+            Geometry::Meridian => Document::surface(&positions, &lattice.section()),
             Geometry::Walls => {
                 let (cells, faces) = lattice.boundary();
                 let mut file = Document::surface(&positions, &cells);

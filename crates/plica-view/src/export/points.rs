@@ -44,7 +44,40 @@ pub(super) fn boundary_lattice(tube: &SplineTube, facets: [usize; 2]) -> Lattice
     }
 }
 
+/// Returns a lattice of one meridian, with at most three intervals per element.
+pub(super) fn meridian_lattice(tube: &SplineTube, facets: [usize; 2]) -> Lattice {
+    let elements = [tube.wall.elements(), tube.axial.elements()];
+    let intervals = |i: usize| facets[i].div_ceil(elements[i]).clamp(1, 3) * elements[i];
+    Lattice {
+        intervals: [intervals(0), 1, intervals(1)],
+        degree: 1,
+    }
+}
+
 impl Points {
+    /// Samples a state at the points of a lattice of the meridian at angle zero.
+    pub fn meridian(tube: &SplineTube, load: &Load, u: &[f64], lattice: Lattice) -> Self {
+        let [outwards, _, along] = lattice.points();
+        let radii = tube.wall.positions(outwards);
+        let zs = tube.axial.positions(along);
+        let points = zs.par_iter().flat_map_iter(|&z| {
+            radii.iter().map(move |&radius| {
+                let at = Point {
+                    z,
+                    radius,
+                    angle: 0.0,
+                };
+                PointData::new(&tube.sample(load, u, at))
+            })
+        });
+        Self {
+            lattice,
+            sector: points.collect(),
+            around: 1,
+            rotations: vec![Rotation::by(0.0)],
+        }
+    }
+
     /// Samples a state at the points of a lattice.
     pub fn sample(tube: &SplineTube, load: &Load, u: &[f64], lattice: Lattice) -> Self {
         let [outwards, all_around, along] = lattice.points();

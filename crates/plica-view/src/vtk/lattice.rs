@@ -72,6 +72,23 @@ impl Lattice {
         }
     }
 
+    /// Returns the quadrilaterals of the first layer in the second direction.
+    pub fn section(&self) -> Cells {
+        let [across, _, along] = self.intervals;
+        let mut points = Vec::with_capacity(4 * across * along);
+        for k in 0..along {
+            for i in 0..across {
+                let corners = [[i, 0, k], [i + 1, 0, k], [i + 1, 0, k + 1], [i, 0, k + 1]];
+                points.extend(corners.map(|at| self.index(at)));
+            }
+        }
+        Cells {
+            points,
+            points_per_cell: 4,
+            cell_type: QUADRILATERAL,
+        }
+    }
+
     /// Returns the boundary quadrilaterals with outward normals, and the number of the face of each: 0 and 1 for the lower and
     /// upper end of the first direction, 2 and 3 for those of the last.
     pub fn boundary(&self) -> (Cells, Vec<u8>) {

@@ -24,6 +24,7 @@ pub(super) fn clear(path: &Path) -> Result<(), RunError> {
     old.extend(modes(&path.join(IMPERFECTIONS)));
     let exported = [
         ("vtk/walls", "vtp"),
+        ("vtk/meridian", "vtp"),
         ("vtk/volume", "vtu"),
         ("vtk/linear", "vtu"),
     ];
@@ -33,7 +34,10 @@ pub(super) fn clear(path: &Path) -> Result<(), RunError> {
         old.extend(parts(&path.join(folder), &["state-"]));
     }
     old.extend(parts(path, &["report.html."]));
-    old.extend(parts(&path.join("vtk"), &["walls.", "volume.", "linear."]));
+    old.extend(parts(
+        &path.join("vtk"),
+        &["walls.", "meridian.", "volume.", "linear."],
+    ));
     old.extend(files(&path.join("pictures")).filter(|file| {
         let name = file
             .file_name()
@@ -45,7 +49,9 @@ pub(super) fn clear(path: &Path) -> Result<(), RunError> {
             && ["png", "svg", "apng", "mp4"].contains(&ending)
             || is_part
     }));
-    old.extend(["walls", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))));
+    old.extend(
+        ["walls", "meridian", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))),
+    );
     old.push(path.join("vtk/walls.vtkhdf"));
     remove(old)
 }

@@ -11,7 +11,7 @@ const ROW: [u64; 2] = [600, 40];
 /// Bytes of the header of a saved state.
 const HEADER: u64 = 1000;
 /// Bytes of the two checkpoints beside their vectors of unknowns, and the number of these vectors.
-const CHECKPOINT: [u64; 2] = [10_000, 10];
+const CHECKPOINT: [u64; 2] = [10_000, 12];
 /// Bytes of the pictures.
 const PICTURES: u64 = 400_000;
 
@@ -36,7 +36,8 @@ impl DiskUse {
         let unknowns = 3 * (mesh.axial * mesh.thickness * rings) as u64;
         let meridians = if rings == 1 { 1 } else { 2 };
         let profile = output.wall_points as f64 * (1 + 4 * meridians) as f64 * PROFILE_NUMBER;
-        let state = HEADER + NUMBER * (unknowns + (mesh.axial + mesh.around) as u64);
+        // Unknowns, control points and knots.
+        let state = HEADER + NUMBER * (2 * unknowns + (mesh.axial + 32) as u64);
         let rows = 1 + plan
             .stages
             .iter()

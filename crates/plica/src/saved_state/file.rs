@@ -2,12 +2,13 @@
 //!
 //! The format is [safetensors](https://github.com/huggingface/safetensors): the length of a header,
 //! the header (JSON), then raw arrays, little-endian. Plica's header is one JSON object under
-//! `__metadata__.plica`; the arrays are `u` and further arrays of the state. The checksum is
+//! `__metadata__.plica`; the arrays are `u`, further arrays of the state, and its knots and control
+//! points. The checksum is
 //! BLAKE3 of the whole file with its own 64 digits written as zeros. docs/run-directory.md
 //! describes the file for readers in other languages.
 
 use super::header::Header;
-use super::{Array, SavedState, SavedStateError};
+use super::{Array, SavedState, SavedStateError, geometry};
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensorError, SafeTensors};
 use std::collections::BTreeMap;
@@ -35,10 +36,12 @@ impl SavedState {
             shape: self.layout.shape().to_vec(),
             values: vec![],
         };
-        let others = self
-            .arrays
-            .iter()
-            .map(|(name, a)| (name.as_str(), a, &a.values));
+        let derived = geometry::arrays(&self.layout, &self.u);
+        let derived = derived.iter().flatten().zip(geometry::NAMES);
+        let others = self.arrays.iter();
+        let others = others
+            .map(|(name, a)| (name.as_str(), a, &a.values))
+            .chain(derived.map(|(a, name)| (name, a, &a.values)));
         let arrays: Vec<(&str, &Array, Vec<u8>)> = std::iter::once(("u", &u, &self.u))
             .chain(others)
             .map(|(name, array, values)| {
@@ -88,6 +91,9 @@ impl SavedState {
 
         let mut arrays = BTreeMap::new();
         for (name, view) in file.tensors() {
+            if geometry::NAMES.contains(&name.as_str()) {
+                continue;
+            }
             let array = array(&name, &view)?;
             arrays.insert(name, array);
         }

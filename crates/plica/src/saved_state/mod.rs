@@ -1,8 +1,10 @@
 //! Saved states: a state with its load and the layout of its unknowns, and its file format.
 //!
-//! The file is safetensors with a checksum (`file`); a JSON header describes the state (`header`).
+//! The file is safetensors with a checksum (`file`); a JSON header describes the state (`header`). The file also
+//! has knots and control points (`geometry`), which are not read back.
 
 mod file;
+mod geometry;
 mod header;
 mod layout;
 mod mode;
