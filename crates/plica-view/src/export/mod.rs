@@ -73,8 +73,8 @@ impl Geometry {
 /// Number of facets of a surface, around and along, that is sufficient without subdividing elements.
 const FACETS: [usize; 2] = [96, 240];
 
-/// Number of intervals of a meridian, through the wall and along, that is sufficient without subdividing elements.
-const INTERVALS: [usize; 2] = [4, 240];
+/// Largest number of intervals of a meridian, through the wall and along.
+const INTERVALS: [usize; 2] = [3, 180];
 
 /// Name of the field with the face of the wall that a cell of the surface belongs to.
 const FACE: &str = "face";

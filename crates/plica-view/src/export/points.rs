@@ -44,10 +44,11 @@ pub(super) fn boundary_lattice(tube: &SplineTube, facets: [usize; 2]) -> Lattice
     }
 }
 
-/// Returns a lattice of one meridian, with at most three intervals per element.
-pub(super) fn meridian_lattice(tube: &SplineTube, facets: [usize; 2]) -> Lattice {
+/// Returns a lattice of one meridian, with at most three intervals per element and a largest number of intervals through the wall
+/// and along.
+pub(super) fn meridian_lattice(tube: &SplineTube, most: [usize; 2]) -> Lattice {
     let elements = [tube.wall.elements(), tube.axial.elements()];
-    let intervals = |i: usize| facets[i].div_ceil(elements[i]).clamp(1, 3) * elements[i];
+    let intervals = |i: usize| most[i].min(3 * elements[i]);
     Lattice {
         intervals: [intervals(0), 1, intervals(1)],
         degree: 1,

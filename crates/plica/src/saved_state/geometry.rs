@@ -79,6 +79,7 @@ mod tests {
     use crate::tube::Symmetry;
 
     /// Evaluates the formula of docs/run-directory.md.
+    #[allow(non_snake_case)]
     fn position(layout: &Layout, arrays: &[Array; 3], at: Point) -> [f64; 3] {
         let (p, n, rings) = (layout.mesh.degree, layout.mesh.around, layout.rings);
         let breakpoints = |array: &Array| array.values[p..array.values.len() - p].to_vec();
