@@ -3,7 +3,7 @@
 use super::SplineTube;
 use super::circumferential::{self, AVERAGED};
 use super::dispatch::{with_degree, with_law_and_degree};
-use super::low_harmonics::{LowHarmonics, POINTS, THROUGH};
+use super::low_harmonics::{LowHarmonics, POINTS_THROUGH, THROUGH};
 use super::tables::AxialBatch;
 use crate::material::Material;
 use crate::matrix::{BlockBanded, multiply};
@@ -50,7 +50,7 @@ impl SplineTube {
                 .for_each(|(row, panel)| {
                     for (batch, parts) in batches.iter().zip(&parts) {
                         for (at, [slopes, mixed, across, values]) in parts.iter().enumerate() {
-                            let (lane, q) = (at / POINTS[0], at % POINTS[0]);
+                            let (lane, q) = (at / low.points_along, at % low.points_along);
                             let Some(b) = row.checked_sub(batch.first + lane).filter(|b| *b < n)
                             else {
                                 continue;
@@ -109,7 +109,7 @@ impl SplineTube {
             stress_free: shape.as_deref(),
             u: &u[(batch.first + lane) * row..][..(self.degree() + 1) * row],
         };
-        let mut moduli = vec![0.0; POINTS[0] * POINTS[1] * AVERAGED * padded];
+        let mut moduli = vec![0.0; low.points_along * POINTS_THROUGH * AVERAGED * padded];
         with_law_and_degree!(
             self,
             self.tube.material,
@@ -126,7 +126,7 @@ impl SplineTube {
             vec![0.0; columns * columns],
         ];
         let mut moduli = moduli.chunks_exact(AVERAGED * padded);
-        (0..POINTS[0])
+        (0..low.points_along)
             .map(|_| {
                 let mut out = [0, 1, 2].map(|_| vec![0.0; size * size]);
                 for ((value, slope), moduli) in low.wall.iter().zip(moduli.by_ref()) {

@@ -6,8 +6,10 @@
 //! of size m = 9 (2H + 1). These are the soft motions of a thin wall, which the average around the
 //! tube represents worst at a state that is not axisymmetric.
 //!
-//! The quadrature has two points along each element, four through the wall and one in the middle of
-//! each element around, where sums over periodic functions converge fastest. For each set of points
+//! The quadrature has four points through the wall and one in the middle of each element around,
+//! where sums over periodic functions converge fastest. Along each element it has two points, or more
+//! on a mesh of few elements: with fewer points than functions along the tube, displacements that
+//! vanish at all of them, or whose slopes do, would have little energy or none. For each set of points
 //! around, projecting the moduli takes 2·9·k·(3 (2H+1))² multiply-adds.
 
 use super::SplineTube;
@@ -17,8 +19,8 @@ use crate::matrix::BlockBanded;
 use crate::rings::Rotation;
 use crate::spline::gauss_legendre;
 
-/// Quadrature points along an element and through the wall.
-pub(super) const POINTS: [usize; 2] = [2, 4];
+/// Quadrature points through the wall.
+pub(super) const POINTS_THROUGH: usize = 4;
 
 /// Number of functions through the wall: 1, t, t².
 pub(super) const THROUGH: usize = 3;
@@ -30,6 +32,8 @@ pub struct LowHarmonics {
     pub highest: usize,
     /// Control values of 1, t, t² at each point through the wall.
     pub through: Vec<[f64; THROUGH]>,
+    /// Number of quadrature points along an element.
+    pub(super) points_along: usize,
     pub(super) batches: Vec<AxialBatch>,
     pub(super) points: Vec<Layer>,
     pub(super) middle: [CircumferentialPoint; 1],
@@ -48,8 +52,9 @@ impl LowHarmonics {
         let (inner, outer) = (tube.tube.inner_radius(), crate::tube::Tube::OUTER_RADIUS);
         let t = |radius: f64| (2.0 * radius - inner - outer) / (outer - inner);
         let slope = 2.0 / (outer - inner);
-        let along = vec![gauss_legendre(POINTS[0]); tube.axial.elements()];
-        let points = Layer::points(&tube.wall, POINTS[1]);
+        let points_along = points_along(tube.degree(), tube.axial.elements());
+        let along = vec![gauss_legendre(points_along); tube.axial.elements()];
+        let points = Layer::points(&tube.wall, POINTS_THROUGH);
         let wall = points.iter().map(|point| {
             let t = t(point.radius[0]);
             ([1.0, t, t * t], [0.0, slope, 2.0 * t * slope])
@@ -64,6 +69,7 @@ impl LowHarmonics {
         Self {
             highest,
             through,
+            points_along,
             batches: AxialBatch::all(&tube.axial, &along),
             wall: wall.collect(),
             points,
@@ -102,14 +108,15 @@ impl LowHarmonics {
 
     /// Returns for every unknown of harmonic n of the sector, numbered (row, function, component),
     /// whether it is prescribed. A single constrained point prescribes all functions of its row, so
-    /// that none of them moves it.
+    /// that none of them moves it. Functions beyond the number of control points through the wall
+    /// depend on the others, and count as prescribed.
     pub fn prescribed_in_harmonic(&self, tube: &SplineTube, n: usize) -> Vec<bool> {
         let points = tube.wall.functions();
         let prescribed = tube.prescribed_in_harmonic(n * (tube.sector.around / tube.sector.rings));
         let row = |row: &[bool]| {
             let any = |i: usize| row.iter().skip(i).step_by(3).any(|prescribed| *prescribed);
             let prescribed = [0, 1, 2].map(any);
-            (0..3 * THROUGH).map(move |at| prescribed[at % 3])
+            (0..3 * THROUGH).map(move |at| prescribed[at % 3] || at / 3 >= points)
         };
         prescribed.chunks_exact(3 * points).flat_map(row).collect()
     }
@@ -188,6 +195,12 @@ impl LowHarmonics {
             }
         }
     }
+}
+
+/// Returns the number of quadrature points along each of n elements of degree p: two, or more on few
+/// elements, so that the tube has as many points as functions, n + p.
+fn points_along(degree: usize, elements: usize) -> usize {
+    (elements + degree).div_ceil(elements).max(2)
 }
 
 /// Returns the displacement of each mode (`d` = 0) or its slope around (1): rows (element,

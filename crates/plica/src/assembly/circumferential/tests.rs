@@ -1,11 +1,12 @@
 //! Circumferential batches against axial batches, whose matrices are assembled.
 
 use crate::assembly::tests::{
-    TubeAndLoad, direction, dot, largest, linearised, repeated, tube_and_load, unknowns, wavy,
+    TubeAndLoad, direction, dot, largest, linearised, mesh, repeated, tube_and_load, unknowns, wavy,
 };
 use crate::assembly::{LowHarmonics, SplineTube};
-use crate::matrix::BlockBanded;
+use crate::matrix::{BlockBanded, lowest_eigenpairs};
 use crate::rings::{HarmonicSolver, Transform};
+use crate::tube::{Support, Tube};
 use std::f64::consts::TAU;
 
 /// Degrees, elements, and rings of the sector: below, at and above a vector of eight.
@@ -219,6 +220,37 @@ fn low_harmonic_tangent_is_the_projected_tangent() {
             (found / exact - 1.0).abs() < 1e-12,
             "{rings}: {found} {exact}"
         );
+    }
+}
+
+#[test]
+fn the_low_harmonic_tangent_resists_every_displacement_on_few_elements() {
+    // Relative to the projection of the tangent with its full quadrature, at a tube that slides at both ends.
+    for degree in 1..=5 {
+        for along in 1..=degree + 1 {
+            let tube = Tube {
+                ends: [Support::Sliding; 2],
+                ..tube_and_load(degree, [along, 1, 12], 12).tube.tube
+            };
+            let tube = SplineTube::new(&tube, &mesh(degree, [along, 1, 12]), 12);
+            let (load, u) = (tube.tube.rest(), vec![0.0; tube.unknowns()]);
+            let low = LowHarmonics::new(&tube, 1);
+            let zeros = || BlockBanded::zeros(tube.axial.functions(), low.row_size(), degree);
+            let [mut coupled, mut exact] = [zeros(), zeros()];
+            tube.low_harmonic_tangent(&low, &load, &u, &mut coupled);
+            let average = linearised(&tube, &load, &u).average;
+            for mode in 0..low.modes() {
+                let n = mode.div_ceil(2);
+                let index = |(c, i): (usize, usize)| (c * low.modes() + mode) * 3 + i;
+                let place = |row, column| (index(row), index(column));
+                let mut own = zeros();
+                low.project(&average.harmonic(n), place, &mut own);
+                exact.add_scaled(if n == 0 { 12.0 } else { 6.0 }, &own);
+            }
+            let prescribed = low.prescribed(&tube);
+            let lowest = &lowest_eigenpairs(&coupled, &exact, &prescribed, 1).unwrap()[0];
+            assert!(lowest.value > 0.01, "{degree} {along}: {}", lowest.value);
+        }
     }
 }
 

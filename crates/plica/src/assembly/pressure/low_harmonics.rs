@@ -7,9 +7,6 @@ use super::volume::{sum, volume_blocks};
 use crate::matrix::BlockBanded;
 use crate::tube::Load;
 
-/// Quadrature points along an element, the same number as in the low-harmonic tangent.
-const POINTS: usize = 2;
-
 impl SplineTube {
     /// Adds the contribution of pressure to Eᵀ K E (see [`SplineTube::low_harmonic_tangent`]).
     pub(in crate::assembly) fn add_low_harmonic_pressure(
@@ -21,11 +18,12 @@ impl SplineTube {
     ) {
         let (n, columns, point) = (self.degree() + 1, 3 * low.modes(), &low.middle[0]);
         let [values, slopes] = &low.waves;
+        let along = low.points_along;
         for wall in self.follower_walls(load) {
             // 1, t, t² at the wall.
             let through = [1.0, if wall.point == 0 { -1.0 } else { 1.0 }, 1.0];
             for batch in &low.batches {
-                for (lane, qz) in (0..batch.elements * POINTS).map(|i| (i / POINTS, i % POINTS)) {
+                for (lane, qz) in (0..batch.elements * along).map(|i| (i / along, i % along)) {
                     let rings = self.rings_along(&wall, u, (batch, lane), qz);
                     let weight = -wall.follower * batch.weight[qz].0[lane] * point.weight;
                     // The parts that multiply (N′, N) and (N, N) along the tube.

@@ -55,7 +55,7 @@ pub(in crate::assembly) fn tube_and_load(
 }
 
 /// Returns a mesh of `elements` along, through and around.
-fn mesh(degree: usize, [along, through, around]: [usize; 3]) -> Mesh {
+pub(in crate::assembly) fn mesh(degree: usize, [along, through, around]: [usize; 3]) -> Mesh {
     Mesh {
         axial: along + degree,
         around,
