@@ -6,9 +6,9 @@
 use plica::assembly::SplineTube;
 use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
-use plica::solve::{Method, Path, Settings, State};
+use plica::solve::{Path, Settings, State};
 use plica::stability::Harmonics;
-use plica::tube::{Axial, Imperfection, Load, Mesh, Part, Pressure, Shape, Support, Tube, Wave};
+use plica::tube::{Load, Mesh, Pressure, Support, Tube};
 
 fn tube(length: f64, poisson_ratio: f64) -> Tube {
     Tube {
@@ -100,49 +100,9 @@ fn critical_fraction(
 }
 
 #[test]
-fn an_oval_ring_of_one_element_along_passes_seven_tenths_of_its_critical_pressure_at_once() {
-    // Its wave of mode 2 grows by 1/(1 − p/p_c), with p_c of the perfect ring. From an asymmetry of 0.005 D on, the solver
-    // couples low harmonics.
-    let perfect = tube(0.5, 0.495);
-    let oval = Tube {
-        imperfections: vec![Imperfection {
-            of: Part::Geometry,
-            shape: Shape::Wave(Wave {
-                harmonic: 2,
-                phase: 0.0,
-                axial: Axial::Uniform,
-                share: 1.0,
-            }),
-            amplitude: 3e-3,
-        }],
-        ..perfect.clone()
-    };
-    let critical = critical_fraction(
-        &problem(&perfect, [1, 24, 1], 1),
-        &outside(&perfect, 7e-4),
-        2,
-        [0.95, 1.05],
-    );
-    let problem = problem(&oval, [1, 24, 1], 12);
-    let rest = problem.tube.tube.rest();
-    let mut path = Path::begin(&problem, rest, problem.tube.initial_guess(), tight()).unwrap();
-    path.begin_segment(outside(&oval, 0.7 * critical * 7e-4));
-    let amplitude = |u: &[f64]| {
-        // The radial displacement of the first control point of the half, at angles 0 and a quarter turn.
-        0.5 * (u[12] - u[12 + 6])
-    };
-    let before = amplitude(&path.state().u);
-    let step = path.advance(1.0, &mut ()).unwrap();
-    assert_eq!(step.method, Method::Newton);
-    assert!(step.effort.linear_solves <= 12, "{:?}", step.effort);
-    assert!(step.effort.inner_iterations <= 200, "{:?}", step.effort);
-    let growth = amplitude(&path.state().u) / before;
-    assert_near("growth of the wave", growth, 1.0 / (1.0 - 0.7), 0.05);
-}
-
-#[test]
 fn a_ring_under_dead_load_buckles_at_four_thirds_of_the_follower_pressure() {
-    // The critical load of a thin ring is 4 E I/r³ if it keeps its direction, and 3 E I/r³ if it follows the wall.
+    // The critical load of a thin ring is 4 E I/r³ if it keeps its direction, and 3 E I/r³ if it follows the wall. A dead
+    // load on the outer wall, at R, does the work ½ p R² θ² as a section turns by θ, instead of ½ p r² θ².
     let tube = Tube {
         thickness: 0.01,
         ..tube(0.1, 0.3)
@@ -161,7 +121,7 @@ fn a_ring_under_dead_load_buckles_at_four_thirds_of_the_follower_pressure() {
         ..tube.rest()
     };
     let critical = critical_fraction(&problem, &dead, 2, [3.9, 4.1]);
-    assert_near("dead load", critical, 4.0, 0.03);
+    assert_near("dead load", critical, 4.0 * (middle / 0.5).powi(2), 1e-3);
     let critical = critical_fraction(&problem, &outside(&tube, bending), 2, [2.9, 3.1]);
-    assert_near("follower pressure", critical, 3.0, 0.03);
+    assert_near("follower pressure", critical, 3.0, 1e-3);
 }

@@ -116,4 +116,37 @@ mod tests {
         assert!((contracted.stretch(0.75, 0.25, 3.0) - 0.25).abs() < 1e-14);
         assert!((contracted.smallest_stretch(0.25, 3.0) - 0.25).abs() < 1e-14);
     }
+
+    #[test]
+    fn the_extreme_stretch_is_the_one_furthest_from_one() {
+        let table = Profile::Table(vec![(0.0, 0.0), (0.25, 0.5), (0.75, 0.1), (1.0, 0.2)]);
+        for profile in [Profile::HalfSine, table] {
+            for direction in [Direction::Circular, Direction::Longitudinal] {
+                let m = muscle(direction, profile.clone());
+                for ratio in [0.9, 1.2] {
+                    let stretches = (0..=1000).map(|i| m.stretch(0.001 * f64::from(i), ratio, 3.0));
+                    let far = stretches.reduce(|a, b| {
+                        if (b - 1.0).abs() > (a - 1.0).abs() {
+                            b
+                        } else {
+                            a
+                        }
+                    });
+                    let (far, found) = (far.unwrap(), m.extreme_stretch(ratio, 3.0));
+                    assert!((far - found).abs() < 1e-4, "{m:?} {ratio}: {far} {found}");
+                    let least = m.smallest_stretch(ratio, 3.0);
+                    assert_eq!(least, found.min(1.0));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_muscle_acts_on_its_zone_with_its_edges_and_nowhere_else() {
+        let level = Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)]);
+        let m = muscle(Direction::Circular, level);
+        for (z, theta) in [(0.4999, 1.0), (0.5, 0.8), (1.0, 0.8), (1.0001, 1.0)] {
+            assert!((m.stretch(z, 0.8, 3.0) - theta).abs() < 1e-15, "{z}");
+        }
+    }
 }

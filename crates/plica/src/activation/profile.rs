@@ -73,3 +73,62 @@ impl Profile {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> [Profile; 4] {
+        [
+            Profile::RaisedCosine,
+            Profile::HalfSine,
+            Profile::SmoothBox { edge: 0.25 },
+            Profile::Table(vec![(0.0, 0.0), (0.25, 0.5), (0.75, 0.1), (1.0, 0.2)]),
+        ]
+    }
+
+    #[test]
+    fn profiles_have_their_values() {
+        let half = 0.5_f64.sqrt();
+        let at = [0.0, 0.125, 0.25, 0.5, 0.875, 1.0];
+        for (profile, expected) in all().iter().zip([
+            [0.0, 0.5 - 0.5 * half, 0.5, 1.0, 0.5 - 0.5 * half, 0.0],
+            [0.0, (PI / 8.0).sin(), half, 1.0, (PI / 8.0).sin(), 0.0],
+            [0.0, 0.5, 1.0, 1.0, 0.5, 0.0],
+            [0.0, 0.25, 0.5, 0.3, 0.15, 0.2],
+        ]) {
+            for (x, expected) in at.into_iter().zip(expected) {
+                let found = profile.value(x);
+                assert!((found - expected).abs() < 1e-15, "{profile:?} {x}: {found}");
+            }
+        }
+        // Beyond the zone only rounding occurs.
+        let smooth = Profile::SmoothBox { edge: 0.25 };
+        assert_eq!([smooth.value(-1e-17), smooth.value(1.0 + 1e-16)], [0.0; 2]);
+    }
+
+    #[test]
+    fn integral_and_largest_value_are_those_of_the_profile() {
+        for profile in all() {
+            let n = 40_000;
+            let values: Vec<f64> = (0..n)
+                .map(|i| profile.value((f64::from(i) + 0.5) / f64::from(n)))
+                .collect();
+            let mean = values.iter().sum::<f64>() / f64::from(n);
+            assert!((profile.integral() - mean).abs() < 1e-8, "{profile:?}");
+            let largest = values.iter().copied().fold(0.0, f64::max);
+            assert!((profile.largest() - largest).abs() < 1e-4, "{profile:?}");
+        }
+    }
+
+    #[test]
+    fn kinks_are_the_inner_points_where_the_slope_or_the_curvature_jumps() {
+        let kinks = all().map(|profile| profile.kinks());
+        assert_eq!(kinks, [vec![], vec![], vec![0.25, 0.75], vec![0.25, 0.75]]);
+        assert!(
+            Profile::Table(vec![(0.0, 1.0), (1.0, 0.0)])
+                .kinks()
+                .is_empty()
+        );
+    }
+}

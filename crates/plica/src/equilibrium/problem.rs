@@ -172,3 +172,68 @@ impl Solver for TubeSolver {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{Material, NeoHookean};
+    use crate::solve::{Method, Path, Settings};
+    use crate::tube::{Axial, Imperfection, Mesh, Part, Shape, Support, Wave};
+
+    #[test]
+    fn an_oval_ring_of_one_element_along_passes_its_pressures_in_few_solves() {
+        let tube = Tube {
+            length: 0.5,
+            thickness: 0.06,
+            material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+            muscles: vec![],
+            ends: [Support::Sliding; 2],
+            imperfections: vec![Imperfection {
+                of: Part::Geometry,
+                amplitude: 3e-3,
+                shape: Shape::Wave(Wave::new(2, 0.0, Axial::Uniform)),
+            }],
+        };
+        let mesh = Mesh {
+            axial: 4,
+            around: 24,
+            thickness: 4,
+            degree: 3,
+            refinements: vec![],
+            volumetric: Default::default(),
+        };
+        let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 12));
+        let (rest, start) = (tube.rest(), problem.tube.initial_guess());
+        let mut path = Path::begin(&problem, rest.clone(), start, Settings::default()).unwrap();
+        let mut load = rest;
+        load.pressures[1].follower = 4e-4;
+        path.begin_segment(load);
+        // Radial displacements of the first control point, a quarter turn apart.
+        let wave = |u: &[f64]| 0.5 * (u[12] - u[18]);
+        let before = wave(&path.state().u);
+        let mut critical = vec![];
+        // From an asymmetry of 0.005 D on, low harmonics are coupled.
+        for t in [0.5, 1.0] {
+            let step = path.advance(t, &mut ()).unwrap();
+            println!("{t}: {step:?}");
+            assert_eq!(step.method, Method::Newton);
+            assert!(step.effort.linear_solves <= 10, "{step:?}");
+            assert!(step.effort.inner_iterations <= 120, "{step:?}");
+            assert_eq!(path.state().negative_pivots, 0);
+            // The wave grows by 1/(1 − p/p_c).
+            let growth = wave(&path.state().u) / before;
+            critical.push(t * 4e-4 / (1.0 - 1.0 / growth));
+        }
+        assert!(wave(&path.state().u) > 0.006, "{}", wave(&path.state().u));
+        // Of a thin ring in plane strain; this one is thick.
+        let radius = 0.5 - 0.03;
+        let thin = 0.25 * (0.06_f64 / radius).powi(3) / (1.0 - 0.3 * 0.3);
+        for critical in &critical {
+            assert!((critical / thin - 1.0).abs() < 0.1, "{critical} {thin}");
+        }
+        assert!(
+            (critical[1] / critical[0] - 1.0).abs() < 0.03,
+            "{critical:?}"
+        );
+    }
+}

@@ -270,6 +270,20 @@ mod tests {
     }
 
     #[test]
+    fn another_degree_with_as_many_control_points_approximates_the_displacements() {
+        // Of a smooth state: the numbers of unknowns, rings and points agree, the splines do not.
+        for (old, new) in [(2, 3), (3, 2), (3, 4)] {
+            let with = |degree: usize| laid([24 - degree, 24, 8 - degree], degree, 24);
+            let (from, to) = (with(old), with(new));
+            assert_eq!(from.unknowns(), to.unknowns());
+            let u = smooth(&from);
+            let error = apart((&from, &u), (&to, &prolong(&from, &to, &u)));
+            let copied = apart((&from, &u), (&to, &u));
+            assert!(error < 1e-3 && error < 0.1 * copied, "{error:e} {copied:e}");
+        }
+    }
+
+    #[test]
     fn other_meshes_approximate_the_displacements() {
         let fine = laid([60, 60, 3], 3, 60);
         let u = smooth(&fine);

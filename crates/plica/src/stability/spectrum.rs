@@ -84,3 +84,54 @@ impl Eigenvalue {
         parts
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tube::fixture;
+
+    fn eigenvalue(value: f64, found: bool) -> Eigenvalue {
+        Eigenvalue {
+            value,
+            residual: 0.0,
+            found,
+            shares: vec![0.0099, 0.4, 0.01, 0.4, 0.1801],
+        }
+    }
+
+    #[test]
+    fn negative_eigenvalues_are_all_known_if_the_last_one_is_found_and_not_negative() {
+        let negative = |values: &[(f64, bool)]| {
+            let lowest = values
+                .iter()
+                .map(|&(value, found)| eigenvalue(value, found));
+            let spectrum = Spectrum {
+                stage: String::new(),
+                row: 1,
+                along: 0.5,
+                load: fixture::short().rest(),
+                lowest: lowest.collect(),
+                iterations: 1,
+            };
+            spectrum.negative()
+        };
+        assert_eq!(
+            negative(&[(-2.0, true), (-1.0, true), (3.0, true)]),
+            (2, true)
+        );
+        assert_eq!(negative(&[(-2.0, true), (0.0, true)]), (1, true));
+        assert_eq!(negative(&[(-2.0, true), (3.0, false)]), (1, false));
+        assert_eq!(negative(&[(-2.0, true)]), (1, false));
+        assert_eq!(negative(&[]), (0, false));
+    }
+
+    #[test]
+    fn parts_have_at_least_a_hundredth_and_the_largest_comes_first() {
+        let eigenvalue = eigenvalue(1.0, true);
+        assert_eq!(
+            eigenvalue.parts(),
+            [(1, 0.4), (3, 0.4), (4, 0.1801), (2, 0.01)]
+        );
+        assert_eq!(eigenvalue.harmonic(), 1);
+    }
+}

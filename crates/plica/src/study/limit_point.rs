@@ -88,3 +88,64 @@ impl fmt::Display for LimitPoint {
 fn significant(x: f64) -> f64 {
     format!("{x:.2e}").parse().unwrap_or(x)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::plan;
+    use super::*;
+    use crate::activation::{Muscle, Profile};
+    use crate::study::{LengthUnit, StressUnit, Units};
+    use crate::tube::{EndMotion, Pressure, Symmetry};
+
+    #[test]
+    fn every_quantity_that_changes_has_its_limit_in_the_unit_of_the_case() {
+        let mut plan = plan(Symmetry::Axisymmetric);
+        let muscle = |name: &str, direction| Muscle {
+            name: name.into(),
+            direction,
+            zone: [0.1, 0.8],
+            profile: Profile::RaisedCosine,
+        };
+        plan.tube.muscles = vec![
+            muscle("ring", Direction::Circular),
+            muscle("long", Direction::Longitudinal),
+        ];
+        plan.units = Some(Units {
+            length: LengthUnit::Millimetre,
+            stress: StressUnit::Kilopascal,
+            diameter: 25.0,
+            youngs_modulus: 20.0,
+        });
+        let load = |x: f64| Load {
+            muscles: vec![1.0 - x, 1.0 + x],
+            ends: [1.0, -2.0].map(|sign| EndMotion {
+                displacement: sign * x,
+                twist: sign * x.to_radians(),
+            }),
+            pressures: [3.0, -4.0].map(|sign| Pressure {
+                follower: sign * x,
+                dead: 10.0 * sign * x,
+            }),
+        };
+        let found = LimitPoint::between(&plan, &load(0.1), &load(0.2));
+        let texts: Vec<String> = found.iter().map(LimitPoint::to_string).collect();
+        let expected = [
+            "ring.diameter_ratio has a minimum near 0.8",
+            "long.length_ratio has a maximum near 1.2",
+            "colon.displacement has a maximum near 5 mm",
+            "colon.twist_degrees has a maximum near 0.2 degrees",
+            "ileum.displacement has a minimum near -10 mm",
+            "ileum.twist_degrees has a minimum near -0.4 degrees",
+            "inner-wall.pressure has a maximum near 12 kPa",
+            "inner-wall.dead_load has a maximum near 120 kPa",
+            "outer-wall.pressure has a minimum near -16 kPa",
+            "outer-wall.dead_load has a minimum near -160 kPa",
+        ];
+        assert_eq!(texts, expected);
+        let mut pressed = load(0.1);
+        pressed.pressures[1].follower = 0.5;
+        let found = LimitPoint::between(&plan, &load(0.1), &pressed);
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].quantity, "outer-wall.pressure");
+    }
+}

@@ -439,3 +439,42 @@ impl From<bool> for YesOrNo {
         if value { Self::Yes } else { Self::No }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_judged_on_both_sides_of_every_threshold() {
+        let row = |angle: f64, overhang: f64, gap: f64, lumen: f64| {
+            let row = Row {
+                max_wall_angle_deg: angle,
+                overhang,
+                gap,
+                lumen,
+                ..Row::zero(&[], ["colon", "ileum"])
+            };
+            [row.overhangs(), row.crosses_itself(), row.has_closed()]
+        };
+        assert_eq!(row(90.0, 1e-9, 1e-9, 1e-9), [true, false, false]);
+        assert_eq!(row(89.9, 1e-9, 0.0, 1e-9), [false, true, false]);
+        assert_eq!(row(120.0, 0.0, 1e-9, 0.0), [false, false, true]);
+        assert_eq!(row(0.0, 0.0, 1e-9, -1e-9), [false, false, true]);
+    }
+
+    #[test]
+    fn a_row_without_pressures_continues_one_with_them() {
+        let plain = Row {
+            energy: 3.0,
+            ..Row::zero(&["ring"], ["colon", "ileum"])
+        };
+        let row = plain.clone().with_pressures();
+        assert_eq!(
+            (row.inner_pressure, row.outer_dead_load),
+            (Some(0.0), Some(0.0))
+        );
+        assert_eq!((row.potential, row.outer_wall_work), (Some(3.0), Some(0.0)));
+        assert_eq!(row.header().len(), plain.header().len() + 7);
+        assert_eq!(row.clone().with_pressures(), row);
+    }
+}

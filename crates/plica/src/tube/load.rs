@@ -54,3 +54,26 @@ impl Load {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_of_a_load_is_interpolated_linearly() {
+        let load = |x: f64| Load {
+            muscles: vec![x, 2.0 * x],
+            ends: [3.0, 4.0].map(|s| EndMotion {
+                displacement: s * x,
+                twist: 10.0 * s * x,
+            }),
+            pressures: [5.0, 6.0].map(|s| Pressure {
+                follower: s * x,
+                dead: 10.0 * s * x,
+            }),
+        };
+        assert_eq!(load(1.0).towards(&load(3.0), 0.25), load(1.5));
+        assert_eq!(load(0.1).towards(&load(0.3), 0.0), load(0.1));
+        assert_eq!(load(0.1).towards(&load(0.3), 1.0), load(0.3));
+    }
+}

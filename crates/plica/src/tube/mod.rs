@@ -178,6 +178,46 @@ mod tests {
     }
 
     #[test]
+    fn ratios_and_stretches_are_those_of_all_muscles() {
+        let mut tube = tube(Wave::new(0, 0.0, Axial::Uniform));
+        tube.imperfections.clear();
+        let level = |direction, zone| Muscle {
+            name: String::new(),
+            direction,
+            zone,
+            profile: Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)]),
+        };
+        let (along, around) = (Direction::Longitudinal, Direction::Circular);
+        tube.muscles = vec![
+            level(along, [0.0, 1.0]),
+            level(along, [1.5, 3.0]),
+            level(around, [0.5, 2.0]),
+            level(around, [2.0, 3.0]),
+        ];
+        let load = Load {
+            muscles: vec![1.1, 0.8, 0.7, 1.4],
+            ..tube.rest()
+        };
+        assert!((tube.length_ratio(&load) - 0.9).abs() < 1e-15);
+        assert_eq!(tube.diameter_ratio(&load), 0.7);
+        // Changes of the length by 0.3 and −0.6, over 1 and 1.5.
+        for (z, along, around) in [
+            (0.2, 1.3, 1.0),
+            (0.7, 1.3, 0.7),
+            (1.7, 0.6, 0.7),
+            (2.5, 0.6, 1.4),
+        ] {
+            let found = tube.stretches(z, &load);
+            assert!(
+                (found.0 - along).abs() < 1e-14 && (found.1 - around).abs() < 1e-14,
+                "{z}: {found:?}"
+            );
+        }
+        let ratio = |load: &Load| (tube.length_ratio(load), tube.diameter_ratio(load));
+        assert_eq!(ratio(&tube.rest()), (1.0, 1.0));
+    }
+
+    #[test]
     fn the_average_strength_of_an_imperfect_muscle_is_one() {
         for harmonic in 1..=3 {
             let tube = tube(Wave::new(harmonic, 0.2, Axial::HalfWaves(1)));

@@ -169,6 +169,37 @@ mod tests {
     }
 
     #[test]
+    fn a_random_shape_of_an_end_is_uniform_along_the_tube() {
+        for (harmonics, fold) in [(0, 1), (1, 1), (4, 1), (4, 2), (6, 3)] {
+            let random = Random::new(3, harmonics, 0, fold);
+            let expected: Vec<usize> = (0..=harmonics).step_by(fold).collect();
+            let modes: Vec<usize> = random.waves().iter().map(|w| w.harmonic).collect();
+            assert_eq!(modes, expected);
+            assert!(random.waves().iter().all(|w| w.axial == Axial::Uniform));
+            let shape = Shape::Random(random);
+            let mut largest = 0.0_f64;
+            for j in 0..2000 {
+                let value = shape.value(TAU * f64::from(j) / 2000.0, 0.0, [0.0, 3.0]);
+                assert!(value.is_finite());
+                largest = largest.max(value.abs());
+            }
+            assert!((0.99..1.005).contains(&largest), "{harmonics}: {largest}");
+        }
+    }
+
+    #[test]
+    fn every_wave_has_its_mode_and_its_half_waves_once() {
+        let random = Random::new(3, 2, 3, 1);
+        let numbers: Vec<(usize, Axial)> = random
+            .waves()
+            .iter()
+            .map(|w| (w.harmonic, w.axial))
+            .collect();
+        let expected = (0..=2).flat_map(|n| (1..=3).map(move |k| (n, Axial::HalfWaves(k))));
+        assert_eq!(numbers, expected.collect::<Vec<_>>());
+    }
+
+    #[test]
     fn a_fold_selects_its_multiples_and_leaves_them_unchanged() {
         let Shape::Random(whole) = shape(7, 1) else {
             unreachable!()

@@ -70,6 +70,34 @@ fn inverted_element_is_an_error_with_its_place() {
 }
 
 #[test]
+fn an_inverted_element_has_its_own_layer_for_any_number_of_rings() {
+    // Linear elements are 0.075 long and 0.05 thick.
+    for (rings, layers, bad) in [(1, 3, 2), (1, 3, 0), (6, 3, 1), (12, 3, 2), (12, 3, 0)] {
+        let TubeAndLoad { tube, .. } = tube_and_load(1, [20, layers, 12], rings);
+        let (middle, radii) = (tube.axial.greville()[13], tube.wall.greville());
+        let ring = 4 % rings;
+        // The inner face of the bad layer passes its outer face at one row, and at one ring.
+        let u = tube.control_values_from(|z, r, at| {
+            let moves = z == middle && r == radii[bad] && at == ring;
+            [0.0, if moves { 0.09 } else { 0.0 }, 0.0]
+        });
+        let error = tube.forces(&tube.tube.rest(), &u).unwrap_err();
+        let [along, layer, around] = error.element;
+        assert!(along == 12 || along == 13, "{error:?}");
+        assert_eq!(layer, bad, "{rings} rings: {error:?}");
+        let (from, to) = tube.wall.element(bad);
+        let depth = |radius: f64| (0.5 - radius) / 0.15;
+        assert!(
+            (depth(to)..=depth(from)).contains(&error.place.depth),
+            "{error:?}"
+        );
+        let beside = [around, (around + 1) % rings];
+        assert!(beside.contains(&ring), "{rings} rings: {error:?}");
+        assert_eq!(error.place.angle.is_some(), rings > 1);
+    }
+}
+
+#[test]
 fn nan_displacement_is_an_error_with_its_element() {
     for rings in [1, 6] {
         let TubeAndLoad { tube, load } = tube_and_load(3, [11, 2, 6], rings);

@@ -6,6 +6,7 @@ use super::{
 use crate::assembly::reference::ReferenceTube;
 use crate::assembly::{MatrixFreeTangent, Point};
 use crate::material::{CustomLaw, Law, Material, MooneyRivlin};
+use crate::spline::{Basis, gauss_legendre};
 use crate::tensor::Tensor2;
 use std::f64::consts::TAU;
 
@@ -80,7 +81,13 @@ fn axisymmetric_tubes_agree_with_the_reference_implementation() {
         let u = wavy(&tube);
         let ring = tube.forces(&load, &u).unwrap();
         let expected = ReferenceTube::new(&whole, &load).forces(&replicated(&u, 6));
-        assert!((ring.energy / expected.energy - 1.0).abs() < 1e-12);
+        for (a, b) in [
+            (ring.energy, expected.energy),
+            (ring.energy_ungrown, expected.energy_ungrown),
+            (ring.potential, expected.energy),
+        ] {
+            assert!((a / b - 1.0).abs() < 1e-12, "{a} is not {b}");
+        }
         assert_close(
             "one ring",
             replicated(&ring.residual, 6),
@@ -183,4 +190,112 @@ fn samples_agree_with_the_reference_implementation() {
             );
         }
     }
+}
+
+#[test]
+fn the_smallest_jacobian_is_that_of_the_quadrature_points_for_any_number_of_rings() {
+    let TubeAndLoad { tube: one, load } = tube_and_load(2, [5, 2, 12], 1);
+    let u = wavy(&one);
+    let rule = gauss_legendre(3);
+    let points = |basis: &Basis| -> Vec<f64> {
+        let spans = (0..basis.elements()).map(|e| basis.element(e));
+        spans
+            .flat_map(|(from, to)| rule.iter().map(move |(x, _)| from + (to - from) * x))
+            .collect()
+    };
+    let mut smallest = f64::INFINITY;
+    for z in points(&one.axial) {
+        for radius in points(&one.wall) {
+            for (x, _) in &rule {
+                let angle = (x - 0.5) * TAU / 12.0;
+                let sample = one.sample(&load, &u, Point { z, radius, angle });
+                smallest = smallest.min(sample.jacobian);
+            }
+        }
+    }
+    assert!(smallest < 0.9, "{smallest}");
+    for rings in [1, 6, 12] {
+        let TubeAndLoad { tube, load } = tube_and_load(2, [5, 2, 12], rings);
+        let found = tube.forces(&load, &replicated(&u, rings)).unwrap();
+        assert!(
+            (found.smallest_jacobian / smallest - 1.0).abs() < 1e-12,
+            "{rings} rings: {} is not {smallest}",
+            found.smallest_jacobian
+        );
+    }
+}
+
+#[test]
+fn the_stress_of_a_sample_is_the_derivative_of_its_energy() {
+    for material in other_laws() {
+        let TubeAndLoad { tube, load } = of_material(&material, 3, [5, 2, 12], 12);
+        let (z, radius, angle) = (0.8, 0.41, 2.2);
+        let sample = tube.sample(&load, &wavy(&tube), Point { z, radius, angle });
+        // σ = (det Fe)⁻¹ ∂w/∂Fe Feᵀ
+        let h = 1e-5;
+        for i in 0..3 {
+            for j in 0..3 {
+                let energy = |h: f64| {
+                    let mut moved = sample.elastic;
+                    // Fe → (I + h e_i ⊗ e_j) Fe changes w by h det Fe σ_ij.
+                    for k in 0..3 {
+                        moved.0[i][k] += h * sample.elastic.0[j][k];
+                    }
+                    material.energy(&moved)
+                };
+                let slope = (energy(h) - energy(-h)) / (2.0 * h);
+                let expected = slope / sample.elastic.determinant();
+                assert!(
+                    (sample.stress.0[i][j] - expected).abs() < 1e-8,
+                    "{i} {j}: {} is not {expected}",
+                    sample.stress.0[i][j]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn stretches_and_von_mises_stress_have_the_values_of_simple_states() {
+    let TubeAndLoad { tube, .. } = tube_and_load(3, [3, 1, 6], 1);
+    let at = Point {
+        z: 0.5,
+        radius: 0.4,
+        angle: 0.0,
+    };
+    let mut sample = tube.sample(&tube.tube.rest(), &vec![0.0; tube.unknowns()], at);
+    for (stress, expected) in [
+        ([[-3.0, 0.0, 0.0], [0.0; 3], [0.0; 3]], 3.0),
+        ([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]], 0.0),
+        (
+            [[0.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0; 3]],
+            2.0 * 3.0_f64.sqrt(),
+        ),
+        (
+            [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]],
+            3.0_f64.sqrt(),
+        ),
+    ] {
+        sample.stress = Tensor2(stress);
+        assert!((sample.von_mises() - expected).abs() < 1e-14, "{stress:?}");
+    }
+    let (sin, cos) = 0.7_f64.sin_cos();
+    let rotation = Tensor2([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]);
+    let stretched = Tensor2([[0.5, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.5]]);
+    sample.elastic = rotation.times(stretched);
+    let [first, second, third] = sample.stretches();
+    for ((found, direction), (expected, along)) in [first, second, third].into_iter().zip([
+        (2.0, [-sin, cos, 0.0]),
+        (1.5, [0.0, 0.0, 1.0]),
+        (0.5, [cos, sin, 0.0]),
+    ]) {
+        assert!((found - expected).abs() < 1e-12, "{found}");
+        assert!(
+            (dot(&direction, &along).abs() - 1.0).abs() < 1e-12,
+            "{direction:?}"
+        );
+    }
+    assert!(!sample.is_inverted());
+    sample.elastic = sample.elastic.scaled(-1.0);
+    assert!(sample.is_inverted());
 }
