@@ -1,5 +1,6 @@
 //! The solvers on energies of one or two unknowns with known equilibria.
 
+use super::iterate::Iterate;
 use super::*;
 use crate::matrix::{BlockBanded, Singular};
 use crate::monitor::Monitor;
@@ -652,4 +653,84 @@ fn relaxation_leaves_a_saddle_in_few_solves() {
     // Symmetry keeps it exactly on the saddle.
     let (found, _) = leave(0.0);
     assert_eq!(found.u, [2.5, 0.0]);
+}
+
+#[test]
+fn the_work_of_constant_damping_is_the_fall_of_the_energy_at_a_constant_load() {
+    let spring = toy(|load, [u]| (0.5 * (u - load) * (u - load), [u - load], [[1.0]]));
+    for integrator in [Integrator::Newmark, Integrator::BackwardEuler] {
+        for equilibrate in [false, true] {
+            let settings = Settings {
+                scheme: Scheme::PseudoTime(PseudoTime {
+                    integrator,
+                    equilibrate,
+                    ..PseudoTime::default()
+                }),
+                ..Settings::default()
+            };
+            // From u = 1, out of equilibrium, to u = 0.
+            let mut path = Path::begin(&spring, 0.0, vec![1.0], settings).unwrap();
+            path.begin_segment(0.0);
+            let step = path.advance(1.0, &mut ()).unwrap();
+            assert_eq!(step.method, Method::PseudoTime);
+            let fall = 0.5 - path.state().energy;
+            // A step of 1 % of the way leaves about ½ % of the work.
+            assert!(
+                (step.damping_work / fall - 1.0).abs() < 0.01,
+                "{integrator:?}: {} {fall}",
+                step.damping_work
+            );
+            let still = path.continuation_state().velocity == [0.0];
+            assert_eq!(
+                (still, path.state().in_equilibrium()),
+                (equilibrate, equilibrate)
+            );
+        }
+    }
+}
+
+#[test]
+fn a_segment_begins_with_whole_steps_and_without_a_previous_point() {
+    let spring = spring_before_a_wall();
+    let mut path = path_from(&spring, 0.0, [0.0], 2.0);
+    path.advance(0.1, &mut ()).unwrap();
+    path.advance(0.2, &mut ()).unwrap();
+    let previous = path.continuation_state().previous.unwrap();
+    assert_eq!((previous.t, &previous.u[..]), (0.1, &[0.2][..]));
+    path.advance(0.9, &mut ()).unwrap_err();
+    assert_eq!(path.continuation_state().halving_level, 8);
+    path.begin_segment(0.5);
+    let begun = path.continuation_state();
+    assert_eq!((begun.halving_level, begun.reached), (0, 0.0));
+    assert_eq!(begun.previous, None);
+    let step = path.advance(1.0, &mut ()).unwrap();
+    assert_eq!(step.effort.linear_solves, 1);
+}
+
+#[test]
+fn a_snap_leaves_no_previous_point() {
+    let truss = truss();
+    let mut path = path_from(&truss, 0.0, [-1.0], 0.5);
+    path.advance(0.6, &mut ()).unwrap();
+    assert_eq!(path.continuation_state().previous.map(|p| p.t), Some(0.0));
+    let step = path.advance(0.8, &mut ()).unwrap();
+    assert_eq!(step.method, Method::Relaxation);
+    assert_eq!(path.continuation_state().previous, None);
+}
+
+#[test]
+fn a_step_is_doubled_as_long_as_the_energy_decreases_and_no_further() {
+    // Minima at 0.03 and 1; at 0.02 and 0.04 the energy is the same.
+    let well = toy(|_, [u]: [f64; 1]| ((u - 0.03).powi(2), [2.0 * (u - 0.03)], [[2.0]]));
+    let slope = toy(|_, [u]: [f64; 1]| (-u, [-1.0], [[0.0]]));
+    let ends = |problem: &Toy<1>, first: f64| {
+        let at = |u: f64| Iterate::new(problem, &0.0, vec![u]).unwrap();
+        at(0.0).expand(vec![first], at(first)).u[0]
+    };
+    assert_eq!(ends(&well, 0.01), 0.02);
+    assert_eq!(ends(&well, 0.005), 0.02);
+    assert_eq!(ends(&well, 0.03), 0.03);
+    // Up to a tenth of the diameter.
+    assert_eq!(ends(&slope, 0.0125), 0.1);
+    assert_eq!(ends(&slope, 0.06), 0.06);
 }

@@ -168,3 +168,88 @@ fn bracket(a: &Point, b: &Point, transition: Transition) -> Bracket {
         transition,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::SplineTube;
+    use crate::material::{Material, NeoHookean};
+    use crate::tube::{Mesh, Support, Tube};
+
+    #[test]
+    fn a_critical_pressure_is_narrowed_to_the_tolerance_times_the_pressure() {
+        let tube = Tube {
+            length: 0.1,
+            thickness: 0.06,
+            material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+            muscles: vec![],
+            ends: [Support::Sliding; 2],
+            imperfections: vec![],
+        };
+        let mesh = Mesh {
+            axial: 4,
+            around: 24,
+            thickness: 4,
+            degree: 3,
+            refinements: vec![],
+            volumetric: Default::default(),
+        };
+        let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 1));
+        let harmonics = Harmonics::new(&problem.tube, 2);
+        let settings = Settings::default();
+        let mut path = Path::begin(
+            &problem,
+            tube.rest(),
+            vec![0.0; problem.tube.unknowns()],
+            settings.clone(),
+        )
+        .unwrap();
+        let mut load = tube.rest();
+        load.pressures[1].follower = 1e-3;
+        path.begin_segment(load);
+        let mut point = |along: f64| {
+            path.advance(along, &mut ()).unwrap();
+            let state = path.state();
+            Point {
+                along,
+                load: state.load.clone(),
+                u: state.u.clone(),
+                negative: harmonics.negative(&state.load, &state.u),
+            }
+        };
+        let [a, b] = [0.25, 1.0].map(&mut point);
+        assert_eq!(
+            (&a.negative[..], &b.negative[..]),
+            (&[0, 0, 0][..], &[0, 0, 1][..])
+        );
+        for tolerance in [1e-1, 1e-3] {
+            let quantity = Quantity::Pressure(1);
+            let bisection = Bisection {
+                problem: &problem,
+                harmonics: &harmonics,
+                settings: &settings,
+                quantity,
+                tolerance,
+            };
+            let found = bisection.brackets(&a, &b, &mut ()).unwrap();
+            let [bracket] = &found[..] else {
+                panic!("{} brackets", found.len())
+            };
+            assert_eq!(bracket.transition, Transition::Smooth);
+            let ends = &bracket.ends;
+            let [from, to] = [0, 1].map(|i| quantity.of(&tube, &ends[i].load));
+            assert!(from < to && to - from <= tolerance * to, "{from} {to}");
+            // Not much further: each halving costs the eigenvalues of a state.
+            assert!(to - from > 0.4 * tolerance * to, "{from} {to}");
+            assert_eq!([0, 1].map(|i| ends[i].negative[2]), [0, 1]);
+            for end in ends {
+                let pressure = quantity.of(&tube, &end.load);
+                assert!((end.along - pressure / 1e-3).abs() < 1e-12, "{}", end.along);
+            }
+            // Of a thin ring in plane strain.
+            let thin = 0.25 * (0.06_f64 / 0.47).powi(3) / (1.0 - 0.3 * 0.3);
+            assert!(from < 1.1 * thin && to > 0.9 * thin, "{from} {to} {thin}");
+            assert!(bisection.brackets(&a, &a, &mut ()).unwrap().is_empty());
+        }
+    }
+}

@@ -216,6 +216,45 @@ mod tests {
     }
 
     #[test]
+    fn a_cyclic_sector_has_the_work_of_the_whole_tube() {
+        use crate::solve::{Integrator, PseudoTime, Scheme};
+        let mut plan = driven(1);
+        plan.stages.truncate(1);
+        plan.solver.scheme = Scheme::PseudoTime(PseudoTime {
+            integrator: Integrator::BackwardEuler,
+            damping: 1.0,
+            ramp: 2,
+            tolerance: 1e-4,
+            ..PseudoTime::default()
+        });
+        let of_ring = rows(&plan);
+        plan.symmetry = Symmetry::Fold(2);
+        let of_half = rows(&plan);
+        let mut compared = 0;
+        for (ring, half) in of_ring.iter().zip(&of_half) {
+            for (a, b) in ring.cells().iter().zip(half.cells()) {
+                let is_work = ["work", "damping", "energy", "potential", "released"]
+                    .iter()
+                    .any(|name| a.name.starts_with(name));
+                if !is_work {
+                    continue;
+                }
+                let (a, b) = (a.number().unwrap(), b.number().unwrap());
+                assert!(
+                    (a - b).abs() < 1e-6 * ring.energy.max(1e-9),
+                    "{a} {b} {ring:?}"
+                );
+                compared += usize::from(a.abs() > 1e-3 * ring.energy && ring.energy > 0.0);
+            }
+        }
+        assert!(compared > 7, "{compared}");
+        assert!(
+            of_ring[1].damping_work > 0.01 * of_ring[1].energy,
+            "{of_ring:?}"
+        );
+    }
+
+    #[test]
     fn a_resumed_study_does_the_same_work_to_the_bit() {
         let plan = driven(2);
         let mut study = Study::new(&plan).unwrap();

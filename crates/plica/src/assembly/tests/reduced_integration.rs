@@ -149,6 +149,6 @@ fn sampled_energy_equals_integrated_energy() {
         }
         let area = length * (outer - inner) / f64::from(count * count);
         let sum = std::f64::consts::TAU * area * sum;
-        assert!((sum / energy - 1.0).abs() < 0.05, "{sum} {energy}");
+        assert!((sum / energy - 1.0).abs() < 0.001, "{sum} {energy}");
     }
 }
