@@ -710,12 +710,21 @@ fn a_segment_begins_with_whole_steps_and_without_a_previous_point() {
 #[test]
 fn a_snap_leaves_no_previous_point() {
     let truss = truss();
-    let mut path = path_from(&truss, 0.0, [-1.0], 0.5);
-    path.advance(0.6, &mut ()).unwrap();
-    assert_eq!(path.continuation_state().previous.map(|p| p.t), Some(0.0));
-    let step = path.advance(0.8, &mut ()).unwrap();
-    assert_eq!(step.method, Method::Relaxation);
-    assert_eq!(path.continuation_state().previous, None);
+    let settings = Settings {
+        max_step_halvings: 0,
+        ..Settings::default()
+    };
+    let mut path = Path::begin(&truss, 0.0, vec![-1.0], settings).unwrap();
+    path.begin_segment(0.5);
+    for (t, method, previous) in [
+        (0.6, Method::Newton, Some(0.0)),
+        (0.8, Method::Relaxation, None),
+        (0.9, Method::Newton, Some(0.8)),
+    ] {
+        let step = path.advance(t, &mut ()).unwrap();
+        let before = path.continuation_state().previous.map(|point| point.t);
+        assert_eq!((step.method, before), (method, previous));
+    }
 }
 
 #[test]

@@ -192,7 +192,7 @@ fn low_harmonic_tangent_is_the_projected_tangent() {
         tube.add_tangent_product(&at, 1.0, &v, &mut product);
         let (exact, found) = (dot(&v, &product), dot(&x, &multiplied(&coupled, &x)));
         assert!(
-            (found / exact - 1.0).abs() < 0.001,
+            (found / exact - 1.0).abs() < 0.005,
             "{rings}: {found} {exact}"
         );
 
@@ -206,7 +206,7 @@ fn low_harmonic_tangent_is_the_projected_tangent() {
         let exact = -dot(&v, &product);
         let found = dot(&x, &multiplied(&of_pressed, &x)) - found;
         assert!(
-            (found / exact - 1.0).abs() < 0.0011,
+            (found / exact - 1.0).abs() < 0.005,
             "pressure, {rings}: {found} {exact}"
         );
 
