@@ -224,13 +224,15 @@ impl HarmonicTangent {
             if alpha != 0.0 {
                 low.add_damping(&tube.tube, &tube.damping, alpha, &mut matrix);
             }
-            matrix.constrain(&low.prescribed(&tube.tube));
+            let prescribed = low.prescribed(&tube.tube);
+            matrix.constrain(&prescribed);
             let mut coupled = matrix.factor()?;
             coupled.make_positive();
             preconditioner = preconditioner.with_correction(LowHarmonicCorrection {
                 highest: low.highest,
                 through: low.through.clone(),
                 coupled,
+                prescribed,
                 averaged: averaged.into_iter().flatten().collect(),
             });
         }

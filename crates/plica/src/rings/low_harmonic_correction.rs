@@ -22,6 +22,8 @@ pub struct LowHarmonicCorrection {
     /// A, with rows numbered (function through the wall, mode, component), modes 1, cos φ, sin φ,
     /// ….
     pub coupled: Factor,
+    /// For every row of A, whether its function is prescribed; E has the others.
+    pub prescribed: Vec<bool>,
     /// B_E of each harmonic 0 to H, for one wave; rows numbered (function, component).
     pub averaged: Vec<Factor>,
 }
@@ -79,6 +81,12 @@ impl LowHarmonicCorrection {
                 }
             }
         };
+        // A prescribed row of A and B_E is that of the identity, and has no part in the correction.
+        each(&mut |_, from, to| {
+            if self.prescribed[to] {
+                low[from] = 0.0;
+            }
+        });
         let mut coupled = vec![0.0; low.len()];
         each(&mut |_, from, to| coupled[to] = low[from]);
         self.coupled.solve(&mut coupled);

@@ -135,6 +135,12 @@ mod tests {
         assert_eq!(pressure, Quantity::Pressure(1));
         assert_eq!(pressure.name(&tube), "pressure outside/E");
         assert_eq!(pressure.format(1.234e-5, 2), "1.23e-5");
+        let dead = Quantity::DeadLoad(0);
+        assert!(
+            dead.is_pressure() && pressure.is_pressure() && !Quantity::LengthRatio.is_pressure()
+        );
+        assert_eq!(dead.name(&tube), "dead load inside/E");
+        assert_eq!(Quantity::LengthRatio.format(1.25, 3), "1.250");
         // The sum of both targets is constant.
         assert_eq!(to([1.0, 1.5, 0.5], 0.0), Quantity::Muscle(1));
         let load = Load {

@@ -186,7 +186,7 @@ fn the_plan_has_the_values_of_the_text() {
     let text = "symmetry = { fold = 4 }\n\
         [tube]\ndiameter = 2.0\nlength = 5.0\n\
         [ends]\nileum = 'sliding'\n\
-        [muscles.m]\ndirection = 'longitudinal'\nzone = [1.0, 3.0]\n\
+        [muscles.m]\ndirection = 'longitudinal'\nzone = [1.0, 4.0]\n\
         profile = { smooth-box = { edge = 0.25 } }\n\
         [[stages]]\ndrive.m.length_ratio = 1.25\ndrive.colon.twist_degrees = 180\n\
         [[stages]]\nname = 'push'\nsteps = 3\ndrive.ileum.displacement = -0.5\n\
@@ -195,12 +195,12 @@ fn the_plan_has_the_values_of_the_text() {
     assert_eq!((plan.title.as_str(), plan.tube.length), ("named", 2.5));
     assert_eq!(
         (plan.tube.thickness, plan.tube.muscles[0].zone),
-        (0.06, [0.5, 1.5])
+        (0.06, [0.5, 2.0])
     );
     assert_eq!(plan.mesh.rings(plan.symmetry), 15);
     // Elements end at the kinks of the profile.
     let edges: Vec<f64> = plan.mesh.refinements.iter().map(|r| r.to).collect();
-    assert_eq!(edges, [0.75, 1.25, 1.5]);
+    assert_eq!(edges, [0.875, 1.625, 2.0]);
 
     let names: Vec<&str> = plan.stages.iter().map(|s| s.name.as_str()).collect();
     assert_eq!((names, plan.stages[1].steps), (vec!["stage-1", "push"], 3));
@@ -219,6 +219,33 @@ fn the_plan_has_the_values_of_the_text() {
         (scheme.damping, scheme.ramp, scheme.equilibrate),
         (5.0, 10, true)
     );
+}
+
+#[test]
+fn the_plan_is_dimensionless() {
+    let plan = read(RICH, "rich").unwrap();
+    assert_eq!((plan.tube.length, plan.tube.thickness), (5.0, 0.0625));
+    assert_eq!(plan.tube.muscles[2].zone, [3.5, 4.5]);
+    let [first, second] = &plan.stages[..] else {
+        panic!("{:?}", plan.stages)
+    };
+    assert_eq!(first.load.ends[1].displacement, -0.125);
+    assert_eq!(first.load.ends[0].twist, 10_f64.to_radians());
+    let [inner, outer] = second.load.pressures;
+    assert_eq!((inner.follower, outer.dead), (0.5 / 64.0, 0.25 / 64.0));
+    assert_eq!((inner.dead, outer.follower), (0.0, 0.0));
+    let [end, muscle, geometry] = &plan.tube.imperfections[..] else {
+        panic!("{:?}", plan.tube.imperfections)
+    };
+    // Lengths are in the diameter, shares of an activity are not.
+    let amplitudes = [end, muscle, geometry].map(|imperfection| imperfection.amplitude);
+    assert_eq!(amplitudes, [0.01 / 16.0, 0.1, 0.01 / 16.0]);
+    let [end, geometry] = [end, geometry].map(|imperfection| imperfection.shape.waves()[0]);
+    assert_eq!((end.harmonic, end.phase), (2, 20_f64.to_radians()));
+    assert_eq!(end.axial, tube::Axial::Uniform);
+    assert_eq!(geometry.axial, tube::Axial::Zone([1.0, 2.0]));
+    let last = plan.mesh.refinements.last().unwrap();
+    assert_eq!((last.from, last.to, last.factor), (4.0, 4.25, 2.0));
 }
 
 #[test]
