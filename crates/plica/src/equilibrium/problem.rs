@@ -215,7 +215,6 @@ mod tests {
         // From an asymmetry of 0.005 D on, low harmonics are coupled.
         for t in [0.5, 1.0] {
             let step = path.advance(t, &mut ()).unwrap();
-            println!("{t}: {step:?}");
             assert_eq!(step.method, Method::Newton);
             assert!(step.effort.linear_solves <= 10, "{step:?}");
             assert!(step.effort.inner_iterations <= 120, "{step:?}");
