@@ -6,9 +6,8 @@ use super::stress_free::ImperfectionMap;
 use super::tables::CircumferentialPoint;
 use crate::material::Law;
 use crate::spline::Values;
-use crate::tensor::Tensor2;
+use crate::tensor::{Tensor2, with_vectors};
 use crate::tube::Load;
-use fearless_simd::{Level, dispatch};
 
 /// A material point, by its reference position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +93,7 @@ impl SplineTube {
     /// not controlled between them.
     pub fn sample(&self, load: &Load, u: &[f64], at: Point) -> Sample {
         // With fused multiply-add enabled this takes a third of the time.
-        dispatch!(Level::new(), _simd => self.sample_at(load, u, at))
+        with_vectors!(simd => self.sample_at(load, u, at))
     }
 
     #[inline(always)]

@@ -1,8 +1,8 @@
 //! A law defined outside this crate.
 
 use super::{Law, Moduli, ModuliData};
-use crate::tensor::{Lanes, Real, Tensor2};
-use fearless_simd::{Level, Simd, dispatch, f64x8};
+use crate::tensor::{Lanes, Real, Tensor2, with_vectors};
+use fearless_simd::{Simd, f64x8};
 use std::fmt;
 use std::sync::Arc;
 
@@ -59,18 +59,18 @@ pub(super) trait LaneLaw: Send + Sync {
 
 impl<L: Law> LaneLaw for L {
     fn energy(&self, F: &Tensor2<Lanes>) -> Lanes {
-        dispatch!(Level::new(), simd => Lanes::store(Law::energy(self, &vectors(simd, F))))
+        with_vectors!(simd => Lanes::store(Law::energy(self, &vectors(simd, F))))
     }
 
     fn stress(&self, F: &Tensor2<Lanes>) -> Tensor2<Lanes> {
-        dispatch!(Level::new(), simd => {
+        with_vectors!(simd => {
             let P = Law::stress(self, &vectors(simd, F));
             Tensor2(P.0.map(|row| row.map(Lanes::store)))
         })
     }
 
     fn moduli(&self, F: &Tensor2<Lanes>) -> Moduli<Lanes> {
-        dispatch!(Level::new(), simd => {
+        with_vectors!(simd => {
             Law::moduli(self, &vectors(simd, F)).map(|row| row.map(Lanes::store))
         })
     }

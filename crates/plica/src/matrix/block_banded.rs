@@ -11,7 +11,7 @@
 //! of the paper (n = 305, m = 24, p = 3) 6.5e7 and 5.6 MB.
 
 use super::dense;
-use fearless_simd::{Level, dispatch};
+use crate::tensor::with_vectors;
 
 /// A symmetric matrix of n × n blocks of m × m and half-bandwidth p blocks; the lower half is stored.
 #[derive(Clone, Debug)]
@@ -255,7 +255,7 @@ impl Factor {
 
     /// Solves A x = b in place for two right-hand sides at once, so that the factor is read once.
     pub fn solve_pair(&self, b: [&mut [f64]; 2]) {
-        dispatch!(Level::new(), _simd => self.solve_pair_in(b));
+        with_vectors!(simd => self.solve_pair_in(b));
     }
 
     #[inline(always)]

@@ -5,9 +5,11 @@
 //! the processor. (Arrays of eight, vectorised by the compiler, took twice as long: it vectorised
 //! the loops around them, with gathers.)
 
+mod processor;
 mod real;
 mod symmetric;
 mod tensor2;
 
+pub(crate) use processor::with_vectors;
 pub use real::{LANES, Lanes, Real};
 pub use tensor2::Tensor2;

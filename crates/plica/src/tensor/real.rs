@@ -161,12 +161,12 @@ impl Lanes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fearless_simd::{Level, dispatch};
+    use crate::tensor::with_vectors;
 
     #[test]
     fn the_logarithm_of_a_vector_is_that_of_each_lane() {
         let check = |x: [f64; LANES]| {
-            let ln = dispatch!(Level::new(), simd => {
+            let ln = with_vectors!(simd => {
                 <[f64; LANES]>::from(Real::ln(f64x8::simd_from(simd, x)))
             });
             for (ln, x) in ln.iter().zip(x) {
@@ -200,7 +200,7 @@ mod tests {
                 0.1 / x,
             ]);
         }
-        let invalid = dispatch!(Level::new(), simd => {
+        let invalid = with_vectors!(simd => {
             <[f64; LANES]>::from(Real::ln(f64x8::simd_from(
                 simd,
                 [0.0, -1.0, f64::NAN, f64::INFINITY, -0.0, -1e-300, -2.0, f64::NEG_INFINITY],

@@ -4,8 +4,8 @@ use super::super::kinematics::{Vector, to_ring_frame};
 use super::super::tables::Layer;
 use super::{Input, contract_along, contract_through, gradients};
 use crate::material::Law;
-use crate::tensor::{Lanes, Real};
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f64x8};
+use crate::tensor::{Lanes, Real, with_vectors};
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x8};
 
 /// Contribution of a batch to the energy and the residual.
 #[derive(Clone, Debug, Default)]
@@ -74,7 +74,7 @@ impl SmallestJacobian {
 
 /// Computes energy and residual of an axial batch. `N` is the degree plus one.
 pub fn forces<L: Law, const N: usize>(law: &L, input: &Input<'_>) -> BatchForces {
-    dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input))
+    with_vectors!(simd => kernel::<_, L, N>(simd, law, input))
 }
 
 #[inline(always)]

@@ -3,12 +3,13 @@
 use super::super::kinematics::GradientMap;
 use super::super::stress_free::StressFreeStretch;
 use super::{Input, contract_along, contract_through, gradients};
-use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+use crate::tensor::with_vectors;
+use fearless_simd::{Simd, SimdBase, f64x8};
 
 /// Returns the stretch of the stress-free shape whose control points are displaced by `input.u`, at
 /// (layer, element around, point along, point through, point around). `N` is the degree plus one.
 pub fn stress_free_stretch<const N: usize>(input: &Input<'_>) -> Vec<StressFreeStretch> {
-    dispatch!(Level::new(), simd => kernel::<_, N>(simd, input))
+    with_vectors!(simd => kernel::<_, N>(simd, input))
 }
 
 #[inline(always)]

@@ -13,8 +13,8 @@ use super::{Input, contract_along, contract_through, gradients};
 use crate::material::Law;
 use crate::matrix::BlockBanded;
 use crate::rings::Rotation;
-use crate::tensor::{LANES, Lanes, Real};
-use fearless_simd::{Level, Simd, SimdBase, SimdFrom, dispatch, f64x8};
+use crate::tensor::{LANES, Lanes, Real, with_vectors};
+use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
 
 /// K of a batch, the lower half by rows of control points. For every row of the batch, entry
 /// (`row`, `column`) of the block `d` rows below the diagonal is at `((d * m + column) * m + row) *
@@ -60,7 +60,7 @@ pub fn tangent<L: Law, const N: usize>(
     input: &Input<'_>,
     rotations: &[Vec<Vec<Rotation>>],
 ) -> BatchTangent {
-    dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input, rotations))
+    with_vectors!(simd => kernel::<_, L, N>(simd, law, input, rotations))
 }
 
 #[inline(always)]

@@ -8,8 +8,8 @@ use super::super::axial::{BatchTangent, add_along, add_through};
 use super::super::blocks::{add_rotated, mirror};
 use super::super::tables::{AxialBatch, CircumferentialPoint, Layer};
 use crate::rings::{Rotation, Sector};
-use crate::tensor::{LANES, Lanes, Real};
-use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+use crate::tensor::{LANES, Lanes, Real, with_vectors};
+use fearless_simd::{Simd, SimdBase, f64x8};
 
 /// Entries of the moduli at a point: six blocks of 3×3.
 pub const AVERAGED: usize = 54;
@@ -30,7 +30,7 @@ pub fn offset_blocks<const N: usize>(
     around: &[CircumferentialPoint],
     summed: &[f64],
 ) -> Vec<BatchTangent> {
-    dispatch!(Level::new(), simd => {
+    with_vectors!(simd => {
         kernel::<_, N>(simd, batch, layers, points, sector, around, summed)
     })
 }

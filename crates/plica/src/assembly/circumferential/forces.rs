@@ -4,8 +4,8 @@ use super::super::axial::{BatchForces, SmallestJacobian};
 use super::super::kinematics::to_ring_frame;
 use super::{Input, gradients, load, ring_values, store, sum_along, sum_through};
 use crate::material::Law;
-use crate::tensor::{LANES, Lanes, Real};
-use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+use crate::tensor::{LANES, Lanes, Real, with_vectors};
+use fearless_simd::{Simd, SimdBase, f64x8};
 
 /// Computes energy and residual of a circumferential batch and adds R to `residual`, p + 1 rows of
 /// (point, component) times R rings. `N` is the degree plus one.
@@ -14,11 +14,10 @@ pub fn forces<L: Law, const N: usize>(
     input: &Input<'_>,
     residual: &mut [f64],
 ) -> BatchForces {
-    let level = Level::new();
     if input.stress_free.is_none() {
-        dispatch!(level, simd => kernel::<_, L, N, true>(simd, law, input, residual))
+        with_vectors!(simd => kernel::<_, L, N, true>(simd, law, input, residual))
     } else {
-        dispatch!(level, simd => kernel::<_, L, N, false>(simd, law, input, residual))
+        with_vectors!(simd => kernel::<_, L, N, false>(simd, law, input, residual))
     }
 }
 

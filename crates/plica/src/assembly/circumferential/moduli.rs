@@ -2,14 +2,14 @@
 
 use super::{AVERAGED, Input, gradients, ring_values, store, sum_along, sum_through};
 use crate::material::Law;
-use crate::tensor::LANES;
-use fearless_simd::{Level, Simd, dispatch};
+use crate::tensor::{LANES, with_vectors};
+use fearless_simd::Simd;
 
 /// Writes the weighted blocks of [`GradientMap::pull_back_moduli`](super::super::kinematics::GradientMap)
 /// of every element around: R values at (point along, layer, entry). Uses the first point through
 /// each layer and the first around.
 pub fn moduli<L: Law, const N: usize>(law: &L, input: &Input<'_>, out: &mut [f64]) {
-    dispatch!(Level::new(), simd => kernel::<_, L, N>(simd, law, input, out));
+    with_vectors!(simd => kernel::<_, L, N>(simd, law, input, out));
 }
 
 #[inline(always)]

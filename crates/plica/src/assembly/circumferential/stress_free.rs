@@ -3,13 +3,14 @@
 use super::super::kinematics::GradientMap;
 use super::super::stress_free::StressFreeStretch;
 use super::{Input, gradients, ring_values, sum_along, sum_through};
-use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+use crate::tensor::with_vectors;
+use fearless_simd::{Simd, SimdBase, f64x8};
 
 /// Returns the stretch of the stress-free shape of a circumferential batch whose control points are
 /// displaced by `input.u`, at (point along, layer, point through, vector of elements, point
 /// around). `N` is the degree plus one.
 pub fn stress_free_stretch<const N: usize>(input: &Input<'_>) -> Vec<StressFreeStretch> {
-    dispatch!(Level::new(), simd => kernel::<_, N>(simd, input))
+    with_vectors!(simd => kernel::<_, N>(simd, input))
 }
 
 #[inline(always)]

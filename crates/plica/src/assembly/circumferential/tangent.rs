@@ -3,8 +3,8 @@
 use super::super::kinematics::to_ring_frame;
 use super::{AVERAGED, Input, gradients, load, ring_values, store, sum_along, sum_through};
 use crate::material::{Law, TangentData};
-use crate::tensor::{LANES, Lanes, Real};
-use fearless_simd::{Level, Simd, SimdBase, SimdFrom, dispatch, f32x16, f64x8};
+use crate::tensor::{LANES, Lanes, Real, with_vectors};
+use fearless_simd::{Simd, SimdBase, SimdFrom, f32x16, f64x8};
 
 /// Tangent data of a state at the points of a circumferential batch, in the order in which the
 /// product reads them: pairs of numbers of [`Law::TangentData`] as vectors of sixteen in single
@@ -29,11 +29,10 @@ pub fn linearise<L: Law, const N: usize>(
     tangent_data: &mut [[f32; 16]],
     averaged: &mut [f64],
 ) {
-    let level = Level::new();
     if input.stress_free.is_none() {
-        dispatch!(level, simd => kernel_linearise::<_, L, N, true>(simd, law, input, tangent_data, averaged));
+        with_vectors!(simd => kernel_linearise::<_, L, N, true>(simd, law, input, tangent_data, averaged));
     } else {
-        dispatch!(level, simd => kernel_linearise::<_, L, N, false>(simd, law, input, tangent_data, averaged));
+        with_vectors!(simd => kernel_linearise::<_, L, N, false>(simd, law, input, tangent_data, averaged));
     }
 }
 
@@ -109,11 +108,10 @@ pub fn tangent_product<L: Law, const N: usize>(
     tangent_data: &[[f32; 16]],
     out: &mut [f64],
 ) {
-    let level = Level::new();
     if input.stress_free.is_none() {
-        dispatch!(level, simd => kernel_product::<_, L, N, true>(simd, law, input, tangent_data, out));
+        with_vectors!(simd => kernel_product::<_, L, N, true>(simd, law, input, tangent_data, out));
     } else {
-        dispatch!(level, simd => kernel_product::<_, L, N, false>(simd, law, input, tangent_data, out));
+        with_vectors!(simd => kernel_product::<_, L, N, false>(simd, law, input, tangent_data, out));
     }
 }
 
