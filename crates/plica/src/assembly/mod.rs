@@ -45,6 +45,7 @@ mod low_harmonic_tangent;
 mod low_harmonics;
 mod matrix_free_tangent;
 mod place;
+mod positions;
 mod pressure;
 mod reference;
 mod ring_damping;

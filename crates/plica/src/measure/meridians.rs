@@ -2,7 +2,7 @@
 
 use super::{Face, Wall};
 use crate::assembly::{Point, SplineTube};
-use crate::tube::{Load, Tube};
+use crate::tube::Load;
 use std::f64::consts::{PI, TAU};
 
 /// Meridians sampled where they differ, which resolve the harmonics up to 7 of the sector.
@@ -64,10 +64,7 @@ impl<'a> Meridians<'a> {
 
     /// Returns the meridians of a face at reference angles, each through points at axial reference positions.
     pub fn walls(&self, face: Face, angles: &[f64], reference_z: &[f64]) -> Vec<Wall> {
-        let radius = match face {
-            Face::Outer => Tube::OUTER_RADIUS,
-            Face::Inner => self.tube.tube.inner_radius(),
-        };
+        let radius = face.radius(&self.tube.tube);
         let at = |z: f64, angle: f64| Point { z, radius, angle };
         // exp(iω) of the axisymmetric part as (cos ω, sin ω), its radius, and its radius at rest.
         let mean_at = |&z: &f64| {
@@ -176,7 +173,8 @@ impl<'a> Meridians<'a> {
         centred
     }
 
-    /// Returns the smallest width of a face, from its meridians at [`Meridians::sample_angles`].
+    /// Returns the smallest ρ(φ) + ρ(φ + π) of a face, negative where opposite points have passed each other, from its
+    /// meridians at [`Meridians::sample_angles`].
     pub(super) fn min_width(&self, walls: &[Wall]) -> f64 {
         // With an odd number of sectors the opposite meridian is half a sector further, with an even number it repeats
         // this one.

@@ -20,18 +20,22 @@
 //! | flatness | axial extent of the wall narrowed by more than ¾ of the depth, over that narrowed by more than ¼ |
 //! | flank | straight line through the two points on one side of the narrowest point where the wall is narrowed by ¼ and ¾ of the depth |
 //! | centre of rotation | point with the least squared distance from the lines of one flank in two or more states |
-//! | gap | smallest distance between two points of a meridian of either face that are at least one wall thickness apart along it; 0 if a meridian crosses itself |
-//! | lumen | smallest ρ(φ) + ρ(φ + π) of two points of the inner face that are opposite each other at rest; negative where the wall has passed through the opposite wall |
+//! | gap | smallest distance between two points of a meridian of either face that are at least one wall thickness apart along it; in a tube that is not axisymmetric also between any two points of a face that are as far apart along it, that face each other (normals 60° or more apart) and that are at least twice as far apart along the face as in space; 0 if a face crosses itself |
+//! | lumen | smallest ρ(φ) + ρ(φ + π) of two points of the inner face that are opposite each other at rest, where that is negative (the walls have passed through each other) or the tube is axisymmetric; otherwise 0 if parts of the inner face a third of a turn or more apart at rest cross, or else the smallest distance of two such points, in one section or two, over that of points with these angles in one section at rest, times the inner diameter |
 //! | shape | see [`Shape`] |
 //! | asymmetry | amplitude √(aᶻ² + aᵨ²) of the largest wave cos n(φ − φ₀), n ≥ 1, in z and ρ around the outer face |
 
 mod alignment;
 mod dimensions;
 mod gap;
+mod lumen;
 mod meridians;
+mod patches;
 mod reactions;
 mod rotation;
 mod shape;
+mod surface;
+mod triangle;
 mod wall;
 
 pub use alignment::Alignment;
@@ -44,6 +48,7 @@ pub use wall::{Face, Wall};
 
 use crate::assembly::SplineTube;
 use crate::tube::{Load, Tube};
+use surface::Surface;
 
 /// Geometric measures of one state; lengths in D.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,8 +97,24 @@ impl Measures {
             .iter()
             .chain(&inner)
             .map(|wall| wall.gap(tube.tube.thickness));
-        let gap = gaps.fold(f64::INFINITY, f64::min);
-        let lumen = meridians.min_width(&inner);
+        let mut gap = gaps.fold(f64::INFINITY, f64::min);
+        let mut lumen = meridians.min_width(&inner);
+        if angles.len() > 1 {
+            let mut closes = false;
+            for face in [Face::Outer, Face::Inner] {
+                let surface = Surface::of(tube, u, face, asymmetry.crest);
+                let contact = surface.contact(tube.tube.thickness, gap);
+                gap = gap.min(contact.gap);
+                closes |= face == Face::Inner && contact.closes;
+            }
+            if lumen > 0.0 {
+                lumen = if closes {
+                    0.0
+                } else {
+                    lumen::width(tube, u, asymmetry.crest, &z)
+                };
+            }
+        }
 
         let [own_outer, own_inner] = meridians.centred([&outer, &inner]);
         let radius = |&i: &usize| own_outer[i].narrowest().1;

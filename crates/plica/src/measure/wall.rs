@@ -12,6 +12,16 @@ pub enum Face {
     Inner,
 }
 
+impl Face {
+    /// Returns the reference radius of the face.
+    pub(super) fn radius(self, tube: &Tube) -> f64 {
+        match self {
+            Self::Outer => Tube::OUTER_RADIUS,
+            Self::Inner => tube.inner_radius(),
+        }
+    }
+}
+
 /// A meridian of a face.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wall {
