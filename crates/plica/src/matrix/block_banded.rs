@@ -100,6 +100,11 @@ impl BlockBanded {
         column * self.height() + d * self.size + row
     }
 
+    /// Returns column `column` of the block `d` below the diagonal of panel `panel`.
+    pub(super) fn column_of_block(&self, panel: usize, d: usize, column: usize) -> &[f64] {
+        &self.panels[panel * self.panel_len() + self.place(d, 0, column)..][..self.size]
+    }
+
     /// Adds to the entry in row `row` and column `column` of the block `d` below the diagonal of panel
     /// `panel`.
     pub fn add_at(&mut self, panel: usize, d: usize, row: usize, column: usize, value: f64) {

@@ -7,6 +7,7 @@ use faer::linalg::cholesky::ldlt::factor;
 use faer::linalg::{evd, matmul, triangular_solve};
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+use std::ops::Range;
 
 /// Returns the eigenvalues, the lowest first, and eigenvectors of a small symmetric matrix; None if it is
 /// not finite.
@@ -24,10 +25,12 @@ pub fn symmetric_eigen(
     ))
 }
 
-/// Kernels of the block-banded factorisation, with their buffers.
+/// Kernels of the block-banded and block-sparse factorisations, with their buffers.
 pub struct Kernels {
     /// X = L D below the diagonal block of the current panel, column-major.
     scaled: Vec<f64>,
+    /// The rows of X.
+    below: usize,
     memory: MemBuffer,
 }
 
@@ -37,6 +40,7 @@ impl Kernels {
         let need = factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, Default::default());
         Self {
             scaled: vec![0.0; size * below],
+            below: 0,
             memory: MemBuffer::new(need),
         }
     }
@@ -76,6 +80,7 @@ impl Kernels {
             under.rb_mut().transpose_mut(),
             Par::Seq,
         );
+        self.below = below;
         let mut scaled =
             MatMut::from_column_major_slice_mut(&mut self.scaled[..below * size], below, size);
         scaled.copy_from(under.rb());
@@ -99,13 +104,38 @@ impl Kernels {
         rows: usize,
         panel: &[f64],
     ) {
-        let below = from + rows;
+        self.update_rows(
+            (target, height),
+            size,
+            from..from + rows,
+            (panel, height),
+            from,
+        );
+    }
+
+    /// Subtracts X L_cᵀ from `target`: the product of the `rows` below the diagonal block of `panel`, the
+    /// one factored last, with the `size` rows that begin at `from`. Slices come with their leading
+    /// dimension.
+    pub fn update_rows(
+        &self,
+        (target, target_height): (&mut [f64], usize),
+        size: usize,
+        rows: Range<usize>,
+        (panel, height): (&[f64], usize),
+        from: usize,
+    ) {
+        let below = self.below;
         let scaled = MatRef::from_column_major_slice(&self.scaled[..below * size], below, size);
         let lower = MatRef::from_column_major_slice_with_stride(panel, size + below, size, height);
         matmul::matmul(
-            MatMut::from_column_major_slice_with_stride_mut(target, rows, size, height),
+            MatMut::from_column_major_slice_with_stride_mut(
+                target,
+                rows.len(),
+                size,
+                target_height,
+            ),
             Accum::Add,
-            scaled.subrows(from, rows),
+            scaled.subrows(rows.start, rows.len()),
             lower.subrows(size + from, size).transpose(),
             -1.0,
             Par::Seq,
