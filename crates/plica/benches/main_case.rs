@@ -6,6 +6,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use plica::assembly::SplineTube;
 use plica::equilibrium::TubeProblem;
+use plica::matrix::{FarBlocks, SparseFactor};
 use plica::solve::{Equilibrium, Path};
 use plica::study::Plan;
 use std::hint::black_box;
@@ -71,6 +72,34 @@ fn kernels(c: &mut Criterion) {
     group.finish();
 }
 
+/// The factorisation when the flanks of a fold touch: `contact` rows on either side of its bottom, each
+/// coupled with the mirror images of the three rows around it. The couplings are weak, so that the
+/// tangent stays one of a stable state.
+fn folds(c: &mut Criterion) {
+    let plan = main_case();
+    let problem = problem(&plan);
+    let path = contracted(&plan, &problem);
+    let mut tangent = problem.tube.tangent(&path.state().load, &path.state().u);
+    tangent.constrain(problem.prescribed());
+    let (rows, size, band) = (tangent.blocks(), tangent.size(), tangent.band());
+
+    let mut group = c.benchmark_group("factorisation, 305 x 60 x 8, flanks in contact");
+    for contact in [0, 20, 40, 60] {
+        let mut far = FarBlocks::new(size, band);
+        for i in rows / 2 - contact..rows / 2 {
+            for mirror in rows - 2 - i..=rows - i {
+                if far.is_far(mirror, i) {
+                    far.block_mut(mirror, i).fill(1e-9);
+                }
+            }
+        }
+        group.bench_function(format!("{contact} rows"), |b| {
+            b.iter(|| black_box(SparseFactor::of(&tangent, &far)))
+        });
+    }
+    group.finish();
+}
+
 fn whole_path(c: &mut Criterion) {
     let plan = main_case();
     let problem = problem(&plan);
@@ -97,6 +126,7 @@ fn one_thread(c: &mut Criterion) {
         .build_global()
         .expect("no pool was built yet");
     kernels(c);
+    folds(c);
     whole_path(c);
 }
 

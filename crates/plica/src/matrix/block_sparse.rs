@@ -380,7 +380,11 @@ mod tests {
             let negative = values.iter().filter(|&&l| l < 0.0).count();
             let factor = SparseFactor::of(&a.0, &a.1).unwrap();
             assert_eq!(factor.negative_pivots(), negative);
-            *if negative == 0 { &mut definite } else { &mut indefinite } += 1;
+            *if negative == 0 {
+                &mut definite
+            } else {
+                &mut indefinite
+            } += 1;
         }
         assert!(definite > 3 && indefinite > 3);
     }
