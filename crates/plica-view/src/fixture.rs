@@ -37,6 +37,7 @@ pub fn plan(symmetry: Symmetry) -> Plan {
         tube: short(),
         mesh: coarse(),
         symmetry,
+        contact: false,
         start: None,
         modes: vec![],
         stages: vec![],

@@ -54,6 +54,7 @@
 pub mod activation;
 pub mod assembly;
 pub mod case;
+pub mod contact;
 pub mod equilibrium;
 pub mod material;
 pub mod matrix;

@@ -34,6 +34,9 @@ table! {
         ends: Ends = default("{}");
         /// The control points of the splines, and their degree.
         mesh: Mesh = default("{}");
+        /// Contact of the wall with itself, without friction: folds touch but do not pass through each other. For
+        /// axisymmetric tubes without twist, of degree 2 or more. `false` is the formulation of the paper.
+        contact: bool = default("false");
         /// A saved state to begin from, instead of the tube at rest. The state may have another mesh, and
         /// a higher symmetry: it is interpolated and brought to equilibrium first.
         start: Option<Start> = described("at rest", "{ state = \"states/state-0015.safetensors\" }");

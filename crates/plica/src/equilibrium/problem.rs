@@ -2,10 +2,12 @@
 
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
 use crate::assembly::{Inverted, SplineTube};
-use crate::matrix::{BlockBanded, Factor, Singular};
+use crate::contact::SelfContact;
+use crate::matrix::{BlockBanded, FarBlocks, Singular};
 use crate::monitor::Monitor;
 use crate::solve::{
-    Direct, Equilibrium, NegativeCurvature, ResidualEvaluation, Solved, Solver, Tangent,
+    Direct, DirectFactor, Equilibrium, NegativeCurvature, ResidualEvaluation, Solved, Solver,
+    Tangent,
 };
 use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
@@ -16,6 +18,8 @@ use std::sync::Arc;
 pub struct TubeProblem {
     /// The tube.
     pub tube: Arc<SplineTube>,
+    /// Contact of the wall with itself, if the problem has it.
+    pub contact: Option<Arc<SelfContact>>,
     rings: Rings,
     prescribed: Arc<[bool]>,
     /// Reference volume of the cyclic sector.
@@ -45,7 +49,7 @@ pub enum TubeTangent {
 #[derive(Debug)]
 pub enum TubeSolver {
     /// One ring.
-    Direct(Factor),
+    Direct(DirectFactor),
     /// Several rings.
     Harmonic(HarmonicSystem),
 }
@@ -65,8 +69,37 @@ impl TubeProblem {
             prescribed: tube.prescribed().into(),
             volume: PI * (outer * outer - inner * inner) * tube.tube.length / tube.sector.repeats(),
             at_rest,
+            contact: None,
             tube,
         }
+    }
+
+    /// Returns the problem with contact of the wall with itself.
+    ///
+    /// # Panics
+    ///
+    /// If the tube has several rings.
+    pub fn with_contact(mut self) -> Self {
+        self.contact = Some(Arc::new(SelfContact::new(&self.tube)));
+        self
+    }
+
+    /// Assembles the tangent of one ring, with contact.
+    fn ring_tangent(&self, load: &Load, u: &[f64]) -> (BlockBanded, FarBlocks) {
+        let mut band = self.tube.tangent(load, u);
+        let size = band.size();
+        let mut far = FarBlocks::new(size, band.band());
+        if let Some(contact) = &self.contact {
+            contact.add_tangent(&contact.at(u), |row, column, value| {
+                let (i, j) = (row / size, column / size);
+                if i - j > band.band() {
+                    far.add_at(row, column, value);
+                } else {
+                    band.add_at(j, i - j, row % size, column % size, value);
+                }
+            });
+        }
+        (band, far)
     }
 }
 
@@ -86,6 +119,11 @@ impl Equilibrium for TubeProblem {
     }
     fn forces(&self, load: &Load, u: &[f64]) -> Result<ResidualEvaluation, Inverted> {
         let mut forces = self.tube.forces(load, u)?;
+        if let Some(contact) = &self.contact {
+            let of_contact = contact.add_forces(&contact.at(u), &mut forces.residual);
+            forces.potential += self.tube.sector.repeats() * of_contact.energy;
+            forces.residual_scale = forces.residual_scale.hypot(of_contact.squares.sqrt());
+        }
         self.tube.project_out_constraints(&mut forces.residual);
         // The energy of one cyclic sector, whose derivative is the residual.
         let [strain, energy] =
@@ -100,16 +138,17 @@ impl Equilibrium for TubeProblem {
     }
     fn tangent(&self, load: &Load, u: &[f64]) -> TubeTangent {
         match &self.rings {
-            Rings::One(damping) => {
-                let stiffness = self.tube.tangent(load, u);
-                TubeTangent::Direct(Direct::new(
-                    stiffness,
-                    damping.clone(),
-                    self.prescribed.clone(),
-                ))
-            }
+            Rings::One(damping) => TubeTangent::Direct(Direct::new(
+                self.ring_tangent(load, u),
+                damping.clone(),
+                self.prescribed.clone(),
+            )),
             Rings::Many(tube) => TubeTangent::Harmonic(tube.tangent(load, u)),
         }
+    }
+    fn longest_step(&self, u: &[f64], step: &[f64]) -> f64 {
+        let contact = self.contact.as_ref();
+        contact.map_or(1.0, |contact| contact.longest_step(u, step))
     }
     fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         match &self.rings {

@@ -35,6 +35,11 @@ pub trait Equilibrium {
     fn tangent(&self, load: &Self::Load, u: &[f64]) -> Self::Tangent;
     /// Adds `factor` · C v to `y`, with the damping matrix C of all unknowns, prescribed or not.
     fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]);
+    /// Returns the longest fraction of a step from `u`, at most 1, that may be taken: none beyond it is a state that the
+    /// energy alone would forbid, such as one behind a barrier. 0 if `u` itself is no such state.
+    fn longest_step(&self, _u: &[f64], _step: &[f64]) -> f64 {
+        1.0
+    }
 }
 
 /// A reference to a problem is a problem.
@@ -64,6 +69,9 @@ impl<P: Equilibrium> Equilibrium for &P {
     }
     fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         (**self).damping(factor, v, y);
+    }
+    fn longest_step(&self, u: &[f64], step: &[f64]) -> f64 {
+        (**self).longest_step(u, step)
     }
 }
 

@@ -116,7 +116,7 @@ impl<'a, P: Equilibrium> Iterate<'a, P> {
     ) -> Result<(f64, Self), Option<P::EvaluationError>> {
         let slope = dot(&self.forces.residual, step);
         let (from, prescribed) = (&self.forces, self.problem.prescribed());
-        let (mut length, mut undefined) = (rule.first_length(step), None);
+        let (mut length, mut undefined) = (self.first_length(step, rule), None);
         for _ in 0..rule.trials() {
             length *= match self.moved(length, step) {
                 Ok(next) if rule.accepts(from, &next.forces, prescribed, length, slope) => {
@@ -135,11 +135,21 @@ impl<'a, P: Equilibrium> Iterate<'a, P> {
         Err(undefined)
     }
 
+    /// Returns the first length to try: all of the step, unless a rule or the problem forbids that.
+    fn first_length(&self, step: &[f64], rule: LineSearch) -> f64 {
+        let length = rule.first_length(step);
+        let tried: Vec<f64> = step.iter().map(|s| length * s).collect();
+        length * self.problem.longest_step(&self.u, &tried)
+    }
+
     /// Doubles a step from here, which led to `next`, as long as that lowers the energy beyond
     /// rounding and the displacement is at most a tenth of the diameter.
     pub fn expand(&self, mut step: Vec<f64>, mut next: Self) -> Self {
         while 2.0 * largest(&step) <= LONGEST {
             step.iter_mut().for_each(|s| *s *= 2.0);
+            if self.problem.longest_step(&self.u, &step) < 1.0 {
+                break;
+            }
             match self.moved(1.0, &step) {
                 Ok(further)
                     if further.forces.energy < next.forces.energy - next.forces.rounding =>

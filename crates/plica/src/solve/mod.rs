@@ -66,4 +66,4 @@ pub use path::{Path, PathError, Step};
 pub use relaxation::relaxation;
 pub use settings::{Integrator, PseudoTime, Scheme, Settings};
 pub use state::{Effort, Method, Solution, State};
-pub use tangent::{Direct, NegativeCurvature, Solved, Solver, Tangent};
+pub use tangent::{Direct, DirectFactor, NegativeCurvature, Solved, Solver, Tangent};

@@ -411,8 +411,20 @@ impl<P: Equilibrium> Path<P> {
     }
 
     /// Predicts u at `t`: along the tangent, or along the cubic through the previous point and the
-    /// state, whichever has the smaller residual.
+    /// state, whichever has the smaller residual. A prediction that may not be reached is replaced by the state itself.
     fn predict(&self, t: f64, load: &P::Load, tangent: Option<&[f64]>) -> Vec<f64> {
+        let predicted = self.extrapolate(t, load, tangent);
+        let (problem, u) = (&self.problem, &self.state.u);
+        let step: Vec<f64> = predicted.iter().zip(u).map(|(a, b)| a - b).collect();
+        if problem.longest_step(u, &step) == 1.0 {
+            return predicted;
+        }
+        let mut start = u.clone();
+        problem.apply_prescribed(load, &mut start);
+        start
+    }
+
+    fn extrapolate(&self, t: f64, load: &P::Load, tangent: Option<&[f64]>) -> Vec<f64> {
         let (problem, u, ahead) = (&self.problem, &self.state.u, t - self.continuation.reached);
         let prescribed = |mut u: Vec<f64>| {
             problem.apply_prescribed(load, &mut u);

@@ -117,6 +117,9 @@ impl<'a, P: Equilibrium> Equilibrium for Damped<'a, P> {
     fn apply_prescribed(&self, load: &P::Load, u: &mut [f64]) {
         self.problem.apply_prescribed(load, u);
     }
+    fn longest_step(&self, u: &[f64], step: &[f64]) -> f64 {
+        self.problem.longest_step(u, step)
+    }
     fn between(&self, from: &P::Load, to: &P::Load, t: f64) -> P::Load {
         self.problem.between(from, to, t)
     }

@@ -1,7 +1,7 @@
 //! The tangent stiffness as the solvers see it: it multiplies vectors, and can be solved with once
 //! damping is added.
 
-use crate::matrix::{BlockBanded, Factor, Singular};
+use crate::matrix::{BlockBanded, Factor, FarBlocks, Singular, SparseFactor};
 use crate::monitor::Monitor;
 use std::sync::Arc;
 
@@ -86,22 +86,38 @@ pub struct NegativeCurvature {
 #[derive(Clone, Debug)]
 pub struct Direct {
     stiffness: BlockBanded,
+    /// Entries of K outside its band.
+    far: FarBlocks,
     damping: Arc<BlockBanded>,
     prescribed: Arc<[bool]>,
 }
 
+/// The factorisation of a [`Direct`] tangent: of the band, or with blocks outside it where there are any.
+#[derive(Clone, Debug)]
+pub enum DirectFactor {
+    /// The band alone.
+    Banded(Factor),
+    /// With blocks outside the band.
+    Sparse(SparseFactor),
+}
+
 impl Direct {
-    /// Takes the assembled stiffness K and damping matrix C of all unknowns, and which of them are
-    /// prescribed.
+    /// Takes the assembled stiffness K, as its band and the blocks outside it, the damping matrix C of all unknowns, and
+    /// which of them are prescribed.
     ///
     /// # Panics
     ///
     /// If their sizes differ.
-    pub fn new(stiffness: BlockBanded, damping: Arc<BlockBanded>, prescribed: Arc<[bool]>) -> Self {
+    pub fn new(
+        (stiffness, far): (BlockBanded, FarBlocks),
+        damping: Arc<BlockBanded>,
+        prescribed: Arc<[bool]>,
+    ) -> Self {
         assert_eq!(stiffness.unknowns(), damping.unknowns());
         assert_eq!(stiffness.unknowns(), prescribed.len());
         Self {
             stiffness,
+            far,
             damping,
             prescribed,
         }
@@ -109,33 +125,44 @@ impl Direct {
 }
 
 impl Tangent for Direct {
-    type Solver = Factor;
+    type Solver = DirectFactor;
 
     fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         self.stiffness.multiply_add(factor, v, y);
+        self.far.multiply_add(factor, v, y);
     }
 
-    fn shifted(&self, alpha: f64) -> Result<Factor, Singular> {
+    fn shifted(&self, alpha: f64) -> Result<DirectFactor, Singular> {
         self.clone().into_shifted(alpha)
     }
 
-    fn into_shifted(self, alpha: f64) -> Result<Factor, Singular> {
-        let mut A = self.stiffness;
+    fn into_shifted(self, alpha: f64) -> Result<DirectFactor, Singular> {
+        let (mut A, mut far) = (self.stiffness, self.far);
         if alpha != 0.0 {
             A.add_scaled(alpha, &self.damping);
         }
         A.constrain(&self.prescribed);
-        A.factor()
+        if far.is_empty() {
+            return A.factor().map(DirectFactor::Banded);
+        }
+        far.constrain(&self.prescribed);
+        SparseFactor::of(&A, &far).map(DirectFactor::Sparse)
     }
 }
 
-impl Solver for Factor {
+impl Solver for DirectFactor {
     fn negative_pivots(&self) -> usize {
-        Factor::negative_pivots(self)
+        match self {
+            Self::Banded(factor) => factor.negative_pivots(),
+            Self::Sparse(factor) => factor.negative_pivots(),
+        }
     }
 
     fn solve(&self, b: &mut [f64], _: f64, _: &dyn Monitor) -> Result<Solved, NegativeCurvature> {
-        Factor::solve(self, b);
+        match self {
+            Self::Banded(factor) => factor.solve(b),
+            Self::Sparse(factor) => factor.solve(b),
+        }
         Ok(Solved {
             iterations: 0,
             converged: true,

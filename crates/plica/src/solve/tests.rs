@@ -2,7 +2,7 @@
 
 use super::iterate::Iterate;
 use super::*;
-use crate::matrix::{BlockBanded, Singular};
+use crate::matrix::{BlockBanded, FarBlocks, Singular};
 use crate::monitor::Monitor;
 use std::cell::Cell;
 use std::rc::Rc;
@@ -76,7 +76,11 @@ impl<const N: usize> Equilibrium for Toy<N> {
     }
     fn tangent(&self, load: &f64, u: &[f64]) -> Direct {
         let stiffness = matrix((self.jet)(*load, u.try_into().unwrap()).2);
-        Direct::new(stiffness, self.damping.clone(), self.prescribed().into())
+        Direct::new(
+            (stiffness, FarBlocks::new(1, 1)),
+            self.damping.clone(),
+            self.prescribed().into(),
+        )
     }
     fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         self.damping.multiply_add(factor, v, y);

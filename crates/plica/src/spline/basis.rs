@@ -130,6 +130,31 @@ impl Basis {
         (0..self.functions()).map(of).collect()
     }
 
+    /// Returns the Bézier form of an element: for each of its p + 1 control points the factors of the p + 1 functions
+    /// that are not zero there.
+    pub fn bezier_points(&self, element: usize) -> Vec<Vec<f64>> {
+        let p = self.degree;
+        let t = &self.knots[element..];
+        let (from, to) = self.element(element);
+        // Control point k is the blossom at p − k times the first end and k times the last, by de Boor's algorithm.
+        let blossom = |k: usize, function: usize| {
+            let mut d = vec![0.0; p + 1];
+            d[function] = 1.0;
+            for level in 1..=p {
+                let x = if level <= k { to } else { from };
+                for i in (level..=p).rev() {
+                    let (low, high) = (t[i], t[i + 1 + p - level]);
+                    let ratio = (x - low) / (high - low);
+                    d[i] = (1.0 - ratio) * d[i - 1] + ratio * d[i];
+                }
+            }
+            d[p]
+        };
+        (0..=p)
+            .map(|k| (0..=p).map(|function| blossom(k, function)).collect())
+            .collect()
+    }
+
     /// Returns values and slopes at a point.
     pub fn evaluate(&self, x: f64) -> Values {
         self.evaluate_in(self.find(x), x)
@@ -199,6 +224,30 @@ mod tests {
                     let values = at.value.iter().zip(&control[at.element..]);
                     let value: f64 = values.map(|(n, c)| n * c[power]).sum();
                     assert!((value - exact).abs() < 1e-14, "{p} {x}: {value} {exact}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bezier_points_describe_the_same_curve() {
+        for basis in bases() {
+            let p = basis.degree();
+            for element in 0..basis.elements() {
+                let (from, to) = basis.element(element);
+                let bezier = basis.bezier_points(element);
+                for xi in [0.0, 0.3, 1.0] {
+                    let values = basis.evaluate_in(element, from + xi * (to - from)).value;
+                    for (function, value) in values.iter().enumerate() {
+                        // De Casteljau's algorithm.
+                        let mut points: Vec<f64> = bezier.iter().map(|k| k[function]).collect();
+                        for level in (1..=p).rev() {
+                            for i in 0..level {
+                                points[i] = (1.0 - xi) * points[i] + xi * points[i + 1];
+                            }
+                        }
+                        assert!((points[0] - value).abs() < 1e-14);
+                    }
                 }
             }
         }

@@ -12,6 +12,7 @@ pub fn plan(symmetry: Symmetry) -> Plan {
         tube: fixture::short(),
         mesh: fixture::coarse(),
         symmetry,
+        contact: false,
         start: None,
         modes: vec![],
         stages: vec![],

@@ -81,10 +81,9 @@ impl Study {
     /// [`StudyError::OutOfMemory`] if the machine has too little free memory, where the system reports it.
     pub fn new(plan: &Plan) -> Result<Self, StudyError> {
         check_memory(plan)?;
-        let rings = plan.mesh.rings(plan.symmetry);
         Ok(Self {
             plan: plan.clone(),
-            problem: TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings)),
+            problem: problem(plan),
             path: None,
             work_point: None,
             stage: None,
@@ -376,6 +375,17 @@ impl Study {
                 limit.as_ref(),
             )))
         });
+    }
+}
+
+/// Returns the problem of a plan, with contact if it has that.
+fn problem(plan: &Plan) -> TubeProblem {
+    let rings = plan.mesh.rings(plan.symmetry);
+    let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
+    if plan.contact {
+        problem.with_contact()
+    } else {
+        problem
     }
 }
 

@@ -4,6 +4,7 @@
 //! A rule between keys is checked only where nothing is wrong with the keys themselves, so that one
 //! mistake gives one message.
 
+mod contact;
 mod imperfections;
 mod mesh;
 mod muscles;
@@ -36,6 +37,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
     imperfections::check_stretches(&tube, &stages, problems);
     imperfections::check_wall(case, &tube, run, problems);
     stages::check_end_planes(&tube, &stages, problems);
+    contact::check(case, symmetry, &stages, problems);
     let title = case.title.clone().unwrap_or_else(|| name.to_owned());
     let output = &case.output;
     Plan {
@@ -43,6 +45,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
         tube,
         mesh,
         symmetry,
+        contact: case.contact,
         start,
         modes,
         stages,

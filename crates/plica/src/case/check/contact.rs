@@ -1,0 +1,37 @@
+//! Rules of contact of the wall with itself.
+
+use super::super::keys::Case;
+use super::super::problem::Problems;
+use crate::study::Stage;
+use crate::tube::Symmetry;
+
+const CONTACT: &str = "contact";
+
+/// Checks that a tube with contact is axisymmetric without twist, and that its splines are smooth.
+pub(super) fn check(case: &Case, symmetry: Symmetry, stages: &[Stage], problems: &mut Problems) {
+    if !case.contact {
+        return;
+    }
+    if symmetry != Symmetry::Axisymmetric && problems.are_sound(&["symmetry"]) {
+        let help = "set `contact = false`, or `symmetry = \"axisymmetric\"`";
+        problems.value(
+            CONTACT,
+            "must be false unless `symmetry` is \"axisymmetric\"",
+            help,
+        );
+        return;
+    }
+    if case.mesh.degree < 2 && problems.are_sound(&["mesh.degree"]) {
+        let help = "set `mesh.degree` to 2 or more, or `contact = false`";
+        problems.value(
+            CONTACT,
+            "must be false if `mesh.degree` is 1, where a wall has corners",
+            help,
+        );
+    }
+    let twists = |stage: &Stage| stage.load.ends.iter().any(|end| end.twist != 0.0);
+    if stages.iter().any(twists) {
+        let help = "set `contact = false`, or leave the ends untwisted";
+        problems.value(CONTACT, "must be false if an end is twisted", help);
+    }
+}

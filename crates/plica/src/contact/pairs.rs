@@ -1,0 +1,130 @@
+//! Pairs of points of a meridian that are in contact.
+
+use super::barrier::{Barrier, BarrierJet};
+use super::bezier::{Bezier, MAX_POINTS, Point, dot, length, minus};
+use super::boxes::{Box2, BoxTree};
+use super::curve::FaceCurve;
+use super::nearest::local_minima;
+use crate::spline::gauss_legendre;
+use rayon::prelude::*;
+
+/// Quadrature points of an element.
+const POINTS: usize = 8;
+
+/// A quadrature point x of a face and a point y of the same face at which the distance from x has a local minimum
+/// below the range.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair {
+    /// Element of x, and the values of its functions there.
+    pub x: (usize, [f64; MAX_POINTS]),
+    /// Element of y, and values and slopes of its functions there.
+    pub y: (usize, [[f64; MAX_POINTS]; 2]),
+    /// Place of x in its element, 0 to 1.
+    pub xi: f64,
+    /// Area of the quadrature point at rest, of the sector of one ring.
+    pub area: f64,
+    /// g = |x − y|.
+    pub gap: f64,
+    /// n = (x − y)/g, normal to the face at y.
+    pub normal: Point,
+    /// y′.
+    pub slope: Point,
+    /// n · y″.
+    pub curvature: f64,
+    /// The barrier at g.
+    pub barrier: BarrierJet,
+}
+
+/// Quadrature of one element of a face: places and areas at rest.
+#[derive(Clone, Debug)]
+pub struct FaceQuadrature {
+    points: Vec<(f64, f64)>,
+    /// Area at rest of each element.
+    areas: Vec<f64>,
+}
+
+impl FaceQuadrature {
+    /// Makes the quadrature of elements with these areas at rest.
+    pub fn new(areas: Vec<f64>) -> Self {
+        Self {
+            points: gauss_legendre(POINTS),
+            areas,
+        }
+    }
+}
+
+/// Returns all pairs of a state, in the order of their elements. The distance of a point from itself is not a pair, nor
+/// is any other whose normals do not face each other; a straight or round face has none.
+pub fn pairs(
+    face: &FaceCurve,
+    quadrature: &FaceQuadrature,
+    barrier: &Barrier,
+    u: &[f64],
+) -> Vec<Pair> {
+    let curves = face.curves(u);
+    let tree = BoxTree::of_curves(&curves);
+    let of_element = |e: usize| {
+        let mut pairs = vec![];
+        let own = Box2::around(curves[e].points().iter().copied());
+        let mut others = vec![];
+        tree.near(&own, barrier.range, &mut |other| {
+            if !all_face_the_same_side(&curves[e], &curves[other]) {
+                others.push(other);
+            }
+        });
+        for &(xi, weight) in &quadrature.points {
+            let area = weight * quadrature.areas[e];
+            for &other in &others {
+                let (x, y) = ((e, &curves[e], xi), (other, &curves[other]));
+                pairs_of_point(face, x, y, barrier, area, &mut pairs);
+            }
+        }
+        pairs
+    };
+    let by_element: Vec<Vec<Pair>> = (0..curves.len()).into_par_iter().map(of_element).collect();
+    by_element.concat()
+}
+
+fn pairs_of_point(
+    face: &FaceCurve,
+    (e, a, xi): (usize, &Bezier, f64),
+    (other, b): (usize, &Bezier),
+    barrier: &Barrier,
+    area: f64,
+    pairs: &mut Vec<Pair>,
+) {
+    let at = a.at(xi);
+    let x = at.position;
+    local_minima(b, x, &mut |eta| {
+        let y = b.at(eta);
+        let from_y = minus(x, y.position);
+        let gap = length(from_y);
+        let faces = dot(at.slope, y.slope) < 0.0 && face.free_side * cross(y.slope, from_y) > 0.0;
+        if !(faces && gap < barrier.range && gap > 0.0) {
+            return;
+        }
+        let normal = from_y.map(|d| d / gap);
+        pairs.push(Pair {
+            x: (e, face.functions(e, xi)[0]),
+            y: (other, face.functions(other, eta)),
+            xi,
+            area,
+            gap,
+            normal,
+            slope: y.slope,
+            curvature: dot(normal, y.curvature),
+            barrier: barrier.at(gap),
+        });
+    });
+}
+
+/// Returns whether all normals of two curves are less than 90° apart, judged by their control points.
+fn all_face_the_same_side(a: &Bezier, b: &Bezier) -> bool {
+    a.differences()
+        .all(|s| b.differences().all(|t| dot(s, t) > 0.0))
+}
+
+/// Returns a × b: positive if b is on the left of a.
+fn cross(a: Point, b: Point) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}

@@ -1,0 +1,56 @@
+//! Contact of a state in numbers.
+
+use super::{ContactState, Face, SelfContact};
+
+/// Contact of a state, on the whole tube.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactReport {
+    /// Energy of contact Π_c, in E·D³.
+    pub energy: f64,
+    /// Contact of the outer face and of the inner face; none where a face touches itself nowhere.
+    pub faces: [Option<FaceContact>; 2],
+}
+
+/// Contact of one face with itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceContact {
+    /// Area at rest of both sides, in D².
+    pub area: f64,
+    /// Sum of the sizes of the forces between the two sides, in E·D².
+    pub force: f64,
+    /// Smallest gap, in D.
+    pub gap: f64,
+    /// Axial positions at rest of the first and the last point, in D.
+    pub from_to: [f64; 2],
+}
+
+impl SelfContact {
+    /// Sums up the contact of a state.
+    pub fn report(&self, at: &ContactState, position: impl Fn(usize, f64) -> f64) -> ContactReport {
+        let mut report = ContactReport::default();
+        for ((curve, _), pairs) in self.faces.iter().zip(&at.0) {
+            let mut sum: Option<FaceContact> = None;
+            // A point may belong to several pairs; its area counts once.
+            let mut last = None;
+            for pair in pairs {
+                let z = position(pair.x.0, pair.xi);
+                let face = sum.get_or_insert(FaceContact {
+                    area: 0.0,
+                    force: 0.0,
+                    gap: f64::INFINITY,
+                    from_to: [f64::INFINITY, f64::NEG_INFINITY],
+                });
+                if last != Some(z) {
+                    face.area += self.repeats * pair.area;
+                    last = Some(z);
+                }
+                face.force -= 0.5 * self.repeats * pair.area * pair.barrier.slope;
+                face.gap = face.gap.min(pair.gap);
+                face.from_to = [face.from_to[0].min(z), face.from_to[1].max(z)];
+                report.energy += 0.5 * self.repeats * pair.area * pair.barrier.value;
+            }
+            report.faces[usize::from(curve.face == Face::Inner)] = sum;
+        }
+        report
+    }
+}

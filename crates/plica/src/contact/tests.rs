@@ -1,0 +1,170 @@
+use super::*;
+use crate::tube::fixture::short;
+use crate::tube::{Mesh, Tube};
+
+/// Returns a tube of 43 × 12 × 4 cubic control points, and a state whose outer face has a narrow hairpin.
+fn hairpin(gap: f64) -> (SplineTube, Vec<f64>) {
+    let mesh = Mesh {
+        axial: 43,
+        around: 12,
+        thickness: 4,
+        degree: 3,
+        refinements: vec![],
+        volumetric: Default::default(),
+    };
+    let tube = SplineTube::new(
+        &Tube {
+            length: 3.0,
+            ..short()
+        },
+        &mesh,
+        1,
+    );
+    // The face runs forward, back a little lower, and forward again lower still; the inner face runs likewise.
+    let length = tube.tube.length;
+    let u = tube.control_values_from(|z, radius, _| {
+        let s = 3.0 * z / length;
+        let way = if s < 1.0 {
+            [s, 0.0]
+        } else if s < 2.0 {
+            [2.0 - s, -(1.0 + 0.3 * (s - 1.0)) * gap]
+        } else {
+            [s - 2.0, -2.3 * gap]
+        };
+        let wave = 0.1 * gap * (5.0 * z).sin();
+        [way[0] - z, way[1] + wave + 0.3 * (0.5 - radius), 0.0]
+    });
+    (tube, u)
+}
+
+/// Returns `u` with every unknown but the circumferential ones moved along a wave.
+fn moved(u: &[f64], step: f64) -> Vec<f64> {
+    let wave = |i: usize| {
+        if i % 3 == 2 {
+            0.0
+        } else {
+            (1.3 * i as f64 + 0.2 * (i % 7) as f64).sin()
+        }
+    };
+    u.iter()
+        .enumerate()
+        .map(|(i, u)| u + step * wave(i))
+        .collect()
+}
+
+fn contact(tube: &SplineTube) -> SelfContact {
+    SelfContact::new(tube).with_range(0.02)
+}
+
+#[test]
+fn a_tube_at_rest_and_a_narrowed_tube_touch_nowhere() {
+    let (tube, u) = hairpin(0.01);
+    let contact = contact(&tube);
+    let rest = vec![0.0; u.len()];
+    assert!(contact.at(&rest).is_empty());
+    let narrow = tube.control_values_from(|z, _, _| {
+        let w = z - 0.5 * tube.tube.length;
+        [0.0, -0.3 * (-30.0 * w * w).exp(), 0.0]
+    });
+    assert!(contact.at(&narrow).is_empty());
+    assert_eq!(contact.crossing(&narrow), None);
+}
+
+#[test]
+fn forces_are_the_derivative_of_the_energy() {
+    let (tube, u) = hairpin(0.01);
+    let contact = contact(&tube);
+    let energy = |t: f64| {
+        let u = moved(&u, t);
+        contact
+            .add_forces(&contact.at(&u), &mut vec![0.0; u.len()])
+            .energy
+    };
+    assert!(energy(0.0) > 0.0);
+    let mut residual = vec![0.0; u.len()];
+    contact.add_forces(&contact.at(&u), &mut residual);
+    let direction = moved(&vec![0.0; u.len()], 1.0);
+    let slope: f64 = residual.iter().zip(&direction).map(|(r, d)| r * d).sum();
+    let error = |h: f64| ((energy(h) - energy(-h)) / (2.0 * h) - slope).abs() / slope.abs();
+    let order = (error(2e-4) / error(1e-4)).log2();
+    assert!((order - 2.0).abs() < 0.2, "order {order}");
+    assert!(error(1e-5) < 1e-5, "{}", error(1e-5));
+}
+
+#[test]
+fn the_tangent_is_the_derivative_of_the_forces() {
+    let (tube, u) = hairpin(0.01);
+    let contact = contact(&tube);
+    let residual = |t: f64| {
+        let u = moved(&u, t);
+        let mut residual = vec![0.0; u.len()];
+        contact.add_forces(&contact.at(&u), &mut residual);
+        residual
+    };
+    let direction = moved(&vec![0.0; u.len()], 1.0);
+    let mut product = vec![0.0; u.len()];
+    contact.add_tangent(&contact.at(&u), |i, j, value| {
+        assert!(i >= j);
+        product[i] += value * direction[j];
+        if i != j {
+            product[j] += value * direction[i];
+        }
+    });
+    let size = product.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
+    let error = |h: f64| {
+        let (low, high) = (residual(-h), residual(h));
+        let pairs = low.iter().zip(&high).zip(&product);
+        let errors = pairs.map(|((low, high), p)| ((high - low) / (2.0 * h) - p).abs());
+        errors.fold(0.0, f64::max) / size
+    };
+    let order = (error(2e-5) / error(1e-5)).log2();
+    assert!((order - 2.0).abs() < 0.2, "order {order}");
+    assert!(error(1e-6) < 1e-5, "{}", error(1e-6));
+}
+
+#[test]
+fn forces_of_both_sides_balance() {
+    let (tube, u) = hairpin(0.01);
+    let mut residual = vec![0.0; u.len()];
+    contact(&tube).add_forces(&contact(&tube).at(&u), &mut residual);
+    for i in 0..2 {
+        let components = residual.iter().skip(i).step_by(3);
+        let (sum, size) = components.fold((0.0, 0.0), |(sum, size), r| (sum + r, size + r.abs()));
+        assert!(
+            size > 0.0 && f64::abs(sum) < 1e-12 * size,
+            "{i}: {sum} of {size}"
+        );
+    }
+}
+
+#[test]
+fn flanks_press_with_the_slope_of_the_barrier() {
+    // Flat flanks at the gap g feel the pressure −b′(g) on their area at rest.
+    let (tube, u) = hairpin(0.01);
+    let contact = contact(&tube);
+    let report = contact.report(&contact.at(&u), |e, xi| {
+        let (from, to) = tube.axial.element(e);
+        from + xi * (to - from)
+    });
+    let outer = report.faces[0].unwrap();
+    assert!(report.energy > 0.0 && outer.force > 0.0);
+    let pressure = |gap: f64| -contact.barrier().at(gap).slope;
+    let mean = 2.0 * outer.force / outer.area;
+    assert!(
+        pressure(0.02) < mean && mean < pressure(outer.gap),
+        "{outer:?}"
+    );
+}
+
+#[test]
+fn a_step_through_a_flank_is_cut_short_and_a_crossing_is_named() {
+    let (tube, u) = hairpin(0.01);
+    let contact = contact(&tube);
+    assert_eq!(contact.crossing(&u), None);
+    let (_, wide) = hairpin(-0.01);
+    let step: Vec<f64> = u.iter().zip(&wide).map(|(a, b)| b - a).collect();
+    let part = contact.longest_step(&u, &step);
+    assert!(part > 0.2 && part < 0.5, "{part}");
+    let after: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + part * s).collect();
+    assert_eq!(contact.crossing(&after), None);
+}
