@@ -2,7 +2,9 @@
 
 use super::bezier::{Bezier, MAX_POINTS, Point, bernstein, bernstein_slopes};
 use crate::assembly::SplineTube;
+use crate::spline::control_wave;
 use crate::tube::Tube;
+use std::fmt;
 
 /// A face of the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +13,15 @@ pub enum Face {
     Outer,
     /// Reference radius D/2 − H.
     Inner,
+}
+
+impl fmt::Display for Face {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Outer => "outer wall",
+            Self::Inner => "inner wall",
+        })
+    }
 }
 
 /// The meridian of a face of an axisymmetric tube without twist: its place among the unknowns.
@@ -29,6 +40,8 @@ pub struct FaceCurve {
     /// First unknown of the face in a row, and number of unknowns of a row.
     first: usize,
     row_size: usize,
+    /// Control rings around the whole tube.
+    rings: usize,
     /// Radius of a spline whose radial control values are one.
     radial: f64,
     degree: usize,
@@ -57,6 +70,7 @@ impl FaceCurve {
             at_rest: tube.axial.greville(),
             first: 3 * point,
             row_size: tube.row_size(),
+            rings: tube.sector.around,
             radial: 1.0 / tube.circle.control_radius,
             degree,
         }
@@ -112,12 +126,26 @@ impl FaceCurve {
         })
     }
 
-    /// Returns the unknowns of an element, and the change of position per unit of each: control point by control
-    /// point, axial and radial.
-    pub fn unknowns(&self, element: usize) -> impl Iterator<Item = ([usize; 2], Point)> + '_ {
-        (element..=element + self.degree).map(|row| {
-            let at = row * self.row_size + self.first;
-            ([at, at + 1], [1.0, self.radial])
-        })
+    /// Returns the first unknown, the axial one, of every control point of an element.
+    pub fn unknowns(&self, element: usize) -> impl Iterator<Item = usize> + '_ {
+        (element..=element + self.degree).map(|row| row * self.row_size + self.first)
+    }
+
+    /// Returns for each component of the control points (axial, radial, circumferential) the amplitudes (z, r, θ) of
+    /// the displacement (z cos nφ, r cos nφ, −θ sin nφ) of the face per unit of control values of that form. A wave
+    /// of control values on splines gives a wave of slightly smaller amplitude.
+    pub fn amplitudes(&self, mode: usize) -> [[f64; 3]; 3] {
+        if mode == 0 {
+            return [[1.0, 0.0, 0.0], [0.0, self.radial, 0.0], [0.0; 3]];
+        }
+        // In the plane the displacement is ½ [(r − θ) exp(i(n+1)φ) + (r + θ) exp(−i(n−1)φ)].
+        let of_wave = |n: usize| 1.0 / control_wave(self.degree, self.rings, n);
+        let [lower, own, upper] = [mode - 1, mode, mode + 1].map(of_wave);
+        let (mean, difference) = (0.5 * (upper + lower), 0.5 * (lower - upper));
+        [
+            [own, 0.0, 0.0],
+            [0.0, mean, difference],
+            [0.0, difference, mean],
+        ]
     }
 }

@@ -125,11 +125,16 @@ impl SelfContact {
         forces
     }
 
-    /// Calls `add` with row, column and value of the entries of the tangent on or below the diagonal; entries of one
-    /// place add up.
-    pub fn add_tangent(&self, at: &ContactState, mut add: impl FnMut(usize, usize, f64)) {
+    /// Calls `add` with row, column and value of the entries on or below the diagonal of the tangent in a circumferential
+    /// mode, in the form and scale of the tube's own; entries of one place add up.
+    pub fn add_tangent(
+        &self,
+        at: &ContactState,
+        mode: usize,
+        mut add: impl FnMut(usize, usize, f64),
+    ) {
         for ((curve, _), pairs) in self.faces.iter().zip(&at.0) {
-            energy::add_tangent(curve, pairs, &mut add);
+            energy::add_tangent(curve, pairs, mode, &mut add);
         }
     }
 

@@ -27,6 +27,8 @@ pub struct Pair {
     pub gap: f64,
     /// n = (x − y)/g, normal to the face at y.
     pub normal: Point,
+    /// Radii of x and y, in D.
+    pub radii: [f64; 2],
     /// y′.
     pub slope: Point,
     /// n · y″.
@@ -111,6 +113,7 @@ fn pairs_of_point(
             area,
             gap,
             normal,
+            radii: [x[1], y.position[1]],
             slope: y.slope,
             curvature: dot(normal, y.curvature),
             barrier: barrier.at(gap),

@@ -103,7 +103,7 @@ fn the_tangent_is_the_derivative_of_the_forces() {
     };
     let direction = moved(&vec![0.0; u.len()], 1.0);
     let mut product = vec![0.0; u.len()];
-    contact.add_tangent(&contact.at(&u), |i, j, value| {
+    contact.add_tangent(&contact.at(&u), 0, |i, j, value| {
         assert!(i >= j);
         product[i] += value * direction[j];
         if i != j {
@@ -167,4 +167,156 @@ fn a_step_through_a_flank_is_cut_short_and_a_crossing_is_named() {
     assert!(part > 0.2 && part < 0.5, "{part}");
     let after: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + part * s).collect();
     assert_eq!(contact.crossing(&after), None);
+}
+
+#[test]
+fn the_tangent_of_a_mode_is_the_second_derivative_of_the_energy_of_its_wave() {
+    // At each angle the distance between waved faces is found by brute force; the energy is averaged around.
+    let (tube, u) = hairpin(0.01);
+    let contact = contact(&tube);
+    // Every eleventh pair, which is what the energy below sums up.
+    let mut pairs = contact.at(&u);
+    for pairs in &mut pairs.0 {
+        *pairs = pairs.iter().step_by(11).copied().collect();
+    }
+    let direction: Vec<f64> = (0..u.len())
+        .map(|i| 1e-3 * (0.9 * i as f64).sin())
+        .collect();
+    for mode in 1..=3 {
+        let mut quadratic = 0.0;
+        contact.add_tangent(&pairs, mode, |i, j, value| {
+            let both = if i == j { 1.0 } else { 2.0 };
+            quadratic += both * value * direction[i] * direction[j];
+        });
+        let energy = |t: f64| wave::energy(&contact, &pairs, &direction, mode, t);
+        // E(t) = E₀ + ½ (cos² + sin² parts)/2 t²: the mode's scale is twice the average around.
+        let second = |h: f64| (energy(h) - 2.0 * energy(0.0) + energy(-h)) / (h * h);
+        let found = 2.0 * second(0.02);
+        assert!(
+            (found - quadratic).abs() < 2e-3 * quadratic.abs(),
+            "{mode}: {found} {quadratic}"
+        );
+    }
+}
+
+/// The energy of contact of a face with a circumferential wave, from three-dimensional distances.
+mod wave {
+    use super::super::bezier::{MAX_POINTS, Point};
+    use super::super::curve::FaceCurve;
+    use super::super::{ContactState, SelfContact};
+    use std::f64::consts::TAU;
+
+    /// Angles around the tube at which the energy is evaluated.
+    const ANGLES: usize = 16;
+
+    /// A wave on a face: its curve at rest of the wave, and the amplitudes (z, r, θ) of its displacement.
+    struct Waved<'a> {
+        face: &'a FaceCurve,
+        direction: &'a [f64],
+        mode: usize,
+        size: f64,
+    }
+
+    impl Waved<'_> {
+        /// Returns the displaced position (z, x, y) of a place of an element at the angle φ.
+        fn at(
+            &self,
+            element: usize,
+            position: Point,
+            values: &[f64; MAX_POINTS],
+            phi: f64,
+        ) -> [f64; 3] {
+            let amplitudes = self.face.amplitudes(self.mode);
+            let mut d = [0.0; 3];
+            for (first, value) in self.face.unknowns(element).zip(values) {
+                for (i, amplitude) in amplitudes.iter().enumerate() {
+                    for (d, a) in d.iter_mut().zip(amplitude) {
+                        *d += self.size * value * self.direction[first + i] * a;
+                    }
+                }
+            }
+            let (sin, cos) = (self.mode as f64 * phi).sin_cos();
+            let (z, r, theta) = (
+                position[0] + d[0] * cos,
+                position[1] + d[1] * cos,
+                -d[2] * sin,
+            );
+            [
+                z,
+                r * phi.cos() - theta * phi.sin(),
+                r * phi.sin() + theta * phi.cos(),
+            ]
+        }
+    }
+
+    /// Returns the energy of the pairs of a state, of one sector, averaged around the tube.
+    pub fn energy(
+        contact: &SelfContact,
+        pairs: &ContactState,
+        direction: &[f64],
+        mode: usize,
+        size: f64,
+    ) -> f64 {
+        let mut sum = 0.0;
+        for ((face, _), pairs) in contact.faces.iter().zip(&pairs.0) {
+            let curves = face.curves(&super::hairpin(0.01).1);
+            let waved = Waved {
+                face,
+                direction,
+                mode,
+                size,
+            };
+            for pair in pairs {
+                let x = curves[pair.x.0].at(pair.xi).position;
+                for i in 0..ANGLES {
+                    let phi = TAU * (i as f64 + 0.3) / ANGLES as f64;
+                    let x = waved.at(pair.x.0, x, &pair.x.1, phi);
+                    let distance = |eta: f64, psi: f64| {
+                        let values = face.functions(pair.y.0, eta)[0];
+                        let position = curves[pair.y.0].at(eta).position;
+                        let y = waved.at(pair.y.0, position, &values, phi + psi);
+                        (0..3).map(|i| (x[i] - y[i]).powi(2)).sum::<f64>().sqrt()
+                    };
+                    let gap = nearest(distance, start(face, pair));
+                    let barrier = contact.barrier().at(gap);
+                    sum += 0.5 * pair.area * barrier.value / ANGLES as f64;
+                }
+            }
+        }
+        sum
+    }
+
+    /// Returns the place of y in its element, from the values of its functions.
+    fn start(face: &FaceCurve, pair: &super::super::pairs::Pair) -> f64 {
+        let wrong = |eta: f64| -> f64 {
+            let values = face.functions(pair.y.0, eta)[0];
+            values
+                .iter()
+                .zip(&pair.y.1[0])
+                .map(|(a, b)| (a - b).powi(2))
+                .sum()
+        };
+        let grid = (0..=1000).map(|i| f64::from(i) / 1000.0);
+        grid.min_by(|a, b| wrong(*a).total_cmp(&wrong(*b))).unwrap()
+    }
+
+    /// Minimises a function of (η, ψ) near (η₀, 0) by Newton's method with differences.
+    fn nearest(f: impl Fn(f64, f64) -> f64, eta: f64) -> f64 {
+        let square = |x: f64, y: f64| 0.5 * f(x, y).powi(2);
+        let (mut x, mut y, h) = (eta, 0.0, 1e-4);
+        for _ in 0..8 {
+            let c = square(x, y);
+            let [e, w, n, s] =
+                [(h, 0.0), (-h, 0.0), (0.0, h), (0.0, -h)].map(|(dx, dy)| square(x + dx, y + dy));
+            let cross = (square(x + h, y + h) - square(x + h, y - h) - square(x - h, y + h)
+                + square(x - h, y - h))
+                / (4.0 * h * h);
+            let (gx, gy) = ((e - w) / (2.0 * h), (n - s) / (2.0 * h));
+            let (xx, yy) = ((e - 2.0 * c + w) / (h * h), (n - 2.0 * c + s) / (h * h));
+            let det = xx * yy - cross * cross;
+            x -= (yy * gx - cross * gy) / det;
+            y -= (xx * gy - cross * gx) / det;
+        }
+        f(x, y)
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
 use crate::assembly::{Inverted, SplineTube};
-use crate::contact::SelfContact;
+use crate::contact::{ContactReport, SelfContact};
 use crate::matrix::{BlockBanded, FarBlocks, Singular};
 use crate::monitor::Monitor;
 use crate::solve::{
@@ -84,13 +84,31 @@ impl TubeProblem {
         self
     }
 
-    /// Assembles the tangent of one ring, with contact.
-    fn ring_tangent(&self, load: &Load, u: &[f64]) -> (BlockBanded, FarBlocks) {
-        let mut band = self.tube.tangent(load, u);
+    /// Sums up the contact of a state; none of a problem without contact.
+    pub fn contact_report(&self, u: &[f64]) -> Option<ContactReport> {
+        let contact = self.contact.as_ref()?;
+        let position = |element: usize, xi: f64| {
+            let (from, to) = self.tube.axial.element(element);
+            from + xi * (to - from)
+        };
+        Some(contact.report(&contact.at(u), position))
+    }
+
+    /// Assembles the tangent of one ring, with contact, for a circumferential mode: its band, and the blocks outside.
+    pub(super) fn ring_tangent(
+        &self,
+        load: &Load,
+        u: &[f64],
+        mode: usize,
+    ) -> (BlockBanded, FarBlocks) {
+        let mut band = match mode {
+            0 => self.tube.tangent(load, u),
+            n => self.tube.tangent_in_harmonic(load, u, n),
+        };
         let size = band.size();
         let mut far = FarBlocks::new(size, band.band());
         if let Some(contact) = &self.contact {
-            contact.add_tangent(&contact.at(u), |row, column, value| {
+            contact.add_tangent(&contact.at(u), mode, |row, column, value| {
                 let (i, j) = (row / size, column / size);
                 if i - j > band.band() {
                     far.add_at(row, column, value);
@@ -139,7 +157,7 @@ impl Equilibrium for TubeProblem {
     fn tangent(&self, load: &Load, u: &[f64]) -> TubeTangent {
         match &self.rings {
             Rings::One(damping) => TubeTangent::Direct(Direct::new(
-                self.ring_tangent(load, u),
+                self.ring_tangent(load, u, 0),
                 damping.clone(),
                 self.prescribed.clone(),
             )),

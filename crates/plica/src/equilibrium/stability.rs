@@ -6,6 +6,7 @@ use super::problem::{TubeSolver, TubeTangent};
 use super::verdict::{Instability, Stability, UnstableMode};
 use super::{TubeProblem, harmonic_tangent::HarmonicSystem};
 use crate::assembly::SplineTube;
+use crate::matrix::SparseFactor;
 use crate::monitor::Monitor;
 use crate::solve::{Equilibrium, Operator, Path, Search, lowest};
 use crate::tube::Load;
@@ -88,12 +89,23 @@ pub fn test_stability(
         if let (0, Some(&count)) = (n % repeats, known.get(n / repeats)) {
             return count;
         }
+        let prescribed = ring.prescribed_in_harmonic(n);
+        // A singular block is at the limit of stability and counts as unstable.
+        if problem.contact.is_some() {
+            let (mut band, mut far) = problem.ring_tangent(load, &of_ring, n);
+            band.constrain(&prescribed);
+            if far.is_empty() {
+                return band.factor().map_or(1, |factor| factor.negative_pivots());
+            }
+            far.constrain(&prescribed);
+            let factor = SparseFactor::of(&band, &far);
+            return factor.map_or(1, |factor| factor.negative_pivots());
+        }
         let mut tangent = match n {
             0 => ring.tangent(load, &of_ring),
             n => ring.tangent_in_harmonic(load, &of_ring, n),
         };
-        tangent.constrain(&ring.prescribed_in_harmonic(n));
-        // A singular block is at the limit of stability and counts as unstable.
+        tangent.constrain(&prescribed);
         tangent
             .factor()
             .map_or(1, |factor| factor.negative_pivots())

@@ -51,6 +51,9 @@ impl<'a> CriticalLoads<'a> {
         if plan.mesh.rings(plan.symmetry) != 1 {
             return Err(StabilityError::Symmetry);
         }
+        if plan.contact {
+            return Err(StabilityError::Contact);
+        }
         let files = directory.states()?;
         if files.len() < 2 {
             return Err(StabilityError::NoStates {

@@ -1,6 +1,7 @@
 //! Errors of a study.
 
 use super::Lost;
+use crate::contact::Face;
 
 /// An error that ends a study.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +20,11 @@ pub enum StudyError {
         /// Free, in GiB.
         available_gib: f64,
     },
+    /// The state to start from passes through itself, and the study has contact.
+    #[error(
+        "the state to start from passes through itself at the {0}, and a wall with contact cannot: start from an earlier state, or set contact = false"
+    )]
+    Crosses(Face),
     /// The state to resume from does not belong to the plan.
     #[error("the study cannot be resumed: {0}")]
     Resume(String),

@@ -1,6 +1,6 @@
 //! The iterator of states.
 
-use super::start::equilibrate;
+use super::start::{equilibrate, transferred};
 use super::state::Milestone;
 use super::work::WorkPoint;
 use super::{Lost, Phase, Plan, State, StudyError, check_memory};
@@ -78,12 +78,19 @@ impl Study {
     /// Prepares a study; its first state is computed when it is asked for.
     ///
     /// # Errors
-    /// [`StudyError::OutOfMemory`] if the machine has too little free memory, where the system reports it.
+    /// [`StudyError::OutOfMemory`] if the machine has too little free memory, where the system reports it;
+    /// [`StudyError::Crosses`] if the state to start from passes through itself and the plan has contact.
     pub fn new(plan: &Plan) -> Result<Self, StudyError> {
         check_memory(plan)?;
+        let problem = problem(plan);
+        if let (Some(contact), Some(start)) = (&problem.contact, &plan.start)
+            && let Some(face) = contact.crossing(&transferred(plan, &problem, start))
+        {
+            return Err(StudyError::Crosses(face));
+        }
         Ok(Self {
             plan: plan.clone(),
-            problem: problem(plan),
+            problem,
             path: None,
             work_point: None,
             stage: None,

@@ -38,7 +38,7 @@ pub use iterator::{Continuation, Ending, Study};
 pub use limit_point::LimitPoint;
 pub use lost::{Location, Lost, Phase};
 pub use plan::{LengthUnit, ModeShape, Output, Plan, Stage, Start, StressUnit, Units};
-pub use row::{EndRow, MuscleRow, Row};
+pub use row::{ContactRow, EndRow, MuscleRow, Row, WallContactRow};
 pub use start::inverted_by_imperfections;
 pub use state::{MuscleState, State};
 pub use table::{Cell, Quantity, RowReader};

@@ -2,10 +2,14 @@
 
 use super::table::{Quantity, Visitor};
 use super::{Scale, State};
+use crate::contact::{ContactReport, FaceContact};
 use crate::equilibrium::Stability;
 use crate::measure::{Shape, Side};
 use crate::solve::Method;
 use serde::{Deserialize, Serialize};
+
+/// The names that a case has for the inner and the outer wall; no muscle has them.
+const WALLS: [&str; 2] = ["inner-wall", "outer-wall"];
 
 /// The numbers of an accepted state: a row of `history.csv`. Lengths in D, energies in E·D³ and pressures in E, unless
 /// the case has units.
@@ -37,6 +41,8 @@ pub struct Row {
     pub inner_wall_work: Option<f64>,
     /// Work done so far by the pressures on the outer wall; likewise.
     pub outer_wall_work: Option<f64>,
+    /// Contact of the wall with itself; its columns exist only in runs with contact.
+    pub contact: ContactRow,
     /// Strain energy W = ∫ w det Fp dV₀, over the grown volume.
     pub energy: f64,
     /// Strain energy ∫ w dV₀, over the ungrown volume, as some other programs report it.
@@ -45,7 +51,7 @@ pub struct Row {
     pub residual: f64,
     /// Work done against damping since the previous state.
     pub damping_work: f64,
-    /// Work done so far by muscles, pressures and ends, less the damping work so far and the gain of strain energy.
+    /// Work done so far by muscles, pressures and ends, less the damping work so far and the gain of the energies of strain and contact.
     pub released_energy: f64,
     /// Method by which the state was found: rest, newton, relaxation or pseudo-time.
     pub method: Method,
@@ -129,6 +135,59 @@ pub struct EndRow {
     pub work: f64,
 }
 
+/// Contact of the wall with itself in a row. All are none in a run without contact, and zero where nothing touches.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactRow {
+    /// Energy of contact Π_c.
+    pub energy: Option<f64>,
+    /// Contact of the inner and of the outer wall with itself.
+    pub walls: [WallContactRow; 2],
+}
+
+/// Contact of one wall with itself in a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WallContactRow {
+    /// Area at rest of both sides.
+    pub area: Option<f64>,
+    /// Sum of the sizes of the forces between the two sides.
+    pub force: Option<f64>,
+    /// Smallest gap between points in contact.
+    pub gap: Option<f64>,
+    /// Axial position at rest of the first point in contact.
+    pub from: Option<f64>,
+    /// Axial position at rest of the last point in contact.
+    pub to: Option<f64>,
+}
+
+impl ContactRow {
+    /// Converts the contact of a state to the units of its case.
+    fn new(contact: &ContactReport, scale: &Scale) -> Self {
+        let wall = |face: Option<FaceContact>| {
+            let of = |value: fn(FaceContact) -> f64| Some(face.map_or(0.0, value));
+            let (length, force) = (scale.length, scale.force);
+            WallContactRow {
+                area: of(|face| face.area).map(|area| length * length * area),
+                force: of(|face| face.force).map(|f| force * f),
+                gap: of(|face| face.gap).map(|gap| length * gap),
+                from: of(|face| face.from_to[0]).map(|z| length * z),
+                to: of(|face| face.from_to[1]).map(|z| length * z),
+            }
+        };
+        let [outer, inner] = contact.faces;
+        Self {
+            energy: Some(scale.energy * contact.energy),
+            walls: [wall(inner), wall(outer)],
+        }
+    }
+
+    /// Returns whether a wall touches itself.
+    pub fn touches(&self) -> bool {
+        self.walls
+            .iter()
+            .any(|wall| wall.area.is_some_and(|area| area > 0.0))
+    }
+}
+
 impl Row {
     /// Converts a state to the units of its case; totals continue those of the row of the previous state. The columns of
     /// pressures are written only if the case has pressures.
@@ -171,6 +230,12 @@ impl Row {
             potential: has_pressures.then_some(energy * state.potential),
             inner_wall_work: has_pressures.then_some(0.0),
             outer_wall_work: has_pressures.then_some(0.0),
+            contact: state
+                .contact
+                .as_ref()
+                .map_or_else(ContactRow::default, |contact| {
+                    ContactRow::new(contact, scale)
+                }),
             energy: energy * state.energy,
             energy_ungrown_volume: energy * state.energy_ungrown_volume,
             residual: state.relative_residual,
@@ -234,7 +299,8 @@ impl Row {
                 *now = total(before.unwrap_or(0.0), work);
             }
         }
-        let gained = self.energy - previous.energy;
+        let stored = |row: &Self| row.energy + row.contact.energy.unwrap_or(0.0);
+        let gained = stored(&self) - stored(previous);
         self.released_energy = previous.released_energy + (sum - self.damping_work - gained);
         self
     }
@@ -294,6 +360,7 @@ impl Row {
             potential: None,
             inner_wall_work: None,
             outer_wall_work: None,
+            contact: ContactRow::default(),
             energy: 0.0,
             energy_ungrown_volume: 0.0,
             residual: 0.0,
@@ -369,6 +436,14 @@ impl Row {
         v.optional("inner_dead_load", Stress, &mut self.inner_dead_load);
         v.optional("outer_dead_load", Stress, &mut self.outer_dead_load);
         v.optional("potential", Energy, &mut self.potential);
+        v.optional("contact_energy", Energy, &mut self.contact.energy);
+        for (wall, name) in self.contact.walls.iter_mut().zip(WALLS) {
+            v.optional(&format!("contact_area_{name}"), Area, &mut wall.area);
+            v.optional(&format!("contact_force_{name}"), Force, &mut wall.force);
+            v.optional(&format!("contact_gap_{name}"), Length, &mut wall.gap);
+            v.optional(&format!("contact_from_{name}"), Length, &mut wall.from);
+            v.optional(&format!("contact_to_{name}"), Length, &mut wall.to);
+        }
         v.cell("energy", Energy, &mut self.energy);
         let ungrown = &mut self.energy_ungrown_volume;
         v.cell("energy_ungrown_volume", Energy, ungrown);
@@ -378,7 +453,6 @@ impl Row {
             let name = format!("work_{}", muscle.name);
             v.cell(&name, Energy, &mut muscle.work);
         }
-        // The names that a case has for the walls; no muscle has them.
         v.optional("work_inner-wall", Energy, &mut self.inner_wall_work);
         v.optional("work_outer-wall", Energy, &mut self.outer_wall_work);
         for end in &mut self.ends {

@@ -17,10 +17,7 @@ pub(super) fn equilibrate(
     start: &Start,
     monitor: &mut dyn Monitor,
 ) -> Result<(Vec<f64>, Step), PathError<Inverted>> {
-    let Layout { mesh, rings, .. } = &start.state.layout;
-    let from = SplineTube::new(&perfect(&plan.tube), mesh, *rings);
-    let mut u = prolong(&from, &problem.tube, &start.state.u);
-    problem.apply_prescribed(&start.load, &mut u);
+    let u = transferred(plan, problem, start);
     let (load, settings) = (&start.load, &plan.solver);
     let mut effort = Effort::default();
     let mut attempts = vec![];
@@ -50,6 +47,15 @@ pub(super) fn equilibrate(
             damping_work: 0.0,
         },
     })
+}
+
+/// Returns a saved state on the mesh of a problem, before it is brought to equilibrium.
+pub(super) fn transferred(plan: &Plan, problem: &TubeProblem, start: &Start) -> Vec<f64> {
+    let Layout { mesh, rings, .. } = &start.state.layout;
+    let from = SplineTube::new(&perfect(&plan.tube), mesh, *rings);
+    let mut u = prolong(&from, &problem.tube, &start.state.u);
+    problem.apply_prescribed(&start.load, &mut u);
+    u
 }
 
 /// Returns the unknowns and the step of a solution.

@@ -3,6 +3,7 @@
 use super::work::WorkPoint;
 use super::{Plan, Work};
 use crate::activation::Muscle;
+use crate::contact::ContactReport;
 use crate::equilibrium::{Stability, TubeProblem};
 use crate::measure::{Dimensions, Measures, Reaction};
 use crate::solve::{Method, Step};
@@ -52,6 +53,8 @@ pub struct State {
     pub dimensions: Dimensions,
     /// Reactions at z = 0 and z = L.
     pub reactions: [Reaction; 2],
+    /// Contact of the walls with themselves; none in a study without contact.
+    pub contact: Option<ContactReport>,
     /// Work since the previous state.
     pub work: Work,
     /// Smallest det Fe at any quadrature point.
@@ -145,6 +148,7 @@ impl State {
             measures: Measures::of(tube, load, u),
             dimensions: Dimensions::of(tube, u),
             reactions: Reaction::of(tube, load, u, &forces.residual),
+            contact: problem.contact_report(u),
             work,
             min_det_fe: forces.smallest_jacobian,
             stability,
