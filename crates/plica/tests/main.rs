@@ -2,6 +2,7 @@
 
 mod common;
 
+mod contact;
 mod equilibrium;
 mod examples;
 mod fuzz;

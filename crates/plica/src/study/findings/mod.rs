@@ -39,6 +39,8 @@ pub struct Findings {
     pub invaginated: Vec<Interval>,
     /// The invaginated state with the largest overhang.
     pub deepest: Option<Overhang>,
+    /// States in which a wall touches itself; none without contact.
+    pub touching: Vec<Interval>,
     /// States in which a wall crosses itself, which is not physical.
     pub crossing: Vec<Interval>,
     /// States in which the lumen is closed, which is not physical without contact.
@@ -179,6 +181,7 @@ impl Findings {
             overhanging: path.intervals(Row::overhangs),
             invaginated: path.intervals(|row| row.shape == Shape::Invaginated),
             deepest: deepest(&path),
+            touching: path.intervals(|row| row.contact.touches()),
             crossing: path.intervals(Row::crosses_itself),
             closed: path.intervals(Row::has_closed),
             out_of_equilibrium: path.intervals(|row| !row.in_equilibrium),

@@ -131,6 +131,9 @@ impl Findings {
             ("wall overhangs".into(), or_none(&self.overhanging)),
             ("invaginates".into(), invaginates),
         ];
+        if !self.touching.is_empty() {
+            lines.push(("wall touches itself".into(), list(&self.touching)));
+        }
         if let Some(largest) = &self.asymmetry {
             let [amplitude, start] = [largest.amplitude, largest.at_start].map(|x| self.length(x));
             let mode = UnstableMode::Circumferential(largest.mode).describe();

@@ -1,0 +1,112 @@
+//! A fold that closes: contact on the path of a whole tube.
+
+use crate::common::main_case;
+use plica::assembly::SplineTube;
+use plica::contact::{ContactReport, SelfContact};
+use plica::equilibrium::TubeProblem;
+use plica::measure::Measures;
+use plica::solve::{Equilibrium, Path};
+use std::sync::Arc;
+
+/// Length ratio at the end of the path, at which the flanks of the fold are 0.020 D apart without contact.
+const END: f64 = 1.45;
+
+/// Range of contact, in D: wide, so that a coarse mesh resolves it.
+const RANGE: f64 = 0.03;
+
+/// A state with its contact, and the energies of tube and contact.
+struct Reached {
+    problem: TubeProblem,
+    path: Path<TubeProblem>,
+    contact: Option<ContactReport>,
+    gap: f64,
+}
+
+/// Follows the main case on a coarse mesh until the fold is narrow.
+fn folded(range: Option<f64>) -> Reached {
+    let plan = main_case([70, 16, 4]);
+    let mut problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, 1));
+    problem.contact = range.map(|range| {
+        let contact = SelfContact::new(&problem.tube).with_range(range);
+        Arc::new(contact)
+    });
+    let rest = vec![0.0; problem.tube.unknowns()];
+    let settings = plan.solver.clone();
+    let mut path = Path::begin(problem.clone(), plan.tube.rest(), rest, settings).unwrap();
+    let mut load = plan.tube.rest();
+    load.muscles[0] = 0.25;
+    path.begin_segment(load.clone());
+    for step in 1..=5 {
+        path.advance(f64::from(step) / 5.0, &mut ()).unwrap();
+    }
+    load.muscles[1] = END;
+    path.begin_segment(load);
+    for step in 1..=15 {
+        path.advance(f64::from(step) / 15.0, &mut ()).unwrap();
+        if let Some(contact) = &problem.contact {
+            assert_eq!(contact.crossing(&path.state().u), None, "step {step}");
+        }
+    }
+    let (load, u) = (&path.state().load, &path.state().u);
+    Reached {
+        contact: problem.contact_report(u),
+        gap: Measures::of(&problem.tube, load, u).gap,
+        problem,
+        path,
+    }
+}
+
+#[test]
+fn a_fold_that_touches_itself_keeps_its_flanks_apart_and_in_equilibrium() {
+    let free = folded(None);
+    let touching = folded(Some(RANGE));
+    let state = touching.path.state();
+    assert!(state.in_equilibrium() && state.relative_residual < 1e-6);
+    let report = touching.contact.unwrap();
+    let [outer, inner] = report.faces;
+    let outer = outer.expect("the outer wall touches itself");
+    assert_eq!(inner, None);
+    assert!(outer.gap > 0.0 && outer.gap < RANGE);
+    assert!(outer.force > 0.0 && outer.area > 0.0 && outer.from_to[0] < outer.from_to[1]);
+    // Contact holds the fold open, which costs energy.
+    assert!(touching.gap > free.gap + 1e-3, "{} {}", touching.gap, free.gap);
+    assert!(state.energy > free.path.state().energy);
+    assert!(report.energy > 0.0 && report.energy < 0.02 * state.energy);
+}
+
+#[test]
+fn the_tangent_of_a_touching_fold_is_the_derivative_of_its_residual() {
+    let Reached { problem, path, .. } = folded(Some(RANGE));
+    let (load, u) = (&path.state().load, &path.state().u);
+    let direction: Vec<f64> = problem
+        .prescribed()
+        .iter()
+        .enumerate()
+        .map(|(i, prescribed)| match *prescribed || i % 3 == 2 {
+            true => 0.0,
+            false => (0.37 * i as f64).sin(),
+        })
+        .collect();
+    let at = |h: f64| {
+        let moved: Vec<f64> = u.iter().zip(&direction).map(|(u, d)| u + h * d).collect();
+        problem.forces(load, &moved).unwrap().residual
+    };
+    let mut product = vec![0.0; u.len()];
+    let tangent = problem.tangent(load, u);
+    plica::solve::Tangent::multiply_add(&tangent, 1.0, &direction, &mut product);
+    let h = 1e-7;
+    let (low, high) = (at(-h), at(h));
+    let size = product.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
+    for (i, p) in product.iter().enumerate() {
+        let difference = (high[i] - low[i]) / (2.0 * h);
+        assert!((difference - p).abs() < 1e-5 * size, "{i}: {difference} {p}");
+    }
+}
+
+#[test]
+fn a_state_that_touches_nowhere_is_the_same_to_the_bit_with_contact() {
+    let free = folded(None);
+    let narrow = folded(Some(1e-4));
+    assert!(narrow.contact.unwrap().faces.iter().all(Option::is_none));
+    assert_eq!(free.path.state().u, narrow.path.state().u);
+}
