@@ -13,6 +13,9 @@ import numpy as np
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
+sys.path.insert(0, str(Path(__file__).parent.parent / "docs"))
+import evaluate_state
+
 GAUSS = 6  # points in each direction; the volume of a cubic map takes five
 
 
@@ -271,6 +274,29 @@ def check_series(run, number):
     print(f"file of all states: {len(times)} states; {len(names)} fields, faces and field data equal those of state {number}")
 
 
+def check_spline(run, number):
+    """Compares the nodes of a state with its spline, evaluated from knots and control points, and reads its meridian."""
+    volume = read(run / "vtk" / "volume" / f"state-{number:04}.vtu")
+    now = vtk_to_numpy(volume.GetPoints().GetData())
+    rest = now - field(volume, "displacement")
+    state = evaluate_state.read(run / "states" / f"state-{number:04}.safetensors")
+    some = np.linspace(0, len(now) - 1, 150).astype(int)
+    inner, outer = 0.5 - state[0]["tube"]["thickness"], 0.5
+    at = [(z, np.clip(np.hypot(x, y), inner, outer), np.arctan2(y, x)) for x, y, z in rest[some]]
+    at = [(np.clip(z, 0, state[0]["tube"]["length"]), r, phi) for z, r, phi in at]
+    spline = np.array([evaluate_state.position(state, *place) for place in at])
+    error = np.abs(spline - now[some]).max()
+    assert error < 1e-6, error
+    print(f"nodes from knots and control points: largest error {error:.0e}")
+    path = run / "vtk" / "meridian" / f"state-{number:04}.vtp"
+    assert path.exists() == (state[0]["rings"] == 1), path
+    if path.exists():
+        meridian = read(path)
+        points = vtk_to_numpy(meridian.GetPoints().GetData())
+        assert meridian.GetNumberOfCells() > 0 and field(meridian, "cauchy_stress").shape == (len(points), 6)
+        print(f"meridian: {len(points)} points, {path.stat().st_size} bytes")
+
+
 def main():
     run = Path(sys.argv[1])
     rows = {int(row["step"]): row for row in csv.DictReader(open(run / "history.csv"))}
@@ -281,6 +307,7 @@ def main():
         profile = list(csv.DictReader(open(run / "profiles" / f"{path.stem}.csv")))
         check_state(run, number, rows[number], profile)
         check_series(run, number)
+        check_spline(run, number)
     for name in ["walls", "volume", "linear"]:
         text = (run / "vtk" / f"{name}.pvd").read_text()
         named = [run / "vtk" / part.split('"')[0] for part in text.split('file="')[1:]]
