@@ -4,10 +4,13 @@
 
 mod checkpoint;
 mod clear;
+mod coverage;
 mod disk;
 mod error;
+mod history;
 mod lock;
 mod manifest;
+mod names;
 mod presence;
 mod record;
 mod resume;
@@ -16,6 +19,7 @@ mod summary;
 mod write;
 
 pub use checkpoint::Checkpoint;
+pub use coverage::StabilityCoverage;
 pub use disk::DiskUse;
 pub use error::RunError;
 pub use record::{Fault, Record};
@@ -24,12 +28,11 @@ pub use run::{Run, run};
 pub use summary::{Snapshot, Summary};
 pub use write::write_file;
 
-use crate::study::{Row, RowReader};
-use clear::{clear, files, modes, remove, stability_files};
+use clear::{clear, files};
 use lock::{LOCK, Lock};
+use names::{imperfection, name_of_profile, name_of_temporary_state, number_of_state};
 use presence::Folder;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
@@ -39,7 +42,7 @@ use std::path::{Path, PathBuf};
 /// |---|---|
 /// | `case.toml` | the case as it was run, to the byte |
 /// | `manifest.json` | version, hash of the case, machine, threads, start and end, verdict |
-/// | `history.csv` | one row per accepted state, see [`Row`] |
+/// | `history.csv` | one row per accepted state, see [`crate::study::Row`] |
 /// | `profiles/state-NNNN.csv` | outer and inner wall of a state |
 /// | `states/state-NNNN.safetensors` | a state in full, see [`crate::saved_state::SavedState`] |
 /// | `checkpoint.safetensors`, `checkpoint-before.safetensors` | the last accepted state and the one before, with all that it takes to resume, see [`Checkpoint`] |
@@ -295,24 +298,6 @@ impl RunDirectory {
         rows.collect()
     }
 
-    /// Returns the numbers of the saved states.
-    ///
-    /// # Errors
-    /// As [`RunDirectory::states`].
-    pub fn state_numbers(&self) -> Result<Vec<usize>, RunError> {
-        Ok(self.numbered(STATES, STATE_ENDING)?.into_keys().collect())
-    }
-
-    /// Returns the states that `plica stability` has tested, as the manifest says; none if it has not.
-    pub fn stability_coverage(&self) -> Option<StabilityCoverage> {
-        let about = &manifest(&self.path)[STABILITY];
-        let states = about["states"].as_array()?.iter();
-        Some(StabilityCoverage {
-            states: states.filter_map(|n| Some(n.as_u64()? as usize)).collect(),
-            highest_mode: about["highest_mode"].as_u64().map(|n| n as usize),
-        })
-    }
-
     /// Returns the version of the program that wrote it; empty if the manifest does not say.
     pub fn version(&self) -> String {
         let version = manifest(&self.path)["version"].as_str().map(String::from);
@@ -322,123 +307,6 @@ impl RunDirectory {
     /// Returns the number of accepted states in the manifest; none if it does not say.
     pub fn state_count(&self) -> Option<usize> {
         manifest(&self.path)["states"].as_u64().map(|n| n as usize)
-    }
-
-    /// Returns the rows of `history.csv`.
-    ///
-    /// # Errors
-    /// [`RunError::File`] if it cannot be read, is damaged or has other columns.
-    pub fn history(&self) -> Result<Vec<Row>, RunError> {
-        match self.readable_history()? {
-            (rows, None) => Ok(rows),
-            (_, Some(broken)) => Err(RunError::File {
-                path: self.path.join(HISTORY),
-                source: std::io::Error::other(broken),
-            }),
-        }
-    }
-
-    /// Returns the rows of `history.csv` before the first damaged one, and the fault of that one, if there is one. A power failure or a
-    /// full disk can leave a damaged row.
-    ///
-    /// # Errors
-    /// [`RunError::File`] if it cannot be read, or if its first row is damaged or has other columns.
-    pub fn readable_history(&self) -> Result<(Vec<Row>, Option<String>), RunError> {
-        let path = self.path.join(HISTORY);
-        let error_at = |error: csv::Error| RunError::File {
-            path: path.clone(),
-            source: std::io::Error::other(error),
-        };
-        if path.exists() && !path.is_file() {
-            let what = std::io::Error::other("not a regular file");
-            return Err(error_at(what.into()));
-        }
-        let mut table = csv::Reader::from_path(&path).map_err(error_at)?;
-        let reader = RowReader::new(table.headers().map_err(error_at)?);
-        let reader = reader.map_err(|error| error_at(std::io::Error::other(error).into()))?;
-        let mut rows: Vec<Row> = vec![];
-        for record in table.records() {
-            let row = record.map_err(|error| error.to_string());
-            let number = rows.len();
-            let read = |record| {
-                reader
-                    .row(&record)
-                    .map_err(|e| format!("row {number}: {e}"))
-            };
-            match row.and_then(read) {
-                Ok(row) => rows.push(row),
-                Err(error) if rows.is_empty() => {
-                    return Err(error_at(std::io::Error::other(error).into()));
-                }
-                Err(error) => return Ok((rows, Some(error))),
-            }
-        }
-        Ok((rows, None))
-    }
-
-    /// Returns the rows of `history.csv` that can be read, whatever is between them. Its own header may be damaged: rows with as
-    /// many cells as another header are read with that one.
-    fn recorded_rows(&self, header: &str) -> Vec<Row> {
-        let bytes = fs::read(self.path.join(HISTORY)).unwrap_or_default();
-        let text = String::from_utf8_lossy(&bytes);
-        let mut lines = text.lines();
-        let own = lines.next().unwrap_or_default();
-        let cells = |line: &str| line.matches(',').count();
-        let header_of = |line: &str| match cells(line) == cells(header) {
-            true => header.to_owned(),
-            false => own.to_owned(),
-        };
-        let row = |line: &str| {
-            let table = format!("{}\n{line}\n", header_of(line));
-            record::rows_of(&table).pop()?
-        };
-        lines.filter_map(row).collect()
-    }
-
-    /// Returns the files of the saved states, in the order of their numbers.
-    ///
-    /// # Errors
-    /// [`RunError::File`] if they cannot be listed.
-    pub fn states(&self) -> Result<Vec<PathBuf>, RunError> {
-        Ok(self.numbered(STATES, STATE_ENDING)?.into_values().collect())
-    }
-
-    /// Returns the files `state-N` with an extension in a folder, by their numbers; an absent folder has none.
-    ///
-    /// # Errors
-    /// [`RunError::File`] if they cannot be listed.
-    pub fn numbered(
-        &self,
-        folder: &str,
-        ending: &str,
-    ) -> Result<BTreeMap<usize, PathBuf>, RunError> {
-        let folder = self.path.join(folder);
-        let entries = match fs::read_dir(&folder) {
-            Ok(entries) => entries,
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(BTreeMap::new()),
-            Err(source) => {
-                return Err(RunError::File {
-                    path: folder,
-                    source,
-                });
-            }
-        };
-        let files = entries.flatten().map(|entry| entry.path());
-        Ok(files
-            .filter_map(|file| Some((number_of_state(&file, ending)?, file)))
-            .collect())
-    }
-
-    /// Returns the relative path of the file of a saved state, by the number of its row.
-    pub fn name_of_state(row: usize) -> String {
-        format!("{STATES}/state-{row:04}.{STATE_ENDING}")
-    }
-
-    /// Returns the files that the run started from: its start state and the modes of its imperfections.
-    pub fn inputs(&self) -> Vec<PathBuf> {
-        let start = Some(self.start()).filter(|start| start.exists());
-        let modes = modes(&self.path.join(IMPERFECTIONS));
-        start.into_iter().chain(modes).collect()
     }
 
     /// Returns the path of the directory.
@@ -454,83 +322,6 @@ impl RunDirectory {
     /// Returns whether there is a run at a path, with a case at least.
     pub fn exists(path: &Path) -> bool {
         is_run(path) && !is_unwritten(path)
-    }
-
-    /// Returns the path of the mode that gives an imperfection its shape; imperfections are counted from 1.
-    pub fn imperfection(&self, number: usize) -> PathBuf {
-        self.path.join(imperfection(number))
-    }
-
-    /// Returns the path of the state that the run started from, if not from rest.
-    pub fn start(&self) -> PathBuf {
-        self.path.join(START)
-    }
-
-    /// Removes the results of a stability analysis; returns whether there were any.
-    ///
-    /// # Errors
-    /// [`RunError::File`] if a file cannot be removed or the manifest cannot be written.
-    pub fn clear_stability(&self) -> Result<bool, RunError> {
-        let are_there = stability_files(&self.path).iter().any(|file| file.exists());
-        self.keep_stability(&[], None)?;
-        Ok(are_there)
-    }
-
-    /// Removes all results of stability analyses but these, by relative path, and writes to the manifest what they cover.
-    ///
-    /// # Errors
-    /// As [`RunDirectory::clear_stability`].
-    pub fn keep_stability(
-        &self,
-        names: &[String],
-        coverage: Option<StabilityCoverage>,
-    ) -> Result<(), RunError> {
-        let kept: Vec<PathBuf> = names.iter().map(|name| self.path.join(name)).collect();
-        let mut files = stability_files(&self.path);
-        files.retain(|file| !kept.contains(file));
-        remove(files)?;
-        let mut about = self.about();
-        let before = about.remove(STABILITY);
-        let now = coverage.map(|coverage| coverage.to_json());
-        if before == now {
-            return Ok(());
-        }
-        about.extend(now.map(|now| (STABILITY.to_owned(), now)));
-        self.write_manifest(&about)
-    }
-}
-
-/// The states and modes that a stability analysis covers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StabilityCoverage {
-    /// Numbers of the tested states, in ascending order.
-    pub states: Vec<usize>,
-    /// Highest circumferential mode tested; none for the lowest modes of three-dimensional states.
-    pub highest_mode: Option<usize>,
-}
-
-impl StabilityCoverage {
-    /// Returns the coverage for the manifest.
-    fn to_json(&self) -> serde_json::Value {
-        serde_json::json!({ "states": self.states, "highest_mode": self.highest_mode })
-    }
-
-    /// Returns the numbers of the states as a text, such as `0 to 12, 14`.
-    pub fn list(&self) -> String {
-        resume::list(&self.states)
-    }
-
-    /// Returns a statement on the states that are not covered, of those with these numbers; none if all are.
-    pub fn gaps(&self, saved: &[usize]) -> Option<String> {
-        let is_new = |number: &usize| !self.states.contains(number);
-        let missing: Vec<usize> = saved.iter().copied().filter(is_new).collect();
-        (!missing.is_empty()).then(|| {
-            format!(
-                "stability was tested at states {} only, not at {}",
-                self.list(),
-                resume::list(&missing)
-            )
-        })
     }
 }
 
@@ -563,30 +354,6 @@ fn is_leftover(file: &Path) -> bool {
     ["manifest.part", "case.part", LOCK]
         .map(Some)
         .contains(&name)
-}
-
-/// Returns the relative path of a state that is kept until the pictures are drawn.
-fn name_of_temporary_state(row: usize) -> String {
-    format!("{TEMPORARY}/state-{row:04}.{STATE_ENDING}")
-}
-
-/// Returns the relative path of the walls of a state.
-fn name_of_profile(row: usize) -> String {
-    format!("{PROFILES}/state-{row:04}.csv")
-}
-
-/// Returns the relative path of the mode that gives an imperfection its shape.
-fn imperfection(number: usize) -> String {
-    format!("{IMPERFECTIONS}/mode-{number:02}.{STATE_ENDING}")
-}
-
-/// Returns the number N of a file `state-N` with an extension.
-fn number_of_state(file: &Path, ending: &str) -> Option<usize> {
-    let name = file.file_name()?.to_str()?;
-    let number = name.strip_prefix("state-")?.strip_suffix(ending)?;
-    let number = number.strip_suffix('.')?;
-    let digits = !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
-    digits.then(|| number.parse().ok())?
 }
 
 /// Makes an empty directory for a test.
