@@ -69,7 +69,12 @@ fn a_fold_that_touches_itself_keeps_its_flanks_apart_and_in_equilibrium() {
     assert!(outer.gap > 0.0 && outer.gap < RANGE);
     assert!(outer.force > 0.0 && outer.area > 0.0 && outer.from_to[0] < outer.from_to[1]);
     // Contact holds the fold open, which costs energy.
-    assert!(touching.gap > free.gap + 1e-3, "{} {}", touching.gap, free.gap);
+    assert!(
+        touching.gap > free.gap + 1e-3,
+        "{} {}",
+        touching.gap,
+        free.gap
+    );
     assert!(state.energy > free.path.state().energy);
     assert!(report.energy > 0.0 && report.energy < 0.02 * state.energy);
 }
@@ -99,7 +104,10 @@ fn the_tangent_of_a_touching_fold_is_the_derivative_of_its_residual() {
     let size = product.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
     for (i, p) in product.iter().enumerate() {
         let difference = (high[i] - low[i]) / (2.0 * h);
-        assert!((difference - p).abs() < 1e-5 * size, "{i}: {difference} {p}");
+        assert!(
+            (difference - p).abs() < 1e-5 * size,
+            "{i}: {difference} {p}"
+        );
     }
 }
 

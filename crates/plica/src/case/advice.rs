@@ -31,9 +31,13 @@ pub fn advice(plan: &Plan) -> Vec<String> {
         }
         let largest = largest_stretch(plan, muscle.name.as_str());
         if largest > LARGEST_STRETCH {
+            let end = match plan.contact {
+                true => "touches itself",
+                false => "crosses itself, as there is no contact",
+            };
             advice.push(format!(
-                "muscles.{name} makes the wall grow {largest:.1}-fold within its zone; above about {LARGEST_STRETCH}-fold a wall folds \
-                 until it crosses itself, and there is no contact: choose a smaller target or a longer zone"
+                "muscles.{name} makes the wall grow {largest:.1}-fold within its zone; above about {LARGEST_STRETCH}-fold a wall \
+                 usually folds until it {end}: choose a smaller target or a longer zone"
             ));
         }
         if muscle.profile == Profile::HalfSine {

@@ -19,6 +19,7 @@ pub fn forbidden_changes(old: &Plan, new: &Plan, progress: Option<(usize, f64)>)
     require(old.tube == new.tube, "the tube".into());
     require(old.mesh == new.mesh, "the mesh".into());
     require(old.symmetry == new.symmetry, "the symmetry".into());
+    require(old.contact == new.contact, "the contact".into());
     require(old.units == new.units, "the units".into());
     require(
         old.end_names == new.end_names,

@@ -1,5 +1,6 @@
 //! Conditions at which a run stops, as `shape = invaginated` or `overhang > 0.1`.
 
+use super::{ContactRow, WallContactRow};
 use super::{Plan, Quantity, Row};
 use crate::measure::Shape;
 use std::fmt;
@@ -108,7 +109,21 @@ impl fmt::Display for Condition {
 fn zero(plan: &Plan) -> Row {
     let muscles = plan.tube.muscles.iter();
     let muscles: Vec<&str> = muscles.map(|muscle| muscle.name.as_str()).collect();
-    let row = Row::zero(&muscles, plan.end_names.each_ref().map(String::as_str));
+    let mut row = Row::zero(&muscles, plan.end_names.each_ref().map(String::as_str));
+    if plan.contact {
+        let zero = Some(0.0);
+        let wall = WallContactRow {
+            area: zero,
+            force: zero,
+            gap: zero,
+            from: zero,
+            to: zero,
+        };
+        row.contact = ContactRow {
+            energy: zero,
+            walls: [wall; 2],
+        };
+    }
     if plan.has_pressures() {
         row.with_pressures()
     } else {
@@ -163,6 +178,19 @@ mod tests {
             (row.overhang, row.max_wall_angle_deg) = (0.3, 150.0);
         };
         assert!(holds("overhangs", overhangs) && !holds("overhangs", |_| {}));
+    }
+
+    #[test]
+    fn columns_of_contact_exist_in_runs_with_contact_only() {
+        let mut plan = fixture::plan(Symmetry::Axisymmetric);
+        let text = "contact_force_outer-wall > 0";
+        assert!(Condition::parse(text, &plan).is_err());
+        plan.contact = true;
+        let condition = Condition::parse(text, &plan).unwrap();
+        let mut row = zero(&plan);
+        assert!(!condition.holds(&row));
+        row.contact.walls[1].force = Some(0.1);
+        assert!(condition.holds(&row));
     }
 
     #[test]
