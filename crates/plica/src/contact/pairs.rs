@@ -19,8 +19,8 @@ pub struct Pair {
     pub x: (usize, [f64; MAX_POINTS]),
     /// Element of y, and values and slopes of its functions there.
     pub y: (usize, [[f64; MAX_POINTS]; 2]),
-    /// Place of x in its element, 0 to 1.
-    pub xi: f64,
+    /// Places of x and y in their elements, 0 to 1.
+    pub places: [f64; 2],
     /// Area of the quadrature point at rest, of the sector of one ring.
     pub area: f64,
     /// g = |x − y|.
@@ -109,7 +109,7 @@ fn pairs_of_point(
         pairs.push(Pair {
             x: (e, face.functions(e, xi)[0]),
             y: (other, face.functions(other, eta)),
-            xi,
+            places: [xi, eta],
             area,
             gap,
             normal,

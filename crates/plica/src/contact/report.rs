@@ -33,7 +33,7 @@ impl SelfContact {
             // A point may belong to several pairs; its area counts once.
             let mut last = None;
             for pair in pairs {
-                let z = position(pair.x.0, pair.xi);
+                let z = position(pair.x.0, pair.places[0]);
                 let face = sum.get_or_insert(FaceContact {
                     area: 0.0,
                     force: 0.0,

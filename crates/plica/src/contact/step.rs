@@ -15,6 +15,9 @@ const KEPT: f64 = 0.1;
 /// Factor by which the step is shortened when curves would meet.
 const SHORTENING: f64 = 0.7;
 
+/// Distance of two curves, in sizes of the larger one, from which on halving them cannot help.
+const FAR: f64 = 3.0;
+
 /// Shortest part of a step that is tried.
 const SHORTEST: f64 = 1e-9;
 
@@ -159,7 +162,7 @@ impl Walk<'_> {
                 if distance.stays {
                     return;
                 }
-                if distance.at_start > size_a.max(size_b) {
+                if distance.at_start > FAR * size_a.max(size_b) {
                     self.shorten();
                 } else if size_a.max(size_b) < SMALLEST {
                     self.step = 0.0;
@@ -213,14 +216,17 @@ fn stays_monotone(curves: &[&Moving], t: f64) -> bool {
     ends.iter().all(|d| dot(*d, mean) > 0.0)
 }
 
-/// Returns whether the directions of curves at the start are less than 60° from their mean.
+/// Cosine of the largest angle, 11°, by which the directions of a nearly straight curve differ from their mean.
+const STRAIGHT: f64 = 0.98;
+
+/// Returns whether the directions of curves at the start hardly differ.
 fn is_nearly_straight(curves: &[&Moving]) -> bool {
     let directions: Vec<Point> = curves
         .iter()
         .flat_map(|curve| curve.curve.differences().collect::<Vec<_>>())
         .collect();
     let mean = sum_of_directions(&directions);
-    let limit = 0.5 * length(mean);
+    let limit = STRAIGHT * length(mean);
     directions
         .iter()
         .all(|d| dot(*d, mean) > limit * length(*d))
