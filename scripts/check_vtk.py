@@ -274,6 +274,25 @@ def check_series(run, number):
     print(f"file of all states: {len(times)} states; {len(names)} fields, faces and field data equal those of state {number}")
 
 
+def parameters(state, x, y):
+    """Returns the parameters r and phi of a point of the tube at rest, whose circles are splines."""
+    degree, rings = state[0]["mesh"]["degree"], state[0]["mesh"]["around"]
+
+    def circle(phi):
+        s = phi * rings / (2 * np.pi) + 0.5
+        values = evaluate_state.bsplines(np.arange(-degree, degree + 2.0), degree, s - np.floor(s))
+        angles = (np.floor(s) + np.arange(degree + 1) - degree / 2) * 2 * np.pi / rings
+        return values @ np.exp(1j * angles)
+
+    # The control radius of the circle nearest to the unit circle; it repeats from element to element.
+    some = (np.arange(64) + 0.5) / 64 * 2 * np.pi / rings
+    control = sum((np.conj(circle(p)) * np.exp(1j * p)).real for p in some) / sum(abs(circle(p)) ** 2 for p in some)
+    phi = np.arctan2(y, x)
+    for _ in range(4):
+        phi += np.angle((x + 1j * y) / circle(phi))
+    return np.hypot(x, y) / (control * abs(circle(phi))), phi
+
+
 def check_spline(run, number):
     """Compares the nodes of a state with its spline, evaluated from knots and control points, and reads its meridian."""
     volume = read(run / "vtk" / "volume" / f"state-{number:04}.vtu")
@@ -282,8 +301,8 @@ def check_spline(run, number):
     state = evaluate_state.read(run / "states" / f"state-{number:04}.safetensors")
     some = np.linspace(0, len(now) - 1, 150).astype(int)
     inner, outer = 0.5 - state[0]["tube"]["thickness"], 0.5
-    at = [(z, np.clip(np.hypot(x, y), inner, outer), np.arctan2(y, x)) for x, y, z in rest[some]]
-    at = [(np.clip(z, 0, state[0]["tube"]["length"]), r, phi) for z, r, phi in at]
+    at = [(np.clip(z, 0, state[0]["tube"]["length"]), *parameters(state, x, y)) for x, y, z in rest[some]]
+    at = [(z, np.clip(r, inner, outer), phi) for z, r, phi in at]
     spline = np.array([evaluate_state.position(state, *place) for place in at])
     error = np.abs(spline - now[some]).max()
     assert error < 1e-6, error
