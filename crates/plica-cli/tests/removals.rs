@@ -141,12 +141,20 @@ fn a_run_whose_files_are_removed_stops_keeps_its_history_and_resumes() {
     assert_contents("truncated", &expected, &run);
     // With everything removed, the history and the last state are written again; the rest is listed.
     let child = start(&directory, 9);
+    // The run is paused meanwhile: it would stop at the first missing file, and write files that are removed after it.
+    let signal = |name: &str| {
+        let pid = child.id().to_string();
+        let sent = Command::new("kill").args([name, &pid]).status();
+        assert!(sent.unwrap().success());
+    };
+    signal("-STOP");
     for name in ["profiles", "states"] {
         let _ = fs::remove_dir_all(run.join(name));
     }
     for entry in fs::read_dir(&run).unwrap().flatten() {
         let _ = fs::remove_file(entry.path());
     }
+    signal("-CONT");
     let (code, stderr) = end(child);
     assert_eq!(code, Some(3), "{stderr}");
     let resumed = plica(&directory, &["resume", "cut"]);
