@@ -69,9 +69,9 @@ fn until(arguments: &RunArguments, plan: &Plan) -> Result<Option<Condition>, Fai
 
 /// The manner in which a run is followed.
 struct How {
-    /// Whether an interrupted run is resumed.
+    /// True to resume an interrupted run.
     resume: bool,
-    /// Whether unphysical states are an error.
+    /// True to treat unphysical states as an error.
     strict: bool,
     /// Condition at which it stops.
     until: Option<Condition>,

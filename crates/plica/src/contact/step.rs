@@ -243,7 +243,7 @@ fn sum_of_directions(directions: &[Point]) -> Point {
 struct Separation {
     /// Largest distance at the start; not positive if no direction separates the hulls.
     at_start: f64,
-    /// Whether a direction separates them at the start and, with a part of that distance, at t.
+    /// True if a direction separates them at the start and, with a part of that distance, at t.
     stays: bool,
 }
 

@@ -43,7 +43,7 @@ pub struct Surface {
 pub struct Contact {
     /// Smallest distance of two parts of the surface; 0 if it crosses itself, infinite if no parts approach.
     pub gap: f64,
-    /// Whether parts cross that are a third of a turn or more apart at rest: across the lumen.
+    /// True if parts cross that are a third of a turn or more apart at rest: across the lumen.
     pub closes: bool,
 }
 

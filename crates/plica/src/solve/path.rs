@@ -424,6 +424,7 @@ impl<P: Equilibrium> Path<P> {
         start
     }
 
+    /// Extrapolates u to `t` along the tangent, or along the cubic, whichever has the smaller residual.
     fn extrapolate(&self, t: f64, load: &P::Load, tangent: Option<&[f64]>) -> Vec<f64> {
         let (problem, u, ahead) = (&self.problem, &self.state.u, t - self.continuation.reached);
         let prescribed = |mut u: Vec<f64>| {

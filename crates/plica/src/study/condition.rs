@@ -43,7 +43,7 @@ impl Condition {
     /// `=`, `<`, `<=`, `>`, `>=`, and a number or, after `=` only, a word.
     ///
     /// # Errors
-    /// What is wrong with the text, in words.
+    /// A sentence that names the mistake in the text.
     pub fn parse(text: &str, plan: &Plan) -> Result<Self, String> {
         let with = |test| Self {
             text: text.trim().to_owned(),

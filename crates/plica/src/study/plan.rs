@@ -16,7 +16,7 @@ pub struct Plan {
     pub mesh: Mesh,
     /// The symmetry around the axis.
     pub symmetry: Symmetry,
-    /// Whether the wall may touch itself but not pass through itself.
+    /// True if the wall may touch itself but not pass through itself.
     pub contact: bool,
     /// The saved state that the study starts from; none for a start at rest.
     pub start: Option<Start>,
