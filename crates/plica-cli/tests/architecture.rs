@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// The libraries.
-const LIBRARIES: [&str; 3] = ["plica", "plica-view", "plica-verify"];
+const LIBRARIES: [&str; 4] = ["plica-mechanics", "plica", "plica-view", "plica-verify"];
 
 /// Modules that each module uses. Names of modules are unique across the libraries.
 type Uses = BTreeMap<String, BTreeSet<String>>;

@@ -76,7 +76,7 @@ fn the_commands_of_the_pages_exist() {
 fn the_page_on_laws_shows_code_of_the_library() {
     let page = read("CONTRIBUTING.md");
     let page = page.replace("\n   ", "\n"); // code in lists is indented
-    let laws = files(&root().join("crates/plica/src/material"), "rs");
+    let laws = files(&root().join("crates/plica-mechanics/src/material"), "rs");
     let sources: String = laws.iter().map(read).collect();
     let blocks: Vec<&str> = page.split("```rust\n").skip(1).collect();
     for block in &blocks {

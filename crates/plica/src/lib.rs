@@ -51,23 +51,16 @@
 //! - [`solve`]: Newton's method, relaxation, and the path of equilibria, for any [`solve::Equilibrium`];
 //! - [`equilibrium`]: the tube as such a problem, and the stability test.
 
-pub mod activation;
-pub mod assembly;
 pub mod case;
 pub mod contact;
 pub mod equilibrium;
-pub mod material;
-pub mod matrix;
 pub mod measure;
 pub mod monitor;
-pub mod rings;
 pub mod run_directory;
 pub mod saved_state;
 pub mod solve;
-pub mod spline;
 pub mod stability;
 pub mod study;
-pub mod tensor;
-pub mod tube;
 
+pub use plica_mechanics::{activation, assembly, material, matrix, rings, spline, tensor, tube};
 pub use study::Study;

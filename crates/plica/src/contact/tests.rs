@@ -1,5 +1,5 @@
 use super::*;
-use crate::tube::fixture::short;
+use crate::study::fixture::short;
 use crate::tube::{Mesh, Tube};
 
 /// Returns a tube of 43 × 12 × 4 cubic control points, and a state whose outer face has a narrow hairpin.

@@ -88,7 +88,7 @@ impl Eigenvalue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tube::fixture;
+    use crate::study::fixture;
 
     fn eigenvalue(value: f64, found: bool) -> Eigenvalue {
         Eigenvalue {

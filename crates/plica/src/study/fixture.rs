@@ -1,16 +1,41 @@
-//! A small plan and its states for tests.
+//! A small tube, its plan and its states for tests.
 
 use super::{Output, Plan};
 use crate::assembly::SplineTube;
+use crate::material::{Material, NeoHookean};
 use crate::saved_state::SavedState;
-use crate::tube::{Symmetry, fixture};
+use crate::tube::{Mesh, Support, Symmetry, Tube};
 
-/// The small tube of [`fixture`] under a symmetry, without stages.
+/// Returns a tube as long as it is wide, with free ends and without muscles.
+pub fn short() -> Tube {
+    Tube {
+        length: 1.0,
+        thickness: 0.1,
+        material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+        muscles: vec![],
+        ends: [Support::Free; 2],
+        imperfections: vec![],
+    }
+}
+
+/// Returns a coarse cubic mesh: 6 control points along, 12 around, 4 through the wall.
+pub fn coarse() -> Mesh {
+    Mesh {
+        axial: 6,
+        around: 12,
+        thickness: 4,
+        degree: 3,
+        refinements: vec![],
+        volumetric: Default::default(),
+    }
+}
+
+/// The small tube under a symmetry, without stages.
 pub fn plan(symmetry: Symmetry) -> Plan {
     Plan {
         title: String::new(),
-        tube: fixture::short(),
-        mesh: fixture::coarse(),
+        tube: short(),
+        mesh: coarse(),
         symmetry,
         contact: false,
         start: None,

@@ -1,0 +1,417 @@
+//! Pressure on the inner and the outer wall: potential, forces and tangent.
+//!
+//! A follower pressure p acts on the deformed wall, along its normal. Its work is p dV, with V the
+//! volume that the wall encloses; its potential is −p V on the inner wall and +p V on the outer
+//! one, and
+//!
+//! V = ∫ ½ (x × dx)_z ∧ dz = ∫∫ ½ [(a b_s − b a_s) z_ζ − (a b_ζ − b a_ζ) z_s] dζ ds
+//!
+//! over the wall alone, with (z, a, b) the current position in the frame of the element: on planes
+//! z = const the integrand vanishes. If every point of a wall's edge is prescribed, or stays in
+//! such a plane, the forces ∂V/∂u are those of the pressure on the wall, and none act at the edge.
+//! (At an edge that moves along z, the force on a lid would be missing; the force then depends on
+//! the path, and has no potential.)
+//!
+//! A dead load acts on the wall at rest: its potential is ∓p ∫ N · u dA₀, for any ends.
+//!
+//! A wall is one surface, so plain loops are fast enough. V is computed relative to its value at
+//! rest, which avoids rounding.
+
+mod average;
+mod low_harmonics;
+#[cfg(test)]
+mod tests;
+mod volume;
+
+use super::Forces;
+use super::SplineTube;
+use super::blocks::{Block, add_rotated};
+use super::kinematics::{Vector, to_element_frame, to_ring_frame};
+use super::tables::{AxialBatch, CircumferentialPoint};
+use crate::matrix::BlockBanded;
+use crate::rings::Rotation;
+use crate::tube::{Load, Pressure, Tube};
+use rayon::prelude::*;
+use volume::{Surface, product, sum, volume_blocks, volume_change, volume_slopes};
+
+/// A wall under pressure.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadedWall {
+    /// Its control point through the wall: there its basis function is one, all others zero.
+    point: usize,
+    /// Radius at rest.
+    radius: f64,
+    /// Outward follower pressure.
+    follower: f64,
+    /// Outward dead load.
+    dead: f64,
+}
+
+/// Contribution of pressure to a tangent: the walls under follower pressure, and the state.
+#[derive(Clone, Debug)]
+pub struct PressureTangent {
+    walls: Vec<LoadedWall>,
+    u: Vec<f64>,
+}
+
+/// Contribution of the elements at one axial position to the forces on a wall.
+struct WallForces {
+    /// Potential of the sector.
+    potential: f64,
+    /// Sum of the squares of the element contributions.
+    squares: f64,
+    /// Forces on p + 1 rows of control points, by component and ring.
+    force: Vec<f64>,
+}
+
+/// An element along the tube: axial batch and lane.
+type Along<'a> = (&'a AxialBatch, usize);
+
+impl SplineTube {
+    /// Adds the potential and the forces of pressure to those of a state.
+    pub(in crate::assembly) fn add_pressure(&self, load: &Load, u: &[f64], forces: &mut Forces) {
+        let mut squares = forces.residual_scale * forces.residual_scale;
+        for wall in self.loaded_walls(load) {
+            let parts = self.integrate_over_wall(&wall, [u], |[moved], point| {
+                let position = sum(&wall.at_rest(point), &moved);
+                let volume = volume_slopes(&position);
+                let area = wall.area_at_rest(point);
+                let potential = wall.potential(&moved, point);
+                let mut slopes = volume.map(|v| v.map(|x| -wall.follower * x));
+                for i in 0..3 {
+                    slopes[2][i] -= wall.dead * area[i];
+                }
+                (potential, slopes)
+            });
+            for part in &parts {
+                forces.potential += self.sector.repeats() * part.potential;
+                squares += part.squares;
+            }
+            self.add_wall_forces(&wall, &parts, 1.0, &mut forces.residual);
+            forces.residual_scale = squares.sqrt();
+        }
+    }
+
+    /// Returns the work since rest, on the whole tube, of a unit follower pressure and of a unit
+    /// dead load on the inner wall and on the outer wall.
+    pub fn work_of_unit_pressures(&self, u: &[f64]) -> [[f64; 2]; 2] {
+        let unit = |follower: f64, dead: f64| Pressure { follower, dead };
+        let [follower, dead] = [unit(1.0, 0.0), unit(0.0, 1.0)].map(|pressure| {
+            let load = Load {
+                pressures: [pressure; 2],
+                ..self.tube.rest()
+            };
+            let work = |wall: &LoadedWall| {
+                let parts = self.integrate_over_wall(wall, [u], |[moved], point| {
+                    (wall.potential(&moved, point), [[0.0; 3]; 3])
+                });
+                let potential: f64 = parts.iter().map(|part| part.potential).sum();
+                -self.sector.repeats() * potential
+            };
+            let walls = self.loaded_walls(&load);
+            [work(&walls[0]), work(&walls[1])]
+        });
+        [0, 1].map(|wall| [follower[wall], dead[wall]])
+    }
+
+    /// Returns the contribution of pressure to the tangent at a state; none without follower
+    /// pressure.
+    pub(in crate::assembly) fn pressure_tangent(
+        &self,
+        load: &Load,
+        u: &[f64],
+    ) -> Option<PressureTangent> {
+        let walls = self.follower_walls(load);
+        let u = u.to_vec();
+        (!walls.is_empty()).then_some(PressureTangent { walls, u })
+    }
+
+    /// Computes y += factor · K v, with K the contribution of pressure to the tangent.
+    pub(in crate::assembly) fn add_pressure_product(
+        &self,
+        at: &PressureTangent,
+        factor: f64,
+        v: &[f64],
+        y: &mut [f64],
+    ) {
+        for wall in &at.walls {
+            let parts = self.integrate_over_wall(wall, [&at.u, v], |[moved, v], point| {
+                let blocks = volume_blocks(&sum(&wall.at_rest(point), &moved), -wall.follower);
+                (0.0, product(&blocks, &v))
+            });
+            self.add_wall_forces(wall, &parts, factor, y);
+        }
+    }
+
+    /// Adds the contribution of pressure to the tangent; `rotations` as in the axial kernel
+    /// [`tangent`](super::axial::tangent).
+    pub(in crate::assembly) fn add_pressure_tangent(
+        &self,
+        load: &Load,
+        u: &[f64],
+        rotations: &[Vec<Vec<Rotation>>],
+        matrix: &mut BlockBanded,
+    ) {
+        for wall in self.follower_walls(load) {
+            let index = |i: usize, ring: usize| (wall.point * 3 + i) * self.sector.rings + ring;
+            for along @ (batch, lane) in self.elements_along() {
+                for qz in 0..=self.degree() {
+                    let rings = self.rings_along(&wall, u, along, qz);
+                    for element in 0..self.sector.rings {
+                        for (point, rotations) in self.around.iter().zip(rotations) {
+                            let moved = self.surface_displacement(&rings, element, point);
+                            let weight = batch.weight[qz].0[lane] * point.weight;
+                            let position = sum(&wall.at_rest(point), &moved);
+                            let blocks = volume_blocks(&position, -wall.follower * weight);
+                            for set in rotations {
+                                for (r, row) in set.iter().enumerate() {
+                                    for (s, column) in set.iter().enumerate() {
+                                        let [r, s] = [r, s].map(|r| self.sector.ring(element, r));
+                                        let rotated = rotated(&blocks, row, column);
+                                        self.add_along_tube(
+                                            along,
+                                            qz,
+                                            &rotated,
+                                            |a, b, i, j, x| {
+                                                if a >= b {
+                                                    let first = batch.first + lane;
+                                                    let (row, column) = (index(i, r), index(j, s));
+                                                    matrix.add_at(first + b, a - b, row, column, x);
+                                                }
+                                            },
+                                        );
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Returns the walls under any pressure.
+    fn loaded_walls(&self, load: &Load) -> Vec<LoadedWall> {
+        let [inner, outer] = load.pressures;
+        let walls = [
+            LoadedWall {
+                point: 0,
+                radius: self.tube.inner_radius(),
+                follower: inner.follower,
+                dead: inner.dead,
+            },
+            LoadedWall {
+                point: self.wall.functions() - 1,
+                radius: Tube::OUTER_RADIUS,
+                follower: -outer.follower,
+                dead: -outer.dead,
+            },
+        ];
+        let pressed = |wall: &LoadedWall| wall.follower != 0.0 || wall.dead != 0.0;
+        walls.into_iter().filter(pressed).collect()
+    }
+
+    fn follower_walls(&self, load: &Load) -> Vec<LoadedWall> {
+        let mut walls = self.loaded_walls(load);
+        walls.retain(|wall| wall.follower != 0.0);
+        walls
+    }
+
+    fn elements_along(&self) -> impl Iterator<Item = Along<'_>> {
+        self.batches
+            .iter()
+            .flat_map(|batch| (0..batch.elements).map(move |lane| (batch, lane)))
+    }
+
+    /// Integrates over the elements around a wall, for each element along the tube. `of` returns
+    /// the potential at a point, and its derivatives, from the displacement fields there.
+    fn integrate_over_wall<const F: usize>(
+        &self,
+        wall: &LoadedWall,
+        fields: [&[f64]; F],
+        of: impl Fn([Surface; F], &CircumferentialPoint) -> (f64, Surface) + Sync,
+    ) -> Vec<WallForces> {
+        let (n, k, local_rings) = (
+            self.degree() + 1,
+            self.sector.rings,
+            self.sector.local_rings(),
+        );
+        let elements: Vec<Along<'_>> = self.elements_along().collect();
+        let part = |&along: &Along<'_>| {
+            let (batch, lane) = along;
+            let mut potential = 0.0;
+            // Per element around, row and local ring.
+            let mut forces = vec![[0.0; 3]; k * n * local_rings];
+            for qz in 0..n {
+                let rings = fields.map(|field| self.rings_along(wall, field, along, qz));
+                for (element, forces) in forces.chunks_exact_mut(n * local_rings).enumerate() {
+                    // Per local ring: forces on the value and on the slope along.
+                    let mut ring_forces = vec![[[0.0; 3]; 2]; local_rings];
+                    for point in &self.around {
+                        let weight = batch.weight[qz].0[lane] * point.weight;
+                        let fields = std::array::from_fn(|f| {
+                            self.surface_displacement(&rings[f], element, point)
+                        });
+                        let (density, slopes) = of(fields, point);
+                        potential += weight * density;
+                        let [zeta, s, value] = slopes.map(|v| v.map(|x| weight * x));
+                        for (ring, f) in point.ring_values.iter().zip(&mut ring_forces) {
+                            f[0] = to_ring_frame(ring, 1, s, to_ring_frame(ring, 0, value, f[0]));
+                            f[1] = to_ring_frame(ring, 0, zeta, f[1]);
+                        }
+                    }
+                    for (a, forces) in forces.chunks_exact_mut(local_rings).enumerate() {
+                        let (value, slope) = self.along(along, qz, a);
+                        for (force, [on_value, on_slope]) in forces.iter_mut().zip(&ring_forces) {
+                            for i in 0..3 {
+                                force[i] += value * on_value[i] + slope * on_slope[i];
+                            }
+                        }
+                    }
+                }
+            }
+            // Ring by ring, so that every ring sums its elements in the same order.
+            let mut force = vec![0.0; n * 3 * k];
+            for (a, force) in force.chunks_exact_mut(3 * k).enumerate() {
+                for (at, force) in force.iter_mut().enumerate() {
+                    let (i, ring) = (at / k, at % k);
+                    for r in 0..local_rings {
+                        let element = (ring + k - r) % k;
+                        *force += forces[(element * n + a) * local_rings + r][i];
+                    }
+                }
+            }
+            WallForces {
+                potential,
+                squares: forces.as_flattened().iter().map(|x| x * x).sum(),
+                force,
+            }
+        };
+        elements.par_iter().map(part).collect()
+    }
+
+    /// Adds forces on a wall to the vector of all unknowns.
+    fn add_wall_forces(&self, wall: &LoadedWall, parts: &[WallForces], factor: f64, y: &mut [f64]) {
+        let (m, row) = (self.row_size(), 3 * self.sector.rings);
+        for (first, part) in parts.iter().enumerate() {
+            for (a, force) in part.force.chunks_exact(row).enumerate() {
+                let to = &mut y[(first + a) * m + wall.point * row..][..row];
+                for (y, x) in to.iter_mut().zip(force) {
+                    *y += factor * x;
+                }
+            }
+        }
+    }
+
+    /// Returns value and slope along the tube of function `a` of an element.
+    fn along(&self, (batch, lane): Along<'_>, qz: usize, a: usize) -> (f64, f64) {
+        let at = qz * (self.degree() + 1) + a;
+        (batch.value[at].0[lane], batch.slope[at].0[lane])
+    }
+
+    /// Returns the displacement of the rings of a wall, and its slope along, at a point along the
+    /// tube.
+    fn rings_along(
+        &self,
+        wall: &LoadedWall,
+        u: &[f64],
+        along: Along<'_>,
+        qz: usize,
+    ) -> Vec<[Vector<f64>; 2]> {
+        let (m, k) = (self.row_size(), self.sector.rings);
+        let mut rings = vec![[[0.0; 3]; 2]; k];
+        for a in 0..=self.degree() {
+            let (value, slope) = self.along(along, qz, a);
+            let row = &u[(along.0.first + along.1 + a) * m + wall.point * 3 * k..][..3 * k];
+            for (j, ring) in rings.iter_mut().enumerate() {
+                for i in 0..3 {
+                    ring[0][i] += value * row[i * k + j];
+                    ring[1][i] += slope * row[i * k + j];
+                }
+            }
+        }
+        rings
+    }
+
+    /// Returns the displacement at a point of an element around, and its slopes.
+    fn surface_displacement(
+        &self,
+        rings: &[[Vector<f64>; 2]],
+        element: usize,
+        point: &CircumferentialPoint,
+    ) -> Surface {
+        let mut surface = [[0.0; 3]; 3];
+        for (r, ring) in point.ring_values.iter().enumerate() {
+            let [value, along] = rings[self.sector.ring(element, r)];
+            surface[0] = to_element_frame(ring, 0, along, surface[0]);
+            surface[1] = to_element_frame(ring, 1, value, surface[1]);
+            surface[2] = to_element_frame(ring, 0, value, surface[2]);
+        }
+        surface
+    }
+
+    /// Calls `add` with φ_α(a) φ_β(b) T_αβ, summed over the slopes α and β, for all rows a and b of
+    /// an element.
+    fn add_along_tube(
+        &self,
+        along: Along<'_>,
+        qz: usize,
+        rotated: &[[Block<f64>; 3]; 3],
+        mut add: impl FnMut(usize, usize, usize, usize, f64),
+    ) {
+        let n = self.degree() + 1;
+        // N′ for the slope over ζ, N for the slope over s and the value.
+        let functions = |a: usize| {
+            let (value, slope) = self.along(along, qz, a);
+            [slope, value, value]
+        };
+        for a in 0..n {
+            for b in 0..n {
+                let (row, column) = (functions(a), functions(b));
+                for i in 0..3 {
+                    for j in 0..3 {
+                        let mut x = 0.0;
+                        for alpha in 0..3 {
+                            for beta in 0..3 {
+                                x += row[alpha] * column[beta] * rotated[alpha][beta][i][j];
+                            }
+                        }
+                        add(a, b, i, j, x);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl LoadedWall {
+    /// Returns the position at rest across the axis, and its slopes.
+    fn at_rest(&self, point: &CircumferentialPoint) -> Surface {
+        let across = |(re, im): (f64, f64)| [0.0, self.radius * re, self.radius * im];
+        [
+            [1.0, 0.0, 0.0],
+            across(point.circle_slope),
+            across(point.circle),
+        ]
+    }
+
+    /// Returns the potential of the pressures at a point that has moved, per dζ ds.
+    fn potential(&self, moved: &Surface, point: &CircumferentialPoint) -> f64 {
+        let area = self.area_at_rest(point);
+        let dead = moved[2][1] * area[1] + moved[2][2] * area[2];
+        -self.follower * volume_change(&self.at_rest(point), moved) - self.dead * dead
+    }
+
+    /// Returns the outward element of area at rest, per dζ ds.
+    fn area_at_rest(&self, point: &CircumferentialPoint) -> Vector<f64> {
+        let (re, im) = point.circle_slope;
+        [0.0, self.radius * im, -self.radius * re]
+    }
+}
+
+/// Returns blocks rotated to two rings.
+fn rotated(blocks: &[Block<f64>; 6], row: &Rotation, column: &Rotation) -> [[Block<f64>; 3]; 3] {
+    let mut rotated = [[[[0.0; 3]; 3]; 3]; 3];
+    add_rotated(&mut rotated, blocks, row, column, false);
+    rotated
+}

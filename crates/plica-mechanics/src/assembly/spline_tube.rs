@@ -1,0 +1,243 @@
+//! The discretised tube: its bases, the numbering of its unknowns, and its boundary conditions.
+
+use super::boundary_conditions::{BoundaryConditions, permitted_by, rigid_motions_in_harmonic};
+use super::circumferential::PaddedRings;
+use super::imperfection::geometry;
+use super::stress_free::StressFreeStretch;
+use super::tables::{AxialBatch, CircumferentialPoint, Layer, bases, full_rules, reduced_rules};
+use crate::material::Material;
+use crate::rings::Sector;
+use crate::spline::{Basis, Circle, gauss_legendre};
+use crate::tube::{Integration, Load, Mesh, Tube};
+use std::sync::Arc;
+
+/// A tube discretised by splines.
+///
+/// Unknowns are numbered by row of control points along the tube, then by point through the wall,
+/// component (axial, radial, circumferential), and ring of the sector.
+#[derive(Clone, Debug)]
+pub struct SplineTube {
+    /// The tube.
+    pub tube: Tube,
+    /// The cyclic sector: its control rings and their number around the tube.
+    pub sector: Sector,
+    /// The spline circle.
+    pub circle: Circle,
+    /// Basis along the tube, over z.
+    pub axial: Basis,
+    /// Basis through the wall, over the reference radius R.
+    pub wall: Basis,
+    pub(super) boundary_conditions: BoundaryConditions,
+    /// Boundary conditions of a sector of one ring.
+    pub(super) ring_boundary_conditions: BoundaryConditions,
+    pub(super) batches: Vec<AxialBatch>,
+    pub(super) layers: Vec<Layer>,
+    pub(super) around: Vec<CircumferentialPoint>,
+    pub(super) padded_rings: PaddedRings,
+    pub(super) stress_free_shape: Option<Arc<StressFreeShape>>,
+    /// Law integrated at the points of `layers`: the law of the wall, or its shear part.
+    pub(super) law: Material,
+    /// The volumetric part of the law, if it is integrated at fewer points.
+    pub(super) volumetric: Option<Box<SplineTube>>,
+}
+
+/// Stress-free shape of an imperfect wall.
+#[derive(Clone, Debug)]
+pub(super) struct StressFreeShape {
+    /// δ, from the perfect tube to the stress-free shape: control values numbered like the
+    /// unknowns.
+    pub(super) displacement: Vec<f64>,
+    /// The shape at the quadrature points, by axial batch: in the order of the axial kernels for
+    /// one ring, else one circumferential batch after the other.
+    pub(super) points: Vec<Vec<StressFreeStretch>>,
+}
+
+impl SplineTube {
+    /// Discretises a tube by a mesh; `rings` of the mesh's rings form the cyclic sector. Panics
+    /// unless the degree is from 1 to 5, and with reduced integration 3 or 5 and the law not a
+    /// custom one.
+    pub fn new(tube: &Tube, mesh: &Mesh, rings: usize) -> Self {
+        let p = mesh.degree;
+        assert!((1..=5).contains(&p), "degree {p} is not between 1 and 5");
+        let around = mesh.elements()[1];
+        let sector = Sector::new(p, around, rings);
+        let circle = Circle::new(p, around);
+        let [axial, wall] = bases(tube, mesh);
+        let displacement = geometry(tube, &tube.imperfections, &sector, [&axial, &wall]);
+        let control_radii: Vec<f64> = wall
+            .greville()
+            .iter()
+            .map(|r| r * circle.control_radius)
+            .collect();
+        let control_points = [axial.greville(), control_radii];
+        let boundary_conditions =
+            BoundaryConditions::new(tube, &sector, &control_points, displacement.as_deref());
+        let ring = Sector::new(p, around, 1);
+        let of_ring = displacement.as_deref().map(|u| first_ring(u, rings));
+        let ring_boundary_conditions =
+            BoundaryConditions::new(tube, &ring, &control_points, of_ring.as_deref());
+        let rule = gauss_legendre(p + 1);
+        let spline = Self {
+            batches: AxialBatch::all(&axial, &full_rules(&axial)),
+            layers: Layer::all(&wall, &full_rules(&wall)),
+            around: CircumferentialPoint::all(&sector, &circle, &rule),
+            padded_rings: PaddedRings::new(sector.rings),
+            tube: tube.clone(),
+            sector,
+            circle,
+            axial,
+            wall,
+            boundary_conditions,
+            ring_boundary_conditions,
+            stress_free_shape: None,
+            law: tube.material.clone(),
+            volumetric: None,
+        };
+        let spline = match displacement {
+            Some(displacement) => spline.with_stress_free_shape(displacement),
+            None => spline,
+        };
+        match mesh.volumetric {
+            Integration::Full => spline,
+            Integration::Reduced => spline.split_volumetric(),
+        }
+    }
+
+    /// Returns the tube with the volumetric part of the law integrated at fewer points through the
+    /// wall.
+    fn split_volumetric(self) -> Self {
+        let [shear, volume] = self
+            .law
+            .parts()
+            .expect("reduced integration needs a law with volumetric part");
+        let volumetric = Self {
+            layers: Layer::all(&self.wall, &reduced_rules(&self.wall)),
+            law: volume,
+            stress_free_shape: None,
+            ..self.clone()
+        };
+        let volumetric = match &self.stress_free_shape {
+            Some(shape) => volumetric.with_stress_free_shape(shape.displacement.clone()),
+            None => volumetric,
+        };
+        Self {
+            law: shear,
+            volumetric: Some(Box::new(volumetric)),
+            ..self
+        }
+    }
+
+    /// Returns the axisymmetric tube: a sector of one ring. If the geometry varies around the tube,
+    /// that of the first ring applies all around.
+    pub fn axisymmetric(&self) -> Self {
+        let sector = Sector::new(self.degree(), self.sector.around, 1);
+        let rule: Vec<_> = self.around.iter().map(|at| (at.s, at.weight)).collect();
+        let ring = Self {
+            around: CircumferentialPoint::all(&sector, &self.circle, &rule),
+            padded_rings: PaddedRings::new(1),
+            boundary_conditions: self.ring_boundary_conditions.clone(),
+            sector,
+            stress_free_shape: None,
+            volumetric: self
+                .volumetric
+                .as_ref()
+                .map(|volume| Box::new(volume.axisymmetric())),
+            ..self.clone()
+        };
+        match &self.stress_free_shape {
+            Some(shape) => {
+                ring.with_stress_free_shape(first_ring(&shape.displacement, self.sector.rings))
+            }
+            None => ring,
+        }
+    }
+
+    /// Returns the degree p.
+    pub fn degree(&self) -> usize {
+        self.axial.degree()
+    }
+
+    /// Returns the number of unknowns in a row of control points.
+    pub fn row_size(&self) -> usize {
+        self.wall.functions() * 3 * self.sector.rings
+    }
+
+    /// Returns control values, numbered like the unknowns, from a function of a control point's z,
+    /// reference radius and ring that returns (axial, radial, circumferential).
+    pub fn control_values_from(&self, of: impl Fn(f64, f64, usize) -> [f64; 3]) -> Vec<f64> {
+        let mut values = Vec::with_capacity(self.unknowns());
+        for z in self.axial.greville() {
+            for r in self.wall.greville() {
+                let point: Vec<[f64; 3]> =
+                    (0..self.sector.rings).map(|ring| of(z, r, ring)).collect();
+                for i in 0..3 {
+                    values.extend(point.iter().map(|u| u[i]));
+                }
+            }
+        }
+        values
+    }
+
+    /// Returns the number of unknowns of the sector, prescribed ones included.
+    pub fn unknowns(&self) -> usize {
+        self.axial.functions() * self.row_size()
+    }
+
+    /// Returns for every unknown whether it is prescribed: at the ends, and for a sector of one
+    /// ring by rigid-body constraints (for more rings see
+    /// `SplineTube::project_out_constraints`).
+    pub fn prescribed(&self) -> &[bool] {
+        &self.boundary_conditions.prescribed
+    }
+
+    /// Projects `u` orthogonally onto the displacements that satisfy the rigid-body constraints of
+    /// a sector of many rings. For each rigid motion that the ends permit, one unknown of a ring
+    /// has no mean over the rings (motion along and about z), or no cosine and sine (two shifts,
+    /// two tilts). Leaves `u` unchanged for one ring, whose constrained unknowns are prescribed.
+    pub fn project_out_constraints(&self, u: &mut [f64]) {
+        self.boundary_conditions.project_out_constraints(u);
+    }
+
+    /// Writes the values that the ends prescribe under a load into `u`.
+    pub fn apply_prescribed(&self, load: &Load, u: &mut [f64]) {
+        self.boundary_conditions.apply_prescribed(load, u);
+    }
+
+    /// Returns for every unknown of circumferential harmonic n of the tube whether the ends or a
+    /// rigid-body constraint prescribe it.
+    pub fn prescribed_in_harmonic(&self, n: usize) -> Vec<bool> {
+        self.boundary_conditions.prescribed_in_harmonic(n)
+    }
+
+    /// Returns for every unknown of one ring whether an end prescribes it, without rigid-body
+    /// constraints.
+    pub fn prescribed_at_ends(&self) -> Vec<bool> {
+        self.ring_boundary_conditions.prescribed_at_ends()
+    }
+
+    /// Returns the infinitesimal rigid motions of circumferential harmonic n that the ends permit,
+    /// at an axisymmetric state without twist, as displacements like those of
+    /// [`SplineTube::tangent_in_harmonic`].
+    pub fn rigid_motions_in_harmonic(&self, u: &[f64], n: usize) -> Vec<Vec<f64>> {
+        assert!(self.sector.rings == 1);
+        let (rows, points) = (self.axial.greville(), self.wall.greville());
+        let points: Vec<[f64; 2]> = u
+            .chunks_exact(3)
+            .enumerate()
+            .map(|(at, u)| {
+                let (row, point) = (at / points.len(), at % points.len());
+                let radius = points[point] * self.circle.control_radius;
+                [rows[row] + u[0], radius + u[1]]
+            })
+            .collect();
+        permitted_by(
+            rigid_motions_in_harmonic(n, &points),
+            &self.prescribed_at_ends(),
+        )
+    }
+}
+
+/// Returns the unknowns of the first of several rings.
+fn first_ring(u: &[f64], rings: usize) -> Vec<f64> {
+    u.iter().step_by(rings).copied().collect()
+}
