@@ -15,6 +15,7 @@ pub fn short() -> Tube {
         muscles: vec![],
         ends: [Support::Free; 2],
         imperfections: vec![],
+        obstacles: vec![],
     }
 }
 
@@ -56,6 +57,7 @@ pub fn state(plan: &Plan, row: usize) -> SavedState {
         stage: String::new(),
         row,
         along: 0.0,
+        obstacles: vec![],
         muscles: vec![],
         load: plan.tube.rest(),
         layout: plan.layout(),

@@ -36,6 +36,7 @@ fn tube(length: f64, muscles: Vec<Muscle>, ends: Support) -> Tube {
         muscles,
         ends: [ends; 2],
         imperfections: vec![],
+        obstacles: vec![],
     }
 }
 

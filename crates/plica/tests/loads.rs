@@ -18,6 +18,7 @@ fn tube(length: f64, poisson_ratio: f64) -> Tube {
         muscles: vec![],
         ends: [Support::Sliding; 2],
         imperfections: vec![],
+        obstacles: vec![],
     }
 }
 

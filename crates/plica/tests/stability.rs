@@ -20,6 +20,7 @@ fn passive(
         material: Material::NeoHookean(NeoHookean::new(1.0, poisson_ratio)),
         muscles: vec![],
         imperfections: vec![],
+        obstacles: vec![],
         ends: [ends; 2],
     };
     let mesh = Mesh {

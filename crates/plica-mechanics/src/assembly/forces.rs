@@ -19,7 +19,10 @@ pub struct Forces {
     pub energy_ungrown: f64,
     /// Π of the whole tube: W plus the potential of the pressures, zero at rest.
     pub potential: f64,
-    /// R of the sector, in E·D²: ∂Π/∂u_cp of the whole tube over the number of repeats.
+    /// Energy of contact with obstacles, of the whole tube.
+    pub contact: f64,
+    /// R of the sector, in E·D²: the derivative of Π and of the energy of contact by u_cp, of the whole tube, over the number
+    /// of repeats.
     pub residual: Vec<f64>,
     /// Residual scale: root of the sum of squares of the element contributions to R, before they
     /// cancel.
@@ -60,7 +63,7 @@ impl SplineTube {
             }
         }
         forces.potential = forces.energy;
-        self.add_pressure(load, u, &mut forces);
+        self.add_walls(load, u, &mut forces);
         Ok(forces)
     }
 

@@ -26,7 +26,7 @@ impl SplineTube {
         let displacement = displacement.as_deref();
         let (p, size) = (self.degree(), low.row_size());
         matrix.clear();
-        self.add_low_harmonic_pressure(low, load, u, matrix);
+        self.add_low_harmonic_walls(low, load, u, matrix);
         let u = self.padded_rings.pad(u);
         // A few batches at a time, added in their order.
         for batches in low.batches.chunks(4) {

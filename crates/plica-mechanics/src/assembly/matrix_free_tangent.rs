@@ -4,8 +4,8 @@ use super::SplineTube;
 use super::axial::BatchTangent;
 use super::circumferential::{self, AVERAGED, PackedTangentData};
 use super::dispatch::{with_degree, with_law_and_degree};
-use super::pressure::PressureTangent;
 use super::tables::AxialBatch;
+use super::walls::WallTangent;
 use crate::material::Material;
 use crate::matrix::BlockBanded;
 use crate::rings::Circulant;
@@ -20,7 +20,7 @@ pub struct MatrixFreeTangent {
     stretch: Vec<Vec<(Lanes, Lanes)>>,
     /// By batch.
     tangent_data: Vec<PackedTangentData>,
-    pressure: Option<PressureTangent>,
+    walls: Option<WallTangent>,
     /// Tangent of the volumetric part, if it has quadrature points of its own; `average` includes
     /// its average.
     volumetric: Option<Box<MatrixFreeTangent>>,
@@ -33,15 +33,15 @@ impl SplineTube {
     /// The state must not be inverted (see [`SplineTube::forces`]). Stores the tangent data of the law
     /// at every quadrature point, in single precision.
     pub fn linearise(&self, load: &Load, u: &[f64], tangent: &mut MatrixFreeTangent) {
-        tangent.pressure = self.pressure_tangent(load, u);
+        tangent.walls = self.wall_tangent(load, u);
         self.linearise_elastic(load, u, tangent);
         if let Some(part) = &self.volumetric {
             let volumetric = tangent.volumetric.get_or_insert_default();
             part.linearise_elastic(load, u, volumetric);
             tangent.average.add(&volumetric.average);
         }
-        if let Some(pressure) = &tangent.pressure {
-            self.add_average_pressure(pressure, &mut tangent.average);
+        if let Some(walls) = &tangent.walls {
+            self.add_average_walls(walls, &mut tangent.average);
         }
     }
 
@@ -98,8 +98,8 @@ impl SplineTube {
         v: &[f64],
         y: &mut [f64],
     ) {
-        if let Some(pressure) = &at.pressure {
-            self.add_pressure_product(pressure, factor, v, y);
+        if let Some(walls) = &at.walls {
+            self.add_wall_product(walls, factor, v, y);
         }
         let v = self.padded_rings.pad(v);
         self.add_elastic_product(at, factor, &v, y);

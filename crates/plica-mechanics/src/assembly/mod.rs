@@ -7,7 +7,7 @@
 //! - the residual  R = ∂W/∂u_cp = ∫ ∂N : P Fp⁻ᵀ det Fp dV₀;
 //! - the tangent   K = ∂²W/∂u_cp² = ∫ ∂N : A : ∂N det Fp dV₀;
 //!
-//! and adds the contributions of pressure on the walls (`pressure`).
+//! and adds the contributions of pressure on the walls, and of their contact with obstacles (`walls`).
 //!
 //! The basis is a tensor product of splines along the tube, through the wall and around it. Every
 //! element around the tube is the same element, rotated, so each element works in a frame of its
@@ -31,6 +31,7 @@
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
 mod axial;
+mod barrier;
 mod batch_input;
 mod blocks;
 mod boundary_conditions;
@@ -46,7 +47,6 @@ mod low_harmonics;
 mod matrix_free_tangent;
 mod place;
 mod positions;
-mod pressure;
 mod reference;
 mod ring_damping;
 mod sample;
@@ -57,7 +57,9 @@ mod tables;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod walls;
 
+pub use barrier::{Barrier, BarrierJet};
 pub use forces::{Forces, Inverted};
 pub use low_harmonics::LowHarmonics;
 pub use matrix_free_tangent::MatrixFreeTangent;
@@ -67,3 +69,4 @@ pub use ring_damping::RingDamping;
 pub use sample::{Point, Sample};
 pub use spline_tube::SplineTube;
 pub use surface::SurfacePoint;
+pub use walls::ObstacleContact;

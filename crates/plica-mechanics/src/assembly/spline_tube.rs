@@ -1,5 +1,6 @@
 //! The discretised tube: its bases, the numbering of its unknowns, and its boundary conditions.
 
+use super::barrier::Barrier;
 use super::boundary_conditions::{BoundaryConditions, permitted_by, rigid_motions_in_harmonic};
 use super::circumferential::PaddedRings;
 use super::imperfection::geometry;
@@ -39,6 +40,8 @@ pub struct SplineTube {
     pub(super) law: Material,
     /// The volumetric part of the law, if it is integrated at fewer points.
     pub(super) volumetric: Option<Box<SplineTube>>,
+    /// Barrier of contact with obstacles.
+    pub(super) barrier: Barrier,
 }
 
 /// Stress-free shape of an imperfect wall.
@@ -82,6 +85,7 @@ impl SplineTube {
             layers: Layer::all(&wall, &full_rules(&wall)),
             around: CircumferentialPoint::all(&sector, &circle, &rule),
             padded_rings: PaddedRings::new(sector.rings),
+            barrier: Barrier::of_mesh(&axial),
             tube: tube.clone(),
             sector,
             circle,
@@ -150,6 +154,16 @@ impl SplineTube {
             }
             None => ring,
         }
+    }
+
+    /// Returns the same tube with another barrier of contact with obstacles.
+    pub fn with_barrier(self, barrier: Barrier) -> Self {
+        Self { barrier, ..self }
+    }
+
+    /// Returns the barrier of contact with obstacles.
+    pub fn barrier(&self) -> &Barrier {
+        &self.barrier
     }
 
     /// Returns the degree p.

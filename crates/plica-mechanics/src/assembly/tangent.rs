@@ -52,7 +52,7 @@ impl SplineTube {
         if let Some(volume) = &self.volumetric {
             volume.add_elastic_tangent(load, u, &all(volume), &mut matrix);
         }
-        self.add_pressure_tangent(load, u, &own, &mut matrix);
+        self.add_wall_tangent(load, u, &own, &mut matrix);
         matrix
     }
 

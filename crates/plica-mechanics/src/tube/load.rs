@@ -1,4 +1,6 @@
-//! Loads of a tube: targets of the muscles, displacements of the ends, pressures on the walls.
+//! Loads of a tube: targets of the muscles, displacements of the ends, pressures on the walls, placements of obstacles.
+
+use super::Placement;
 
 /// A load of a tube.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,6 +11,8 @@ pub struct Load {
     pub ends: [EndMotion; 2],
     /// Pressure on the inner wall, acting outwards, and on the outer wall, acting inwards.
     pub pressures: [Pressure; 2],
+    /// Placement of each obstacle of the tube, in the order of the tube.
+    pub obstacles: Vec<Placement>,
 }
 
 /// Prescribed motion of a supported end.
@@ -42,6 +46,10 @@ impl Load {
             follower: mix(self.pressures[i].follower, other.pressures[i].follower),
             dead: mix(self.pressures[i].dead, other.pressures[i].dead),
         };
+        let placement = |(a, b): (&Placement, &Placement)| Placement {
+            radius: mix(a.radius, b.radius),
+            position: std::array::from_fn(|i| mix(a.position[i], b.position[i])),
+        };
         Self {
             muscles: self
                 .muscles
@@ -51,6 +59,12 @@ impl Load {
                 .collect(),
             ends: [end(0), end(1)],
             pressures: [pressure(0), pressure(1)],
+            obstacles: self
+                .obstacles
+                .iter()
+                .zip(&other.obstacles)
+                .map(placement)
+                .collect(),
         }
     }
 }
@@ -71,6 +85,10 @@ mod tests {
                 follower: s * x,
                 dead: 10.0 * s * x,
             }),
+            obstacles: vec![Placement {
+                radius: 7.0 * x,
+                position: [8.0, 9.0, 10.0].map(|s| s * x),
+            }],
         };
         assert_eq!(load(1.0).towards(&load(3.0), 0.25), load(1.5));
         assert_eq!(load(0.1).towards(&load(0.3), 0.0), load(0.1));

@@ -6,11 +6,13 @@
 mod imperfection;
 mod load;
 mod mesh;
+mod obstacle;
 mod random;
 
 pub use imperfection::{Axial, EndDirection, Imperfection, Mode, Part, Shape, Wave};
 pub use load::{EndMotion, Load, Pressure};
 pub use mesh::{Integration, Mesh, Symmetry};
+pub use obstacle::{Distance, Obstacle, ObstacleShape, Placement, turned};
 pub use random::Random;
 
 use crate::activation::{Direction, Muscle};
@@ -31,6 +33,8 @@ pub struct Tube {
     pub ends: [Support; 2],
     /// Imperfections; they add up.
     pub imperfections: Vec<Imperfection>,
+    /// Rigid obstacles that the walls may touch.
+    pub obstacles: Vec<Obstacle>,
 }
 
 /// One end of the tube.
@@ -62,12 +66,18 @@ impl Tube {
         Self::OUTER_RADIUS - self.thickness
     }
 
-    /// Returns the load at rest: all muscles at ratio one, no displacement of the ends, no pressure.
+    /// Returns the load at rest: all muscles at ratio one, no displacement of the ends, no pressure, obstacles at their
+    /// first placement.
     pub fn rest(&self) -> Load {
         Load {
             muscles: vec![1.0; self.muscles.len()],
             ends: [EndMotion::default(); 2],
             pressures: [Pressure::default(); 2],
+            obstacles: self
+                .obstacles
+                .iter()
+                .map(|obstacle| obstacle.rest)
+                .collect(),
         }
     }
 
@@ -167,6 +177,7 @@ mod tests {
                 profile: Profile::RaisedCosine,
             }],
             ends: [Support::Fixed; 2],
+            obstacles: vec![],
             imperfections: vec![Imperfection {
                 of: Part::Muscle(0),
                 amplitude: 0.1,

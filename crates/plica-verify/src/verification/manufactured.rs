@@ -58,6 +58,7 @@ fn tube() -> Tube {
         muscles: vec![muscle(Direction::Circular), muscle(Direction::Longitudinal)],
         ends: [Support::Fixed; 2],
         imperfections: vec![],
+        obstacles: vec![],
     }
 }
 

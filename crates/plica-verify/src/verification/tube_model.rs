@@ -40,6 +40,7 @@ impl TubeModel {
             muscles: vec![],
             ends: [Support::Sliding; 2],
             imperfections: vec![],
+            obstacles: vec![],
         };
         Self {
             tube,

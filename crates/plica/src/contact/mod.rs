@@ -15,7 +15,6 @@
 //! Sources: barrier and steps, incremental potential contact (Li et al. 2020, 2021); local minima that face each other,
 //! the geometric contact potential (doi 10.1145/3731142).
 
-mod barrier;
 mod bezier;
 mod boxes;
 mod curve;
@@ -27,7 +26,7 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-pub use barrier::Barrier;
+pub use crate::assembly::Barrier;
 pub use curve::Face;
 pub use report::{ContactReport, FaceContact};
 
@@ -35,12 +34,6 @@ use crate::assembly::SplineTube;
 use curve::FaceCurve;
 use pairs::{FaceQuadrature, Pair, pairs};
 use std::f64::consts::TAU;
-
-/// Range of the barrier, in smallest axial elements at rest.
-const RANGE: f64 = 0.25;
-
-/// Stiffness of the barrier, in E.
-const STIFFNESS: f64 = 0.1;
 
 /// Contact of a tube of one ring, without twist, with itself.
 #[derive(Clone, Debug)]
@@ -78,7 +71,6 @@ impl SelfContact {
                 to - from
             })
             .collect();
-        let smallest = lengths.iter().fold(f64::INFINITY, |least, l| least.min(*l));
         let repeats = tube.sector.repeats();
         let face = |face: Face| {
             let curve = FaceCurve::new(tube, face);
@@ -87,10 +79,7 @@ impl SelfContact {
             (curve, quadrature)
         };
         Self {
-            barrier: Barrier {
-                range: RANGE * smallest,
-                stiffness: STIFFNESS,
-            },
+            barrier: *tube.barrier(),
             faces: vec![face(Face::Outer), face(Face::Inner)],
             repeats,
         }

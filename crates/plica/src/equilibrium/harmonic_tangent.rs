@@ -414,6 +414,7 @@ mod tests {
             muscles: vec![],
             ends: [Support::Fixed; 2],
             imperfections: vec![],
+            obstacles: vec![],
         };
         let mesh = Mesh {
             axial: 8,

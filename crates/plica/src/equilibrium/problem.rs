@@ -137,6 +137,7 @@ impl Equilibrium for TubeProblem {
     }
     fn forces(&self, load: &Load, u: &[f64]) -> Result<ResidualEvaluation, Inverted> {
         let mut forces = self.tube.forces(load, u)?;
+        forces.potential += forces.contact;
         if let Some(contact) = &self.contact {
             let of_contact = contact.add_forces(&contact.at(u), &mut forces.residual);
             forces.potential += self.tube.sector.repeats() * of_contact.energy;
@@ -245,6 +246,7 @@ mod tests {
             material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
             muscles: vec![],
             ends: [Support::Sliding; 2],
+            obstacles: vec![],
             imperfections: vec![Imperfection {
                 of: Part::Geometry,
                 amplitude: 3e-3,

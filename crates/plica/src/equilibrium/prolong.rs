@@ -155,6 +155,7 @@ mod tests {
             material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
             muscles: vec![],
             imperfections: vec![],
+            obstacles: vec![],
             ends: [Support::Free; 2],
         }
     }

@@ -197,6 +197,7 @@ mod tests {
             muscles: vec![],
             ends: [Support::Fixed, Support::Sliding],
             imperfections: vec![],
+            obstacles: vec![],
         };
         let mesh = Mesh {
             axial: 8,

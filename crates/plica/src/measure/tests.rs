@@ -14,6 +14,7 @@ fn tube(rings: usize) -> SplineTube {
         muscles: vec![],
         ends: [Support::Free; 2],
         imperfections: vec![],
+        obstacles: vec![],
     };
     let mesh = Mesh {
         axial: 15,

@@ -336,11 +336,13 @@ impl<'a> Run<'a> {
 
     fn saved(&self, state: &State) -> SavedState {
         let muscles = self.plan.tube.muscles.iter();
+        let obstacles = self.plan.tube.obstacles.iter();
         SavedState {
             stage: state.stage.clone(),
             row: state.number,
             along: state.stage_fraction,
             muscles: muscles.map(|m| (m.name.clone(), m.direction)).collect(),
+            obstacles: obstacles.map(|obstacle| obstacle.name.clone()).collect(),
             load: state.load.clone(),
             layout: self.plan.layout(),
             u: state.unknowns.clone(),

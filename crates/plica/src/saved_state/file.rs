@@ -200,7 +200,7 @@ mod tests {
     use crate::activation::Direction;
     use crate::saved_state::Layout;
     use crate::spline::Refinement;
-    use crate::tube::{EndMotion, Load, Mesh, Pressure};
+    use crate::tube::{EndMotion, Load, Mesh, Placement, Pressure};
 
     /// A state whose numbers use all their bits.
     fn state() -> SavedState {
@@ -248,7 +248,12 @@ mod tests {
                         dead: -1e-5,
                     },
                 ],
+                obstacles: vec![Placement {
+                    radius: 1.0 / 13.0,
+                    position: [0.1, -1e-300, 1.0 / 17.0],
+                }],
             },
+            obstacles: vec!["a \"ball\"".into()],
             u: (0..layout.unknowns()).map(number).collect(),
             layout,
             arrays: [("velocity".into(), velocity)].into(),

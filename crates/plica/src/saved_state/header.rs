@@ -5,7 +5,7 @@ use super::file::{BLANK, FORMAT};
 use super::{Array, SavedState, SavedStateError};
 use crate::activation::Direction;
 use crate::spline::Refinement;
-use crate::tube::{EndMotion, Load, Mesh, Pressure};
+use crate::tube::{EndMotion, Load, Mesh, Placement, Pressure};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -33,6 +33,16 @@ struct LoadHeader {
     inner_wall: PressureHeader,
     #[serde(default, skip_serializing_if = "PressureHeader::is_none")]
     outer_wall: PressureHeader,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    obstacles: Vec<ObstacleHeader>,
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct ObstacleHeader {
+    name: String,
+    radius: f64,
+    /// (z, x, y).
+    position: [f64; 3],
 }
 
 #[derive(Debug, Deserialize, Serialize)]
@@ -108,6 +118,11 @@ impl SavedState {
             pressure: pressure.follower,
             dead_load: pressure.dead,
         };
+        let obstacle = |(name, placement): (&String, &Placement)| ObstacleHeader {
+            name: name.clone(),
+            radius: placement.radius,
+            position: placement.position,
+        };
         let Layout {
             length,
             thickness,
@@ -137,6 +152,12 @@ impl SavedState {
                 ileum: end(self.load.ends[1]),
                 inner_wall: wall(self.load.pressures[0]),
                 outer_wall: wall(self.load.pressures[1]),
+                obstacles: self
+                    .obstacles
+                    .iter()
+                    .zip(&self.load.obstacles)
+                    .map(obstacle)
+                    .collect(),
             },
             tube: TubeHeader { length, thickness },
             mesh: MeshHeader {
@@ -197,6 +218,11 @@ impl SavedState {
             });
         }
         let muscles = header.load.muscles;
+        let obstacles = header.load.obstacles;
+        let placement = |of: &ObstacleHeader| Placement {
+            radius: of.radius,
+            position: of.position,
+        };
         let direction = |direction| match direction {
             DirectionHeader::Circular => Direction::Circular,
             DirectionHeader::Longitudinal => Direction::Longitudinal,
@@ -209,7 +235,12 @@ impl SavedState {
                 muscles: muscles.iter().map(|m| m.ratio).collect(),
                 ends: [end(header.load.colon), end(header.load.ileum)],
                 pressures: [wall(header.load.inner_wall), wall(header.load.outer_wall)],
+                obstacles: obstacles.iter().map(placement).collect(),
             },
+            obstacles: obstacles
+                .into_iter()
+                .map(|obstacle| obstacle.name)
+                .collect(),
             muscles: muscles
                 .into_iter()
                 .map(|m| (m.name, direction(m.direction)))

@@ -28,6 +28,8 @@ pub struct SavedState {
     pub along: f64,
     /// Name and direction of each muscle, in the order of the load.
     pub muscles: Vec<(String, Direction)>,
+    /// Name of each obstacle, in the order of the load.
+    pub obstacles: Vec<String>,
     /// Its load.
     pub load: Load,
     /// Layout of its unknowns.

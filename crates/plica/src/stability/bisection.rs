@@ -185,6 +185,7 @@ mod tests {
             muscles: vec![],
             ends: [Support::Sliding; 2],
             imperfections: vec![],
+            obstacles: vec![],
         };
         let mesh = Mesh {
             axial: 4,

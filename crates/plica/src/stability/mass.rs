@@ -100,6 +100,7 @@ mod tests {
             material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
             muscles: vec![],
             imperfections: vec![],
+            obstacles: vec![],
             ends: [Support::Fixed; 2],
         };
         let mesh = Mesh {

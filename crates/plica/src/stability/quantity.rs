@@ -119,6 +119,7 @@ mod tests {
                 muscle("b", Direction::Longitudinal),
             ],
             imperfections: vec![],
+            obstacles: vec![],
             ends: [Support::Fixed; 2],
         };
         let to = |muscles: [f64; 3], moved: f64| {

@@ -126,6 +126,7 @@ mod tests {
                 follower: sign * x,
                 dead: 10.0 * sign * x,
             }),
+            obstacles: vec![],
         };
         let found = LimitPoint::between(&plan, &load(0.1), &load(0.2));
         let texts: Vec<String> = found.iter().map(LimitPoint::to_string).collect();

@@ -78,6 +78,7 @@ pub fn inverted_by_imperfections(tube: &Tube, mesh: &Mesh, symmetry: Symmetry) -
 fn perfect(tube: &Tube) -> Tube {
     Tube {
         imperfections: vec![],
+        obstacles: vec![],
         ..tube.clone()
     }
 }

@@ -170,6 +170,7 @@ mod tests {
                 },
             ],
             pressures: [pressure(0.01, 0.002), pressure(-0.005, 0.003)],
+            obstacles: vec![],
         };
         let back = Load {
             muscles: vec![0.7, 1.0],

@@ -3,10 +3,10 @@
 use crate::assembly::tests::{
     TubeAndLoad, direction, dot, largest, linearised, mesh, repeated, tube_and_load, unknowns, wavy,
 };
-use crate::assembly::{LowHarmonics, SplineTube};
+use crate::assembly::{Barrier, LowHarmonics, SplineTube};
 use crate::matrix::{BlockBanded, lowest_eigenpairs};
 use crate::rings::{HarmonicSolver, LowHarmonicCorrection, Transform};
-use crate::tube::{Support, Tube};
+use crate::tube::{Load, Obstacle, ObstacleShape, Placement, Support, Tube};
 use std::f64::consts::TAU;
 
 /// Degrees, elements, and rings of the sector: below, at and above a vector of eight.
@@ -208,6 +208,39 @@ fn low_harmonic_tangent_is_the_projected_tangent() {
         assert!(
             (found / exact - 1.0).abs() < 0.005,
             "pressure, {rings}: {found} {exact}"
+        );
+
+        // Contribution of contact with a sheath and a ball.
+        let mut touching = tube.clone().with_barrier(Barrier {
+            range: 0.5,
+            stiffness: 0.5,
+        });
+        let obstacle = |shape, radius, position| Obstacle {
+            name: String::new(),
+            shape,
+            rest: Placement { radius, position },
+        };
+        touching.tube.obstacles = vec![
+            obstacle(ObstacleShape::Sheath, 0.7, [0.0; 3]),
+            obstacle(ObstacleShape::Ball, 0.3, [0.8, 0.8, 0.2]),
+        ];
+        let near = Load {
+            obstacles: touching.tube.rest().obstacles,
+            ..load.clone()
+        };
+        let product_of = |load: &Load| {
+            let mut product = vec![0.0; v.len()];
+            let at = linearised(&touching, load, &u);
+            touching.add_tangent_product(&at, 1.0, &v, &mut product);
+            dot(&v, &product)
+        };
+        let mut of_touching = coupled.clone();
+        touching.low_harmonic_tangent(&low, &near, &u, &mut of_touching);
+        let exact = product_of(&near) - product_of(&load);
+        let found = dot(&x, &multiplied(&of_touching, &x)) - dot(&x, &multiplied(&coupled, &x));
+        assert!(
+            (found / exact - 1.0).abs() < 0.01,
+            "contact, {rings}: {found} {exact}"
         );
 
         let damping = tube.ring_damping();

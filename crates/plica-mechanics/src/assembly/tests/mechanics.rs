@@ -16,6 +16,7 @@ fn tube_at_rest_has_exact_radii_and_volume_and_no_residual() {
         muscles: vec![],
         ends: [Support::Fixed; 2],
         imperfections: vec![],
+        obstacles: vec![],
     };
     let spline = SplineTube::new(&tube, &mesh(3, [10, 2, 60]), 1);
     let rest = tube.rest();

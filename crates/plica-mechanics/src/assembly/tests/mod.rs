@@ -43,6 +43,7 @@ pub(in crate::assembly) fn tube_and_load(
         ],
         ends: [Support::Fixed; 2],
         imperfections: vec![],
+        obstacles: vec![],
     };
     let load = Load {
         muscles: vec![0.7, 1.15],

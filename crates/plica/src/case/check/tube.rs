@@ -41,6 +41,7 @@ pub(super) fn tube(case: &Case, problems: &mut Problems) -> Tube {
         muscles: muscles(case, length, problems),
         ends: [case.ends.colon, case.ends.ileum],
         imperfections: vec![],
+        obstacles: vec![],
     }
 }
 

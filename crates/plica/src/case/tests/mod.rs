@@ -131,11 +131,13 @@ fn state() -> SavedState {
         stage: "rest".into(),
         row: 0,
         along: 0.0,
+        obstacles: vec![],
         muscles: vec![],
         load: tube::Load {
             muscles: vec![],
             ends: Default::default(),
             pressures: Default::default(),
+            obstacles: vec![],
         },
         u: vec![0.0; layout.unknowns()],
         layout,

@@ -57,13 +57,18 @@ pub fn volume_blocks([x_z, x_s, x]: &Surface, factor: f64) -> [Block<f64>; 6] {
 
 /// Returns the product of the blocks with the slopes of a displacement.
 pub fn product(blocks: &[Block<f64>; 6], v: &Surface) -> Surface {
-    let (mut out, [_, zs, zv, _, sv, _]) = ([[0.0; 3]; 3], blocks);
+    let (mut out, [_, zs, zv, _, sv, vv]) = ([[0.0; 3]; 3], blocks);
     for (block, alpha, beta) in [(zs, 0, 1), (zv, 0, 2), (sv, 1, 2)] {
         for i in 0..3 {
             for j in 0..3 {
                 out[alpha][i] += block[i][j] * v[beta][j];
                 out[beta][j] += block[i][j] * v[alpha][i];
             }
+        }
+    }
+    for i in 0..3 {
+        for j in 0..3 {
+            out[2][i] += vv[i][j] * v[2][j];
         }
     }
     out

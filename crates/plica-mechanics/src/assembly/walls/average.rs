@@ -1,18 +1,13 @@
-//! Contribution of pressure to the tangent averaged around the tube.
+//! Contribution of the walls to the tangent averaged around the tube.
 
 use super::super::SplineTube;
-use super::volume::{sum, volume_blocks};
-use super::{PressureTangent, rotated};
+use super::{WallPoint, WallTangent, rotated};
 use crate::rings::{Circulant, Rotation};
 
 impl SplineTube {
-    /// Adds the contribution of pressure to the tangent, averaged over the rings (see
+    /// Adds the contribution of the walls to the tangent, averaged over the rings (see
     /// [`offset_blocks`](super::super::circumferential::offset_blocks)).
-    pub(in crate::assembly) fn add_average_pressure(
-        &self,
-        at: &PressureTangent,
-        average: &mut Circulant,
-    ) {
+    pub(in crate::assembly) fn add_average_walls(&self, at: &WallTangent, average: &mut Circulant) {
         let (n, k) = (self.degree() + 1, self.sector.rings);
         let rotations: Vec<Vec<Rotation>> = self
             .around
@@ -37,8 +32,14 @@ impl SplineTube {
                         let mut blocks = [[[0.0; 3]; 3]; 6];
                         for element in 0..k {
                             let moved = self.surface_displacement(&rings, element, point);
-                            let position = sum(&wall.at_rest(point), &moved);
-                            let own = volume_blocks(&position, -wall.follower * weight);
+                            let at = WallPoint {
+                                element,
+                                z: batch.z[qz].0[lane],
+                                around: point,
+                            };
+                            let Some(own) = self.wall_blocks(wall, &moved, &at, weight) else {
+                                continue;
+                            };
                             for (sum, own) in
                                 blocks.as_flattened_mut().iter_mut().zip(own.as_flattened())
                             {

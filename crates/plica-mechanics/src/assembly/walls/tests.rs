@@ -27,7 +27,7 @@ fn alone(tube: &SplineTube, load: &Load, u: &[f64]) -> Forces {
         residual: vec![0.0; u.len()],
         ..Forces::default()
     };
-    tube.add_pressure(load, u, &mut forces);
+    tube.add_walls(load, u, &mut forces);
     forces
 }
 
@@ -161,8 +161,8 @@ fn pressure_tangent_is_the_derivative_of_the_forces() {
         let slope: Vec<f64> = ahead.iter().zip(&behind).map(|(a, b)| a - b).collect();
 
         let mut product = vec![0.0; u.len()];
-        let at = tube.pressure_tangent(&load, &u).unwrap();
-        tube.add_pressure_product(&at, 1.0, &v, &mut product);
+        let at = tube.wall_tangent(&load, &u).unwrap();
+        tube.add_wall_product(&at, 1.0, &v, &mut product);
         let mut assembled = vec![0.0; u.len()];
         tube.tangent(&load, &u)
             .multiply_add(1.0, &v, &mut assembled);
@@ -195,10 +195,10 @@ fn pressure_average_and_harmonic_block_agree_with_the_product() {
     let ring = unknowns_without_twist(&one);
     let u: Vec<f64> = ring.iter().flat_map(|x| [*x; 10]).collect();
     let load = all(&tube);
-    let at = tube.pressure_tangent(&load, &u).unwrap();
+    let at = tube.wall_tangent(&load, &u).unwrap();
     let mut average = linearised(&tube, &tube.tube.rest(), &u).average;
     let free = average.clone();
-    tube.add_average_pressure(&at, &mut average);
+    tube.add_average_walls(&at, &mut average);
     let x = direction(&one);
     for n in 0..=4 {
         let mut wave = vec![0.0; u.len()];
@@ -213,7 +213,7 @@ fn pressure_average_and_harmonic_block_agree_with_the_product() {
             }
         }
         let mut product = vec![0.0; u.len()];
-        tube.add_pressure_product(&at, 1.0, &wave, &mut product);
+        tube.add_wall_product(&at, 1.0, &wave, &mut product);
         let whole = dot(&product, &wave) * if n == 0 { 0.1 } else { 0.2 };
         let form = |matrix: &crate::matrix::BlockBanded| {
             let mut y = vec![0.0; x.len()];
@@ -250,7 +250,7 @@ fn pressure_between_plates_does_no_work_on_rigid_motions() {
     let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 12], 12);
     let u = between_plates(&tube, wavy(&tube));
     let load = pressed(&tube, [follower(0.3), follower(0.7)]);
-    let at = tube.pressure_tangent(&load, &u).unwrap();
+    let at = tube.wall_tangent(&load, &u).unwrap();
     let k = tube.sector.rings;
     let (mut shift, mut turn) = (vec![0.0; u.len()], vec![0.0; u.len()]);
     let radii = tube.wall.greville();
@@ -273,7 +273,7 @@ fn pressure_between_plates_does_no_work_on_rigid_motions() {
     }
     // A shift changes no force.
     let mut product = vec![0.0; u.len()];
-    tube.add_pressure_product(&at, 1.0, &shift, &mut product);
+    tube.add_wall_product(&at, 1.0, &shift, &mut product);
     let m = tube.row_size();
     let axial = |i: usize| (i / k).is_multiple_of(3) && (i < m || i >= u.len() - m);
     for (i, x) in product.iter().enumerate().filter(|(i, _)| !axial(*i)) {

@@ -1,4 +1,4 @@
-//! Pressure on the inner and the outer wall: potential, forces and tangent.
+//! Pressure on the inner and the outer wall, and their contact with obstacles: energy, forces and tangent.
 //!
 //! A follower pressure p acts on the deformed wall, along its normal. Its work is p dV, with V the
 //! volume that the wall encloses; its potential is −p V on the inner wall and +p V on the outer
@@ -20,22 +20,29 @@
 mod average;
 mod low_harmonics;
 #[cfg(test)]
+mod obstacle_tests;
+mod obstacles;
+#[cfg(test)]
 mod tests;
 mod volume;
 
+pub use obstacles::ObstacleContact;
+
 use super::Forces;
 use super::SplineTube;
+use super::barrier::Barrier;
 use super::blocks::{Block, add_rotated};
 use super::kinematics::{Vector, to_element_frame, to_ring_frame};
 use super::tables::{AxialBatch, CircumferentialPoint};
 use crate::matrix::BlockBanded;
 use crate::rings::Rotation;
 use crate::tube::{Load, Pressure, Tube};
+use obstacles::PlacedObstacle;
 use rayon::prelude::*;
 use volume::{Surface, product, sum, volume_blocks, volume_change, volume_slopes};
 
-/// A wall under pressure.
-#[derive(Clone, Copy, Debug)]
+/// A wall under pressure, or near obstacles.
+#[derive(Clone, Debug)]
 pub struct LoadedWall {
     /// Its control point through the wall: there its basis function is one, all others zero.
     point: usize,
@@ -45,31 +52,43 @@ pub struct LoadedWall {
     follower: f64,
     /// Outward dead load.
     dead: f64,
+    obstacles: Vec<PlacedObstacle>,
+    barrier: Barrier,
 }
 
-/// Contribution of pressure to a tangent: the walls under follower pressure, and the state.
+/// Contribution of the walls to a tangent: those under follower pressure or near obstacles, and the state.
 #[derive(Clone, Debug)]
-pub struct PressureTangent {
+pub struct WallTangent {
     walls: Vec<LoadedWall>,
     u: Vec<f64>,
 }
 
 /// Contribution of the elements at one axial position to the forces on a wall.
 struct WallForces {
-    /// Potential of the sector.
-    potential: f64,
+    /// Potential of the pressures and energy of contact, of the sector.
+    energies: [f64; 2],
     /// Sum of the squares of the element contributions.
     squares: f64,
     /// Forces on p + 1 rows of control points, by component and ring.
     force: Vec<f64>,
 }
 
+/// A quadrature point of a wall.
+#[derive(Clone, Copy)]
+struct WallPoint<'a> {
+    /// Element around the sector.
+    element: usize,
+    /// Axial position at rest.
+    z: f64,
+    around: &'a CircumferentialPoint,
+}
+
 /// An element along the tube: axial batch and lane.
 type Along<'a> = (&'a AxialBatch, usize);
 
 impl SplineTube {
-    /// Adds the potential and the forces of pressure to those of a state.
-    pub(in crate::assembly) fn add_pressure(&self, load: &Load, u: &[f64], forces: &mut Forces) {
+    /// Adds energies and forces of pressure and contact with obstacles to those of a state.
+    pub(in crate::assembly) fn add_walls(&self, load: &Load, u: &[f64], forces: &mut Forces) {
         let mut squares = forces.residual_scale * forces.residual_scale;
         for wall in self.loaded_walls(load) {
             let parts = self.integrate_over_wall(&wall, [u], |[moved], point| {
@@ -81,10 +100,20 @@ impl SplineTube {
                 for i in 0..3 {
                     slopes[2][i] -= wall.dead * area[i];
                 }
-                (potential, slopes)
+                let mut contact = 0.0;
+                if let Some(at) = self.contact_with_obstacles(&wall, &position, point.element) {
+                    let area = wall.area(point);
+                    contact = area * at.energy;
+                    for i in 0..3 {
+                        slopes[2][i] += area * at.slope[i];
+                    }
+                }
+                ([potential, contact], slopes)
             });
             for part in &parts {
-                forces.potential += self.sector.repeats() * part.potential;
+                let [potential, contact] = part.energies;
+                forces.potential += self.sector.repeats() * potential;
+                forces.contact += self.sector.repeats() * contact;
                 squares += part.squares;
             }
             self.add_wall_forces(&wall, &parts, 1.0, &mut forces.residual);
@@ -99,13 +128,14 @@ impl SplineTube {
         let [follower, dead] = [unit(1.0, 0.0), unit(0.0, 1.0)].map(|pressure| {
             let load = Load {
                 pressures: [pressure; 2],
+                obstacles: vec![],
                 ..self.tube.rest()
             };
             let work = |wall: &LoadedWall| {
                 let parts = self.integrate_over_wall(wall, [u], |[moved], point| {
-                    (wall.potential(&moved, point), [[0.0; 3]; 3])
+                    ([wall.potential(&moved, point), 0.0], [[0.0; 3]; 3])
                 });
-                let potential: f64 = parts.iter().map(|part| part.potential).sum();
+                let potential: f64 = parts.iter().map(|part| part.energies[0]).sum();
                 -self.sector.repeats() * potential
             };
             let walls = self.loaded_walls(&load);
@@ -114,45 +144,42 @@ impl SplineTube {
         [0, 1].map(|wall| [follower[wall], dead[wall]])
     }
 
-    /// Returns the contribution of pressure to the tangent at a state; none without follower
-    /// pressure.
-    pub(in crate::assembly) fn pressure_tangent(
-        &self,
-        load: &Load,
-        u: &[f64],
-    ) -> Option<PressureTangent> {
-        let walls = self.follower_walls(load);
+    /// Returns the contribution of the walls to the tangent at a state; none without follower
+    /// pressure and obstacles.
+    pub(in crate::assembly) fn wall_tangent(&self, load: &Load, u: &[f64]) -> Option<WallTangent> {
+        let walls = self.walls_with_tangent(load);
         let u = u.to_vec();
-        (!walls.is_empty()).then_some(PressureTangent { walls, u })
+        (!walls.is_empty()).then_some(WallTangent { walls, u })
     }
 
-    /// Computes y += factor · K v, with K the contribution of pressure to the tangent.
-    pub(in crate::assembly) fn add_pressure_product(
+    /// Computes y += factor · K v, with K the contribution of the walls to the tangent.
+    pub(in crate::assembly) fn add_wall_product(
         &self,
-        at: &PressureTangent,
+        at: &WallTangent,
         factor: f64,
         v: &[f64],
         y: &mut [f64],
     ) {
         for wall in &at.walls {
             let parts = self.integrate_over_wall(wall, [&at.u, v], |[moved, v], point| {
-                let blocks = volume_blocks(&sum(&wall.at_rest(point), &moved), -wall.follower);
-                (0.0, product(&blocks, &v))
+                let blocks = self.wall_blocks(wall, &moved, point, 1.0);
+                let nil = [[0.0; 3]; 3];
+                ([0.0; 2], blocks.map_or(nil, |blocks| product(&blocks, &v)))
             });
             self.add_wall_forces(wall, &parts, factor, y);
         }
     }
 
-    /// Adds the contribution of pressure to the tangent; `rotations` as in the axial kernel
+    /// Adds the contribution of the walls to the tangent; `rotations` as in the axial kernel
     /// [`tangent`](super::axial::tangent).
-    pub(in crate::assembly) fn add_pressure_tangent(
+    pub(in crate::assembly) fn add_wall_tangent(
         &self,
         load: &Load,
         u: &[f64],
         rotations: &[Vec<Vec<Rotation>>],
         matrix: &mut BlockBanded,
     ) {
-        for wall in self.follower_walls(load) {
+        for wall in self.walls_with_tangent(load) {
             let index = |i: usize, ring: usize| (wall.point * 3 + i) * self.sector.rings + ring;
             for along @ (batch, lane) in self.elements_along() {
                 for qz in 0..=self.degree() {
@@ -161,8 +188,14 @@ impl SplineTube {
                         for (point, rotations) in self.around.iter().zip(rotations) {
                             let moved = self.surface_displacement(&rings, element, point);
                             let weight = batch.weight[qz].0[lane] * point.weight;
-                            let position = sum(&wall.at_rest(point), &moved);
-                            let blocks = volume_blocks(&position, -wall.follower * weight);
+                            let at = WallPoint {
+                                element,
+                                z: batch.z[qz].0[lane],
+                                around: point,
+                            };
+                            let Some(blocks) = self.wall_blocks(&wall, &moved, &at, weight) else {
+                                continue;
+                            };
                             for set in rotations {
                                 for (r, row) in set.iter().enumerate() {
                                     for (s, column) in set.iter().enumerate() {
@@ -190,31 +223,73 @@ impl SplineTube {
         }
     }
 
-    /// Returns the walls under any pressure.
+    /// Returns the walls under any pressure, or both if there are obstacles.
     fn loaded_walls(&self, load: &Load) -> Vec<LoadedWall> {
         let [inner, outer] = load.pressures;
+        let obstacles = self.placed_obstacles(load);
         let walls = [
             LoadedWall {
                 point: 0,
                 radius: self.tube.inner_radius(),
                 follower: inner.follower,
                 dead: inner.dead,
+                obstacles: obstacles.clone(),
+                barrier: self.barrier,
             },
             LoadedWall {
                 point: self.wall.functions() - 1,
                 radius: Tube::OUTER_RADIUS,
                 follower: -outer.follower,
                 dead: -outer.dead,
+                obstacles,
+                barrier: self.barrier,
             },
         ];
-        let pressed = |wall: &LoadedWall| wall.follower != 0.0 || wall.dead != 0.0;
-        walls.into_iter().filter(pressed).collect()
+        let is_loaded = |wall: &LoadedWall| {
+            wall.follower != 0.0 || wall.dead != 0.0 || !wall.obstacles.is_empty()
+        };
+        walls.into_iter().filter(is_loaded).collect()
     }
 
-    fn follower_walls(&self, load: &Load) -> Vec<LoadedWall> {
+    fn walls_with_tangent(&self, load: &Load) -> Vec<LoadedWall> {
         let mut walls = self.loaded_walls(load);
-        walls.retain(|wall| wall.follower != 0.0);
+        walls.retain(|wall| wall.follower != 0.0 || !wall.obstacles.is_empty());
         walls
+    }
+
+    /// Returns the contact with obstacles at a position in the frame of an element; none where no obstacle is near.
+    fn contact_with_obstacles(
+        &self,
+        wall: &LoadedWall,
+        position: &Surface,
+        element: usize,
+    ) -> Option<obstacles::PointContact> {
+        if wall.obstacles.is_empty() {
+            return None;
+        }
+        wall.contact(position[2], self.element_turn(element))
+    }
+
+    /// Returns the second derivatives of the energies of a wall at a point of an element around, times a factor, in the
+    /// order of [`volume_blocks`]; none where they are zero.
+    fn wall_blocks(
+        &self,
+        wall: &LoadedWall,
+        moved: &Surface,
+        point: &WallPoint<'_>,
+        factor: f64,
+    ) -> Option<[Block<f64>; 6]> {
+        let position = sum(&wall.at_rest(point), moved);
+        let contact = self.contact_with_obstacles(wall, &position, point.element);
+        if contact.is_none() && wall.follower == 0.0 {
+            return None;
+        }
+        let mut blocks = volume_blocks(&position, -wall.follower * factor);
+        if let Some(contact) = contact {
+            let area = factor * wall.area(point);
+            blocks[5] = contact.curvature.map(|row| row.map(|x| area * x));
+        }
+        Some(blocks)
     }
 
     fn elements_along(&self) -> impl Iterator<Item = Along<'_>> {
@@ -224,12 +299,12 @@ impl SplineTube {
     }
 
     /// Integrates over the elements around a wall, for each element along the tube. `of` returns
-    /// the potential at a point, and its derivatives, from the displacement fields there.
+    /// the energies at a point, and their derivatives, from the displacement fields there.
     fn integrate_over_wall<const F: usize>(
         &self,
         wall: &LoadedWall,
         fields: [&[f64]; F],
-        of: impl Fn([Surface; F], &CircumferentialPoint) -> (f64, Surface) + Sync,
+        of: impl Fn([Surface; F], &WallPoint<'_>) -> ([f64; 2], Surface) + Sync,
     ) -> Vec<WallForces> {
         let (n, k, local_rings) = (
             self.degree() + 1,
@@ -239,7 +314,7 @@ impl SplineTube {
         let elements: Vec<Along<'_>> = self.elements_along().collect();
         let part = |&along: &Along<'_>| {
             let (batch, lane) = along;
-            let mut potential = 0.0;
+            let mut energies = [0.0; 2];
             // Per element around, row and local ring.
             let mut forces = vec![[0.0; 3]; k * n * local_rings];
             for qz in 0..n {
@@ -252,8 +327,15 @@ impl SplineTube {
                         let fields = std::array::from_fn(|f| {
                             self.surface_displacement(&rings[f], element, point)
                         });
-                        let (density, slopes) = of(fields, point);
-                        potential += weight * density;
+                        let at = WallPoint {
+                            element,
+                            z: batch.z[qz].0[lane],
+                            around: point,
+                        };
+                        let (densities, slopes) = of(fields, &at);
+                        for (energy, density) in energies.iter_mut().zip(densities) {
+                            *energy += weight * density;
+                        }
                         let [zeta, s, value] = slopes.map(|v| v.map(|x| weight * x));
                         for (ring, f) in point.ring_values.iter().zip(&mut ring_forces) {
                             f[0] = to_ring_frame(ring, 1, s, to_ring_frame(ring, 0, value, f[0]));
@@ -282,7 +364,7 @@ impl SplineTube {
                 }
             }
             WallForces {
-                potential,
+                energies,
                 squares: forces.as_flattened().iter().map(|x| x * x).sum(),
                 force,
             }
@@ -385,26 +467,32 @@ impl SplineTube {
 }
 
 impl LoadedWall {
-    /// Returns the position at rest across the axis, and its slopes.
-    fn at_rest(&self, point: &CircumferentialPoint) -> Surface {
-        let across = |(re, im): (f64, f64)| [0.0, self.radius * re, self.radius * im];
+    /// Returns the position at rest in the frame of the element, and its slopes.
+    fn at_rest(&self, point: &WallPoint<'_>) -> Surface {
+        let at = |z: f64, (re, im): (f64, f64)| [z, self.radius * re, self.radius * im];
         [
             [1.0, 0.0, 0.0],
-            across(point.circle_slope),
-            across(point.circle),
+            at(0.0, point.around.circle_slope),
+            at(point.z, point.around.circle),
         ]
     }
 
     /// Returns the potential of the pressures at a point that has moved, per dζ ds.
-    fn potential(&self, moved: &Surface, point: &CircumferentialPoint) -> f64 {
+    fn potential(&self, moved: &Surface, point: &WallPoint<'_>) -> f64 {
         let area = self.area_at_rest(point);
         let dead = moved[2][1] * area[1] + moved[2][2] * area[2];
         -self.follower * volume_change(&self.at_rest(point), moved) - self.dead * dead
     }
 
+    /// Returns the area at rest, per dζ ds.
+    fn area(&self, point: &WallPoint<'_>) -> f64 {
+        let (re, im) = point.around.circle_slope;
+        self.radius * re.hypot(im)
+    }
+
     /// Returns the outward element of area at rest, per dζ ds.
-    fn area_at_rest(&self, point: &CircumferentialPoint) -> Vector<f64> {
-        let (re, im) = point.circle_slope;
+    fn area_at_rest(&self, point: &WallPoint<'_>) -> Vector<f64> {
+        let (re, im) = point.around.circle_slope;
         [0.0, self.radius * im, -self.radius * re]
     }
 }

@@ -1,15 +1,15 @@
-//! Contribution of pressure to the tangent on low harmonics.
+//! Contribution of the walls to the tangent on low harmonics.
 
 use super::super::SplineTube;
 use super::super::blocks::Block;
 use super::super::low_harmonics::LowHarmonics;
-use super::volume::{sum, volume_blocks};
+use super::WallPoint;
 use crate::matrix::BlockBanded;
 use crate::tube::Load;
 
 impl SplineTube {
-    /// Adds the contribution of pressure to Eᵀ K E (see [`SplineTube::low_harmonic_tangent`]).
-    pub(in crate::assembly) fn add_low_harmonic_pressure(
+    /// Adds the contribution of the walls to Eᵀ K E (see [`SplineTube::low_harmonic_tangent`]).
+    pub(in crate::assembly) fn add_low_harmonic_walls(
         &self,
         low: &LowHarmonics,
         load: &Load,
@@ -19,27 +19,35 @@ impl SplineTube {
         let (n, columns, point) = (self.degree() + 1, 3 * low.modes(), &low.middle[0]);
         let [values, slopes] = &low.waves;
         let along = low.points_along;
-        for wall in self.follower_walls(load) {
+        for wall in self.walls_with_tangent(load) {
             // 1, t, t² at the wall.
             let through = [1.0, if wall.point == 0 { -1.0 } else { 1.0 }, 1.0];
             for batch in &low.batches {
                 for (lane, qz) in (0..batch.elements * along).map(|i| (i / along, i % along)) {
                     let rings = self.rings_along(&wall, u, (batch, lane), qz);
-                    let weight = -wall.follower * batch.weight[qz].0[lane] * point.weight;
+                    let weight = batch.weight[qz].0[lane] * point.weight;
                     // The parts that multiply (N′, N) and (N, N) along the tube.
                     let mut mixed = vec![0.0; columns * columns];
                     let mut own = vec![0.0; columns * columns];
                     for element in 0..self.sector.rings {
-                        let position = sum(
-                            &wall.at_rest(point),
-                            &self.surface_displacement(&rings, element, point),
-                        );
-                        let [_, zs, zv, _, sv, _] = volume_blocks(&position, weight);
+                        let moved = self.surface_displacement(&rings, element, point);
+                        let at = WallPoint {
+                            element,
+                            z: batch.z[qz].0[lane],
+                            around: point,
+                        };
+                        let Some(blocks) = self.wall_blocks(&wall, &moved, &at, weight) else {
+                            continue;
+                        };
+                        let [_, zs, zv, _, sv, vv] = blocks;
+                        // `own` is added to its transpose.
+                        let half = vv.map(|row| row.map(|x| 0.5 * x));
                         let rows = 3 * element * columns..3 * (element + 1) * columns;
                         let (value, slope) = (&values[rows.clone()], &slopes[rows]);
                         add_form(value, &zs, slope, &mut mixed);
                         add_form(value, &zv, value, &mut mixed);
                         add_form(slope, &sv, value, &mut own);
+                        add_form(value, &half, value, &mut own);
                     }
                     for b in 0..n {
                         let (value_b, slope_b) = self.along((batch, lane), qz, b);

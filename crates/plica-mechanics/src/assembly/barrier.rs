@@ -1,5 +1,16 @@
 //! The law of contact: an energy per area that rises without bound as a gap closes.
 
+use crate::spline::Basis;
+
+/// Range of the barrier of a mesh, in smallest axial elements at rest.
+const RANGE: f64 = 0.25;
+
+/// Stiffness of the barrier of a mesh, in E.
+const STIFFNESS: f64 = 0.1;
+
+/// Gap below which the barrier of an obstacle continues as a parabola, in ranges.
+const CONTINUED: f64 = 0.1;
+
 /// The barrier b(g) = −κ d̂ (s − 1)² ln s with s = g/d̂ for gaps g below the range d̂, else 0 (Li et al.
 /// 2020, incremental potential contact). It and its first two derivatives are continuous at d̂.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +33,33 @@ pub struct BarrierJet {
 }
 
 impl Barrier {
+    /// Returns the barrier of a mesh: its range is a quarter of the smallest element along the tube.
+    pub fn of_mesh(axial: &Basis) -> Self {
+        let lengths = (0..axial.elements()).map(|e| {
+            let (from, to) = axial.element(e);
+            to - from
+        });
+        Self {
+            range: RANGE * lengths.fold(f64::INFINITY, f64::min),
+            stiffness: STIFFNESS,
+        }
+    }
+
+    /// Returns the barrier of any gap. Below a tenth of the range, also where bodies overlap, it is the parabola with the
+    /// value, slope and curvature at that gap: a state may start inside an obstacle that has moved, and is pushed out.
+    pub fn continued(&self, gap: f64) -> BarrierJet {
+        let least = CONTINUED * self.range;
+        if gap >= least {
+            return self.at(gap);
+        }
+        let (at, h) = (self.at(least), gap - least);
+        BarrierJet {
+            value: at.value + h * (at.slope + 0.5 * h * at.curvature),
+            slope: at.slope + h * at.curvature,
+            curvature: at.curvature,
+        }
+    }
+
     /// Returns the barrier of a gap between zero and the range.
     pub fn at(&self, gap: f64) -> BarrierJet {
         let s = gap / self.range;
@@ -60,6 +98,22 @@ mod tests {
                 assert!((order - 2.0).abs() < 0.1, "{gap} {i}: order {order}");
             }
         }
+    }
+
+    #[test]
+    fn a_barrier_continues_smoothly_into_overlap() {
+        let least = CONTINUED * BARRIER.range;
+        let [below, above] = [-1e-9, 1e-9].map(|h| BARRIER.continued(least + h));
+        assert!((below.curvature / above.curvature - 1.0).abs() < 1e-4);
+        for gap in [-3e-2, -1e-4, 1e-4] {
+            let [low, high] = [gap - 1e-5, gap + 1e-5].map(|g| BARRIER.continued(g));
+            let at = BARRIER.continued(gap);
+            let slope = (high.value - low.value) / 2e-5;
+            assert!((slope / at.slope - 1.0).abs() < 1e-8);
+            assert!(((high.slope - low.slope) / 2e-5 / at.curvature - 1.0).abs() < 1e-8);
+        }
+        let outside = BARRIER.continued(1.5e-3);
+        assert_eq!(outside, BARRIER.at(1.5e-3));
     }
 
     #[test]

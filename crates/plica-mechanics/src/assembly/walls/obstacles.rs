@@ -1,0 +1,190 @@
+//! Contact of the walls with rigid obstacles.
+//!
+//! Contact adds ∫ b(g) dA₀ to the energy, with g the distance of a point of a wall from the obstacle, b the
+//! [`Barrier`] and dA₀ the area at rest. Its force on the point is −b′(g) ∇g per area.
+
+use super::super::SplineTube;
+use super::super::blocks::Block;
+use super::super::kinematics::Vector;
+use super::volume::sum;
+use super::{LoadedWall, WallPoint};
+use crate::tube::{Distance, Load, Obstacle, ObstacleShape, Placement, turned};
+
+/// An obstacle in the places where the cyclic sectors of the tube repeat it.
+#[derive(Clone, Debug)]
+pub struct PlacedObstacle {
+    /// Its number in the tube.
+    pub number: usize,
+    copies: Vec<(ObstacleShape, Placement)>,
+}
+
+/// Contact of a tube with one obstacle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObstacleContact {
+    /// Energy of contact, in E·D³.
+    pub energy: f64,
+    /// Sum of the sizes of the contact forces, in E·D².
+    pub force: f64,
+    /// Resultant of the contact forces on the obstacle, (z, x, y), in E·D².
+    pub reaction: [f64; 3],
+    /// ∂Π/∂radius, in E·D²: the force that the wall does not exert along a grown radius, summed over the surface.
+    pub radius_force: f64,
+    /// Area at rest of the wall within the range of contact, in D².
+    pub area: f64,
+    /// Smallest distance of the quadrature points of the walls, in D.
+    pub gap: f64,
+    /// Axial positions at rest of the first and the last point in contact, in D; none without contact.
+    pub from_to: Option<[f64; 2]>,
+}
+
+/// Contact at one point of a wall: energy, its derivatives over the position, per area at rest.
+pub struct PointContact {
+    pub energy: f64,
+    pub slope: Vector<f64>,
+    pub curvature: Block<f64>,
+}
+
+impl SplineTube {
+    /// Returns the obstacles under a load, repeated as the sector is.
+    pub(super) fn placed_obstacles(&self, load: &Load) -> Vec<PlacedObstacle> {
+        let obstacles = self.tube.obstacles.iter().zip(&load.obstacles);
+        let placed = |(number, (obstacle, placement)): (usize, (&Obstacle, &Placement))| {
+            let repeats = match obstacle.is_axisymmetric(placement) {
+                true => 1,
+                false => self.sector.around / self.sector.rings,
+            };
+            let angle = std::f64::consts::TAU / repeats as f64;
+            let copy = |i: usize| match i {
+                0 => (obstacle.shape, *placement),
+                _ => {
+                    let sin_cos = (i as f64 * angle).sin_cos();
+                    (obstacle.shape.turned(sin_cos), placement.turned(sin_cos))
+                }
+            };
+            PlacedObstacle {
+                number,
+                copies: (0..repeats).map(copy).collect(),
+            }
+        };
+        obstacles.enumerate().map(placed).collect()
+    }
+
+    /// Returns the contact of a state with each obstacle of the tube.
+    pub fn obstacle_contacts(&self, load: &Load, u: &[f64]) -> Vec<ObstacleContact> {
+        let nothing = ObstacleContact {
+            energy: 0.0,
+            force: 0.0,
+            reaction: [0.0; 3],
+            radius_force: 0.0,
+            area: 0.0,
+            gap: f64::INFINITY,
+            from_to: None,
+        };
+        let mut contacts = vec![nothing; self.tube.obstacles.len()];
+        if contacts.is_empty() {
+            return contacts;
+        }
+        let repeats = self.sector.repeats();
+        for wall in self.loaded_walls(load) {
+            for along @ (batch, lane) in self.elements_along() {
+                for qz in 0..=self.degree() {
+                    let (z, weight) = (batch.z[qz].0[lane], batch.weight[qz].0[lane]);
+                    let rings = self.rings_along(&wall, u, along, qz);
+                    for element in 0..self.sector.rings {
+                        let turn = self.element_turn(element);
+                        for around in &self.around {
+                            let at = WallPoint { element, z, around };
+                            let moved = self.surface_displacement(&rings, element, around);
+                            let position = sum(&wall.at_rest(&at), &moved)[2];
+                            let area = repeats * weight * around.weight * wall.area(&at);
+                            for obstacle in &wall.obstacles {
+                                let sum = &mut contacts[obstacle.number];
+                                obstacle.add_to(sum, turned(position, turn), (z, area), &wall);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        contacts
+    }
+
+    /// Returns sine and cosine of the angle of the frame of an element of the sector.
+    pub(super) fn element_turn(&self, element: usize) -> (f64, f64) {
+        (element as f64 * self.sector.angle()).sin_cos()
+    }
+}
+
+impl LoadedWall {
+    /// Returns the contact with all obstacles at a position in the frame of an element; none where nothing is near.
+    pub(super) fn contact(
+        &self,
+        position: Vector<f64>,
+        (sin, cos): (f64, f64),
+    ) -> Option<PointContact> {
+        let mut found: Option<PointContact> = None;
+        let lab = turned(position, (sin, cos));
+        for (shape, placement) in self.obstacles.iter().flat_map(|obstacle| &obstacle.copies) {
+            let Distance {
+                gap,
+                normal,
+                curvature,
+            } = shape.distance(placement, lab);
+            if gap >= self.barrier.range {
+                continue;
+            }
+            let jet = self.barrier.continued(gap);
+            let at = found.get_or_insert(PointContact {
+                energy: 0.0,
+                slope: [0.0; 3],
+                curvature: [[0.0; 3]; 3],
+            });
+            at.energy += jet.value;
+            let back = |vector: [f64; 3]| turned(vector, (-sin, cos));
+            let normal = back(normal);
+            // Rows, then columns.
+            let curvature = transposed(curvature.map(back)).map(back);
+            for i in 0..3 {
+                at.slope[i] += jet.slope * normal[i];
+                for j in 0..3 {
+                    at.curvature[i][j] +=
+                        jet.curvature * normal[i] * normal[j] + jet.slope * curvature[i][j];
+                }
+            }
+        }
+        found
+    }
+}
+
+impl PlacedObstacle {
+    /// Adds the contact of a point with area `area` and the axial position `z` at rest.
+    fn add_to(
+        &self,
+        sum: &mut ObstacleContact,
+        position: [f64; 3],
+        (z, area): (f64, f64),
+        wall: &LoadedWall,
+    ) {
+        for (shape, placement) in &self.copies {
+            let Distance { gap, normal, .. } = shape.distance(placement, position);
+            sum.gap = sum.gap.min(gap);
+            if gap >= wall.barrier.range {
+                continue;
+            }
+            let jet = wall.barrier.continued(gap);
+            sum.energy += area * jet.value;
+            sum.force -= area * jet.slope;
+            sum.radius_force += area * jet.slope * shape.radius_slope();
+            sum.area += area;
+            for i in 0..3 {
+                sum.reaction[i] += area * jet.slope * normal[i];
+            }
+            let [from, to] = sum.from_to.unwrap_or([z, z]);
+            sum.from_to = Some([from.min(z), to.max(z)]);
+        }
+    }
+}
+
+fn transposed(a: Block<f64>) -> Block<f64> {
+    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
+}
