@@ -48,6 +48,7 @@ fn mesh(degree: usize, [along, around, through]: [usize; 3]) -> Mesh {
         thickness: through + degree,
         degree,
         refinements: vec![],
+        grading: 1.0,
         volumetric: Default::default(),
     }
 }
@@ -203,6 +204,7 @@ fn the_energy_does_not_depend_on_the_number_of_rings_in_a_sector() {
             to: 1.0,
             factor: 3.0,
         }],
+        grading: 1.0,
         volumetric: Default::default(),
     };
     let energy = |rings: usize| {

@@ -30,6 +30,7 @@ fn problem(tube: &Tube, [along, around, through]: [usize; 3], rings: usize) -> T
         thickness: through + 3,
         degree: 3,
         refinements: vec![],
+        grading: 1.0,
         volumetric: Default::default(),
     };
     TubeProblem::new(SplineTube::new(tube, &mesh, rings))

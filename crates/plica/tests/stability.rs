@@ -29,6 +29,7 @@ fn passive(
         thickness: through,
         degree: 3,
         refinements: vec![],
+        grading: 1.0,
         volumetric: Default::default(),
     };
     TubeProblem::new(SplineTube::new(&tube, &mesh, 1))

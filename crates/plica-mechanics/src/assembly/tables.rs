@@ -1,15 +1,14 @@
 //! Tabulated basis functions and quadrature points: along the tube, through the wall and around it.
 
 use crate::rings::{RingValues, Sector};
-use crate::spline::{Basis, Circle, gauss_legendre, graded_breakpoints, reduced_rule};
+use crate::spline::{Basis, Circle, gauss_legendre, reduced_rule};
 use crate::tensor::{LANES, Lanes};
 use crate::tube::{Mesh, Tube};
 
 /// Returns the basis along a tube, over z, and through its wall, over the reference radius.
 pub fn bases(tube: &Tube, mesh: &Mesh) -> [Basis; 2] {
-    let [along, _, through] = mesh.elements();
-    let breakpoints = graded_breakpoints(tube.length, along, &mesh.refinements);
-    let radii = graded_breakpoints(tube.thickness, through, &[]);
+    let breakpoints = mesh.breakpoints_along(tube.length);
+    let radii = mesh.breakpoints_through(tube.thickness);
     let radii: Vec<f64> = radii.iter().map(|h| tube.inner_radius() + h).collect();
     [
         Basis::open(mesh.degree, &breakpoints),

@@ -54,6 +54,21 @@ pub fn graded_breakpoints(length: f64, elements: usize, refinements: &[Refinemen
     breakpoints
 }
 
+/// Returns `elements + 1` breakpoints on [0, length] between which the lengths form a geometric sequence: the first
+/// element is `grading` times as long as the last one. A grading of 1 is uniform.
+pub fn geometric_breakpoints(length: f64, elements: usize, grading: f64) -> Vec<f64> {
+    let n = elements as f64;
+    if elements < 2 || grading == 1.0 {
+        return (0..=elements).map(|i| length * i as f64 / n).collect();
+    }
+    // Element i has the length q^i, so that i of them have (1 − q^i)/(1 − q).
+    let ln_q = -grading.ln() / (n - 1.0);
+    let part = |i: usize| (i as f64 * ln_q).exp_m1() / (n * ln_q).exp_m1();
+    let mut breakpoints: Vec<f64> = (0..elements).map(|i| length * part(i)).collect();
+    breakpoints.push(length);
+    breakpoints
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,6 +86,29 @@ mod tests {
         assert!(x.contains(&0.5) && x.contains(&1.0) && x[302] == 3.0);
         let inside = x.iter().filter(|&&x| x > 0.5 && x <= 1.0).count();
         assert!((inside as f64 - 302.0 * 1.5 / 4.0).abs() <= 1.0, "{inside}");
+    }
+
+    #[test]
+    fn lengths_form_a_geometric_sequence() {
+        for (elements, grading) in [(2, 3.0), (9, 40.0), (9, 0.1), (30, 1.0 + 1e-9)] {
+            let x = geometric_breakpoints(0.06, elements, grading);
+            assert_eq!((x.len(), x[0], x[elements]), (elements + 1, 0.0, 0.06));
+            let lengths: Vec<f64> = x.windows(2).map(|w| w[1] - w[0]).collect();
+            let whole = lengths[0] / lengths[elements - 1];
+            assert!((whole / grading - 1.0).abs() < 1e-12, "{whole}");
+            let ratio = grading.powf(-1.0 / (elements as f64 - 1.0));
+            for w in lengths.windows(2) {
+                assert!((w[1] / w[0] / ratio - 1.0).abs() < 1e-12, "{lengths:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_grading_of_one_is_uniform_to_the_bit() {
+        for elements in [1, 2, 5, 7] {
+            let uniform = geometric_breakpoints(0.06, elements, 1.0);
+            assert_eq!(uniform, graded_breakpoints(0.06, elements, &[]));
+        }
     }
 
     #[test]

@@ -25,6 +25,6 @@ mod transfer;
 
 pub use basis::{Basis, Values};
 pub use circle::{Circle, control_wave};
-pub use grading::{Refinement, graded_breakpoints};
+pub use grading::{Refinement, geometric_breakpoints, graded_breakpoints};
 pub use quadrature::{gauss_legendre, reduced_rule};
 pub use transfer::{interpolate, transfer};

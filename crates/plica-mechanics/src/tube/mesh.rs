@@ -1,6 +1,6 @@
 //! The spline mesh of a tube.
 
-use crate::spline::Refinement;
+use crate::spline::{Refinement, geometric_breakpoints, graded_breakpoints};
 
 /// Control points, degree and grading.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +15,9 @@ pub struct Mesh {
     pub degree: usize,
     /// Zones along the tube with smaller elements.
     pub refinements: Vec<Refinement>,
+    /// Thickness of the innermost element of the wall over that of the outermost. The elements in between form a geometric
+    /// sequence.
+    pub grading: f64,
     /// Integration of the volumetric part of the law.
     pub volumetric: Integration,
 }
@@ -49,6 +52,16 @@ impl Mesh {
             self.around,
             self.thickness - self.degree,
         ]
+    }
+
+    /// Returns the edges of the elements along a tube, from 0 to its length.
+    pub fn breakpoints_along(&self, length: f64) -> Vec<f64> {
+        graded_breakpoints(length, self.axial - self.degree, &self.refinements)
+    }
+
+    /// Returns the edges of the elements through a wall, from 0 at the inner surface to its thickness.
+    pub fn breakpoints_through(&self, thickness: f64) -> Vec<f64> {
+        geometric_breakpoints(thickness, self.thickness - self.degree, self.grading)
     }
 
     /// Returns the number of rings of a sector: 1 if axisymmetric, N_C/m if m-fold, else N_C.

@@ -159,6 +159,7 @@ impl Manufactured {
             thickness: elements[1] + degree,
             degree,
             refinements: vec![],
+            grading: 1.0,
             volumetric: Default::default(),
         };
         let spline = SplineTube::new(&tube(), &mesh, 1);

@@ -76,6 +76,7 @@ impl TubeModel {
             thickness: through + p,
             degree: p,
             refinements: vec![],
+            grading: 1.0,
             volumetric: self.volumetric,
         };
         TubeProblem::new(SplineTube::new(&self.tube, &mesh, rings))

@@ -1,7 +1,7 @@
 //! Advice on plans that are valid but perhaps not meant.
 
 use crate::activation::Profile;
-use crate::spline::{Circle, graded_breakpoints};
+use crate::spline::Circle;
 use crate::study::Plan;
 use crate::tube::{Support, Symmetry};
 
@@ -17,7 +17,7 @@ const ROUND: f64 = 1e-5;
 pub fn advice(plan: &Plan) -> Vec<String> {
     let mut advice = Vec::new();
     let (tube, mesh) = (&plan.tube, &plan.mesh);
-    let breakpoints = graded_breakpoints(tube.length, mesh.elements()[0], &mesh.refinements);
+    let breakpoints = mesh.breakpoints_along(tube.length);
     for muscle in &tube.muscles {
         let [from, to] = muscle.zone;
         let middle = |w: &[f64]| 0.5 * (w[0] + w[1]);

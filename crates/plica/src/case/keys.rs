@@ -210,6 +210,10 @@ table! {
         /// overlap, the largest factor holds.
         refine: Option<Vec<Refine>> =
             described("the zones of the muscles, factor 3", "[{ zone = [0.5, 1.0], factor = 3.0 }]");
+        /// The thickness of the innermost element of the wall over that of the outermost; those in
+        /// between form a geometric sequence. Above 1 the elements become thinner towards the outer
+        /// surface, where a fold creases; 1 is uniform. `"reduced"` integration needs 1.
+        grading: f64 = default("1.0").from(0.001).to(1000.0);
     }
 }
 

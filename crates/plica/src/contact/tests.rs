@@ -10,6 +10,7 @@ fn hairpin(gap: f64) -> (SplineTube, Vec<f64>) {
         thickness: 4,
         degree: 3,
         refinements: vec![],
+        grading: 1.0,
         volumetric: Default::default(),
     };
     let tube = SplineTube::new(

@@ -422,6 +422,7 @@ mod tests {
             thickness: 4,
             degree: 3,
             refinements: vec![],
+            grading: 1.0,
             volumetric: Default::default(),
         };
         let tube = Arc::new(SplineTube::new(&tube, &mesh, 36));

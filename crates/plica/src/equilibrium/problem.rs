@@ -259,6 +259,7 @@ mod tests {
             thickness: 4,
             degree: 3,
             refinements: vec![],
+            grading: 1.0,
             volumetric: Default::default(),
         };
         let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 12));

@@ -167,6 +167,7 @@ mod tests {
             thickness: thickness + degree,
             degree,
             refinements: vec![],
+            grading: 1.0,
             volumetric: Default::default(),
         };
         SplineTube::new(&tube(), &mesh, rings)

@@ -205,6 +205,7 @@ mod tests {
             thickness: 4,
             degree: 3,
             refinements: vec![],
+            grading: 1.0,
             volumetric: Default::default(),
         };
         let mut seen = [0; 3];

@@ -22,6 +22,7 @@ fn tube(rings: usize) -> SplineTube {
         thickness: 4,
         degree: 3,
         refinements: vec![],
+        grading: 1.0,
         volumetric: Default::default(),
     };
     SplineTube::new(&tube, &mesh, rings)

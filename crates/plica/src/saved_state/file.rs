@@ -217,6 +217,7 @@ mod tests {
                     to: 1.0,
                     factor: 3.0,
                 }],
+                grading: 3.0,
                 volumetric: Default::default(),
             },
             rings: 2,
@@ -258,6 +259,15 @@ mod tests {
             layout,
             arrays: [("velocity".into(), velocity)].into(),
         }
+    }
+
+    #[test]
+    fn a_uniform_wall_writes_no_grading() {
+        let mut uniform = state();
+        let text = |state: &SavedState| serde_json::to_string(&state.header()).unwrap();
+        assert!(text(&uniform).contains(r#""grading":3.0"#));
+        uniform.layout.mesh.grading = 1.0;
+        assert!(!text(&uniform).contains("grading"));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Knots and control points of a state, for readers without Plica. They follow from the layout and the unknowns.
 
 use super::{Array, Layout};
-use crate::spline::{Circle, graded_breakpoints};
+use crate::spline::Circle;
 use crate::tube::Tube;
 use std::f64::consts::TAU;
 
@@ -17,13 +17,9 @@ pub(super) fn arrays(layout: &Layout, u: &[f64]) -> Option<[Array; 3]> {
         return None;
     }
     let (mesh, p) = (&layout.mesh, layout.mesh.degree);
-    let [along, _, through] = mesh.elements();
     let inner_radius = Tube::OUTER_RADIUS - layout.thickness;
-    let axial = knots(
-        graded_breakpoints(layout.length, along, &mesh.refinements),
-        p,
-    );
-    let radii = graded_breakpoints(layout.thickness, through, &[]);
+    let axial = knots(mesh.breakpoints_along(layout.length), p);
+    let radii = mesh.breakpoints_through(layout.thickness);
     let wall = knots(radii.iter().map(|h| inner_radius + h).collect(), p);
     let stretch = Circle::new(p, mesh.around).control_radius;
     let angle = |ring: usize| (ring as f64 - 0.5 * p as f64) * TAU / mesh.around as f64;

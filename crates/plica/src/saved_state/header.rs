@@ -90,6 +90,17 @@ struct MeshHeader {
     thickness: usize,
     degree: usize,
     refine: Vec<RefineHeader>,
+    #[serde(default = "uniform", skip_serializing_if = "is_uniform")]
+    grading: f64,
+}
+
+fn uniform() -> f64 {
+    1.0
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // Serde passes references.
+fn is_uniform(grading: &f64) -> bool {
+    *grading == 1.0
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
@@ -166,6 +177,7 @@ impl SavedState {
                 thickness: mesh.thickness,
                 degree: mesh.degree,
                 refine: mesh.refinements.iter().map(refine).collect(),
+                grading: mesh.grading,
             },
             rings,
         }
@@ -199,6 +211,7 @@ impl SavedState {
                 thickness: header.mesh.thickness,
                 degree: header.mesh.degree,
                 refinements: header.mesh.refine.iter().map(refinement).collect(),
+                grading: header.mesh.grading,
                 volumetric: Default::default(),
             },
             rings: header.rings,

@@ -35,6 +35,7 @@ impl Layout {
             thickness,
             degree,
             ref refinements,
+            grading,
             volumetric: _,
         } = self.mesh;
         let sound = |from: f64, to: f64, factor: f64| {
@@ -52,6 +53,8 @@ impl Layout {
             Some("its rings do not divide the rings around the tube")
         } else if !refinements.iter().all(|r| sound(r.from, r.to, r.factor)) {
             Some("a zone of refinement of its mesh is invalid")
+        } else if !(1e-6..=1e6).contains(&grading) {
+            Some("the grading of its mesh through the wall is invalid")
         } else {
             None
         }

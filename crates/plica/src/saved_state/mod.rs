@@ -144,10 +144,12 @@ impl SavedState {
             format!("{axial} x {around} x {thickness} of degree {degree}")
         };
         let refine = |l: &Layout| format!("refined as {:?}", l.mesh.refinements);
+        let graded = |l: &Layout| format!("graded by {}", l.mesh.grading);
         let rings = |l: &Layout| format!("{} rings", l.rings);
         compare("tube", size(found), size(expected))?;
         compare("mesh", mesh(found), mesh(expected))?;
         compare("mesh", refine(found), refine(expected))?;
+        compare("mesh", graded(found), graded(expected))?;
         compare("symmetry", rings(found), rings(expected))?;
         compare(
             "set of muscles",

@@ -109,6 +109,7 @@ mod tests {
             thickness: 5,
             degree: 3,
             refinements: vec![],
+            grading: 1.0,
             volumetric: Default::default(),
         };
         SplineTube::new(&tube, &mesh, rings)

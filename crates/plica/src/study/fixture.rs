@@ -27,6 +27,7 @@ pub fn coarse() -> Mesh {
         thickness: 4,
         degree: 3,
         refinements: vec![],
+        grading: 1.0,
         volumetric: Default::default(),
     }
 }

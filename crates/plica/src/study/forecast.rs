@@ -195,6 +195,7 @@ impl Cost {
         let short = Mesh {
             axial: piece + p,
             refinements: vec![],
+            grading: 1.0,
             ..mesh.clone()
         };
         let problem = TubeProblem::new(SplineTube::new(&plan.tube, &short, rings));

@@ -63,6 +63,7 @@ pub(in crate::assembly) fn mesh(degree: usize, [along, through, around]: [usize;
         thickness: through + degree,
         degree,
         refinements: vec![],
+        grading: 1.0,
         volumetric: Default::default(),
     }
 }

@@ -15,6 +15,7 @@ const AXIAL: &str = "mesh.control_points.axial";
 const AROUND: &str = "mesh.control_points.around";
 const THICKNESS: &str = "mesh.control_points.thickness";
 const DEGREE: &str = "mesh.degree";
+const GRADING: &str = "mesh.grading";
 const INTEGRATION: &str = "mesh.volumetric_integration";
 
 /// Returns the mesh, and the symmetry of the solution.
@@ -26,6 +27,7 @@ pub(super) fn mesh(case: &Case, tube: &Tube, problems: &mut Problems) -> (Mesh, 
         thickness: points.thickness,
         degree: case.mesh.degree,
         refinements: refinements(case, tube, problems),
+        grading: case.mesh.grading,
         volumetric: case.mesh.volumetric_integration,
     };
     let (degree, around) = (mesh.degree, mesh.around);
@@ -45,6 +47,13 @@ pub(super) fn mesh(case: &Case, tube: &Tube, problems: &mut Problems) -> (Mesh, 
     {
         let rule = format!("needs splines of degree 3 or 5, not {degree}");
         problems.value(INTEGRATION, rule, "try degree 3, or \"full\"");
+    }
+    if mesh.volumetric == Integration::Reduced
+        && mesh.grading != 1.0
+        && problems.are_sound(&[INTEGRATION, GRADING])
+    {
+        let rule = "needs elements of one thickness, grading 1";
+        problems.value(INTEGRATION, rule, "try \"full\"");
     }
     if let Symmetry::Fold(m) = case.symmetry
         && !around.is_multiple_of(m)

@@ -119,6 +119,7 @@ fn state() -> SavedState {
             thickness: 4,
             degree: 3,
             refinements: vec![],
+            grading: 1.0,
             volumetric: tube::Integration::Full,
         },
         rings: 1,

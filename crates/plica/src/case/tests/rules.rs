@@ -71,6 +71,12 @@ const OF_RING: &[Rule] = &[
         &["1", "2", "4"],
     ),
     rule(
+        "mesh.volumetric_integration",
+        "mesh = { grading = @, volumetric_integration = 'reduced' }",
+        &["1.0"],
+        &["1.5", "0.5"],
+    ),
+    rule(
         "symmetry.fold",
         "symmetry.fold = @",
         &["6", "60"],
