@@ -28,6 +28,7 @@ pub fn coarse() -> Mesh {
         degree: 3,
         refinements: vec![],
         grading: 1.0,
+        contact_range: 0.25,
         volumetric: Default::default(),
     }
 }

@@ -49,6 +49,7 @@ fn mesh(degree: usize, [along, around, through]: [usize; 3]) -> Mesh {
         degree,
         refinements: vec![],
         grading: 1.0,
+        contact_range: 0.25,
         volumetric: Default::default(),
     }
 }
@@ -205,6 +206,7 @@ fn the_energy_does_not_depend_on_the_number_of_rings_in_a_sector() {
             factor: 3.0,
         }],
         grading: 1.0,
+        contact_range: 0.25,
         volumetric: Default::default(),
     };
     let energy = |rings: usize| {

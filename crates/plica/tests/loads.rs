@@ -31,6 +31,7 @@ fn problem(tube: &Tube, [along, around, through]: [usize; 3], rings: usize) -> T
         degree: 3,
         refinements: vec![],
         grading: 1.0,
+        contact_range: 0.25,
         volumetric: Default::default(),
     };
     TubeProblem::new(SplineTube::new(tube, &mesh, rings))

@@ -30,6 +30,7 @@ fn passive(
         degree: 3,
         refinements: vec![],
         grading: 1.0,
+        contact_range: 0.25,
         volumetric: Default::default(),
     };
     TubeProblem::new(SplineTube::new(&tube, &mesh, 1))

@@ -2,9 +2,6 @@
 
 use crate::spline::Basis;
 
-/// Range of the barrier of a mesh, in smallest axial elements at rest.
-const RANGE: f64 = 0.25;
-
 /// Stiffness of the barrier of a mesh, in E.
 const STIFFNESS: f64 = 0.1;
 
@@ -33,14 +30,14 @@ pub struct BarrierJet {
 }
 
 impl Barrier {
-    /// Returns the barrier of a mesh: its range is a quarter of the smallest element along the tube.
-    pub fn of_mesh(axial: &Basis) -> Self {
+    /// Returns the barrier of a mesh with a range in smallest elements along the tube.
+    pub fn of_mesh(axial: &Basis, range: f64) -> Self {
         let lengths = (0..axial.elements()).map(|e| {
             let (from, to) = axial.element(e);
             to - from
         });
         Self {
-            range: RANGE * lengths.fold(f64::INFINITY, f64::min),
+            range: range * lengths.fold(f64::INFINITY, f64::min),
             stiffness: STIFFNESS,
         }
     }

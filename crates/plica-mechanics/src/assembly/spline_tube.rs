@@ -85,7 +85,7 @@ impl SplineTube {
             layers: Layer::all(&wall, &full_rules(&wall)),
             around: CircumferentialPoint::all(&sector, &circle, &rule),
             padded_rings: PaddedRings::new(sector.rings),
-            barrier: Barrier::of_mesh(&axial),
+            barrier: Barrier::of_mesh(&axial, mesh.contact_range),
             tube: tube.clone(),
             sector,
             circle,

@@ -18,6 +18,8 @@ pub struct Mesh {
     /// Thickness of the innermost element of the wall over that of the outermost. The elements in between form a geometric
     /// sequence.
     pub grading: f64,
+    /// Range of the law of contact, in smallest axial elements at rest.
+    pub contact_range: f64,
     /// Integration of the volumetric part of the law.
     pub volumetric: Integration,
 }

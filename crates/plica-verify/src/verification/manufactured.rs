@@ -160,6 +160,7 @@ impl Manufactured {
             degree,
             refinements: vec![],
             grading: 1.0,
+            contact_range: 0.25,
             volumetric: Default::default(),
         };
         let spline = SplineTube::new(&tube(), &mesh, 1);

@@ -77,6 +77,7 @@ impl TubeModel {
             degree: p,
             refinements: vec![],
             grading: 1.0,
+            contact_range: 0.25,
             volumetric: self.volumetric,
         };
         TubeProblem::new(SplineTube::new(&self.tube, &mesh, rings))

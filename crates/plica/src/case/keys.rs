@@ -214,6 +214,9 @@ table! {
         /// between form a geometric sequence. Above 1 the elements become thinner towards the outer
         /// surface, where a fold creases; 1 is uniform. `"reduced"` integration needs 1.
         grading: f64 = default("1.0").from(0.001).to(1000.0);
+        /// The range of the law of contact, in smallest axial elements at rest. Half and double the range
+        /// show how far the results depend on it.
+        contact_range: f64 = default("0.25").from(0.001).to(100.0);
     }
 }
 

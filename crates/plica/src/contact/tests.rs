@@ -11,6 +11,7 @@ fn hairpin(gap: f64) -> (SplineTube, Vec<f64>) {
         degree: 3,
         refinements: vec![],
         grading: 1.0,
+        contact_range: 0.25,
         volumetric: Default::default(),
     };
     let tube = SplineTube::new(

@@ -423,6 +423,7 @@ mod tests {
             degree: 3,
             refinements: vec![],
             grading: 1.0,
+            contact_range: 0.25,
             volumetric: Default::default(),
         };
         let tube = Arc::new(SplineTube::new(&tube, &mesh, 36));

@@ -168,6 +168,7 @@ mod tests {
             degree,
             refinements: vec![],
             grading: 1.0,
+            contact_range: 0.25,
             volumetric: Default::default(),
         };
         SplineTube::new(&tube(), &mesh, rings)

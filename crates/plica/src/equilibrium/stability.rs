@@ -206,6 +206,7 @@ mod tests {
             degree: 3,
             refinements: vec![],
             grading: 1.0,
+            contact_range: 0.25,
             volumetric: Default::default(),
         };
         let mut seen = [0; 3];

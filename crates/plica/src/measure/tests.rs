@@ -23,6 +23,7 @@ fn tube(rings: usize) -> SplineTube {
         degree: 3,
         refinements: vec![],
         grading: 1.0,
+        contact_range: 0.25,
         volumetric: Default::default(),
     };
     SplineTube::new(&tube, &mesh, rings)

@@ -218,6 +218,7 @@ mod tests {
                     factor: 3.0,
                 }],
                 grading: 3.0,
+                contact_range: 0.5,
                 volumetric: Default::default(),
             },
             rings: 2,
@@ -262,12 +263,12 @@ mod tests {
     }
 
     #[test]
-    fn a_uniform_wall_writes_no_grading() {
-        let mut uniform = state();
+    fn usual_grading_and_range_are_not_written() {
+        let mut usual = state();
         let text = |state: &SavedState| serde_json::to_string(&state.header()).unwrap();
-        assert!(text(&uniform).contains(r#""grading":3.0"#));
-        uniform.layout.mesh.grading = 1.0;
-        assert!(!text(&uniform).contains("grading"));
+        assert!(text(&usual).contains(r#""grading":3.0,"contact_range":0.5"#));
+        (usual.layout.mesh.grading, usual.layout.mesh.contact_range) = (1.0, 0.25);
+        assert!(!text(&usual).contains("grading") && !text(&usual).contains("contact_range"));
     }
 
     #[test]

@@ -92,15 +92,26 @@ struct MeshHeader {
     refine: Vec<RefineHeader>,
     #[serde(default = "uniform", skip_serializing_if = "is_uniform")]
     grading: f64,
+    #[serde(default = "usual_range", skip_serializing_if = "is_usual_range")]
+    contact_range: f64,
 }
 
 fn uniform() -> f64 {
     1.0
 }
 
+fn usual_range() -> f64 {
+    0.25
+}
+
 #[allow(clippy::trivially_copy_pass_by_ref)] // Serde passes references.
 fn is_uniform(grading: &f64) -> bool {
-    *grading == 1.0
+    *grading == uniform()
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // Serde passes references.
+fn is_usual_range(range: &f64) -> bool {
+    *range == usual_range()
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
@@ -178,6 +189,7 @@ impl SavedState {
                 degree: mesh.degree,
                 refine: mesh.refinements.iter().map(refine).collect(),
                 grading: mesh.grading,
+                contact_range: mesh.contact_range,
             },
             rings,
         }
@@ -212,6 +224,7 @@ impl SavedState {
                 degree: header.mesh.degree,
                 refinements: header.mesh.refine.iter().map(refinement).collect(),
                 grading: header.mesh.grading,
+                contact_range: header.mesh.contact_range,
                 volumetric: Default::default(),
             },
             rings: header.rings,

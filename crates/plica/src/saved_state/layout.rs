@@ -36,6 +36,7 @@ impl Layout {
             degree,
             ref refinements,
             grading,
+            contact_range,
             volumetric: _,
         } = self.mesh;
         let sound = |from: f64, to: f64, factor: f64| {
@@ -55,6 +56,8 @@ impl Layout {
             Some("a zone of refinement of its mesh is invalid")
         } else if !(1e-6..=1e6).contains(&grading) {
             Some("the grading of its mesh through the wall is invalid")
+        } else if !(1e-6..=1e6).contains(&contact_range) {
+            Some("the range of contact of its mesh is invalid")
         } else {
             None
         }

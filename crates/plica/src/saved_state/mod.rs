@@ -144,7 +144,14 @@ impl SavedState {
             format!("{axial} x {around} x {thickness} of degree {degree}")
         };
         let refine = |l: &Layout| format!("refined as {:?}", l.mesh.refinements);
-        let graded = |l: &Layout| format!("graded by {}", l.mesh.grading);
+        let graded = |l: &Layout| {
+            let Mesh {
+                grading,
+                contact_range,
+                ..
+            } = l.mesh;
+            format!("graded by {grading}, with a range of contact of {contact_range}")
+        };
         let rings = |l: &Layout| format!("{} rings", l.rings);
         compare("tube", size(found), size(expected))?;
         compare("mesh", mesh(found), mesh(expected))?;

@@ -194,6 +194,7 @@ mod tests {
             degree: 3,
             refinements: vec![],
             grading: 1.0,
+            contact_range: 0.25,
             volumetric: Default::default(),
         };
         let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 1));

@@ -196,6 +196,7 @@ impl Cost {
             axial: piece + p,
             refinements: vec![],
             grading: 1.0,
+            contact_range: 0.25,
             ..mesh.clone()
         };
         let problem = TubeProblem::new(SplineTube::new(&plan.tube, &short, rings));

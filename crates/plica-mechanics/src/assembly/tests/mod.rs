@@ -64,6 +64,7 @@ pub(in crate::assembly) fn mesh(degree: usize, [along, through, around]: [usize;
         degree,
         refinements: vec![],
         grading: 1.0,
+        contact_range: 0.25,
         volumetric: Default::default(),
     }
 }

@@ -28,6 +28,7 @@ pub(super) fn mesh(case: &Case, tube: &Tube, problems: &mut Problems) -> (Mesh, 
         degree: case.mesh.degree,
         refinements: refinements(case, tube, problems),
         grading: case.mesh.grading,
+        contact_range: case.mesh.contact_range,
         volumetric: case.mesh.volumetric_integration,
     };
     let (degree, around) = (mesh.degree, mesh.around);

@@ -120,6 +120,7 @@ fn state() -> SavedState {
             degree: 3,
             refinements: vec![],
             grading: 1.0,
+            contact_range: 0.25,
             volumetric: tube::Integration::Full,
         },
         rings: 1,
