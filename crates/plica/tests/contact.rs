@@ -3,7 +3,7 @@
 use crate::common::main_case;
 use plica::assembly::SplineTube;
 use plica::contact::{ContactReport, SelfContact};
-use plica::equilibrium::TubeProblem;
+use plica::equilibrium::{TubeProblem, prolong};
 use plica::measure::Measures;
 use plica::solve::{Equilibrium, Path};
 use std::sync::Arc;
@@ -77,6 +77,33 @@ fn a_fold_that_touches_itself_keeps_its_flanks_apart_and_in_equilibrium() {
     );
     assert!(state.energy > free.path.state().energy);
     assert!(report.energy > 0.0 && report.energy < 0.02 * state.energy);
+}
+
+#[test]
+fn a_fold_that_touches_itself_is_carried_onto_a_finer_graded_mesh_and_range() {
+    let coarse = folded(Some(RANGE));
+    let mut plan = main_case([140, 16, 6]);
+    plan.mesh.grading = 4.0;
+    let mut problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, 1));
+    let contact = SelfContact::new(&problem.tube).with_range(0.5 * RANGE);
+    problem.contact = Some(Arc::new(contact.clone()));
+    let (load, u) = (&coarse.path.state().load, &coarse.path.state().u);
+    let u = prolong(&coarse.problem.tube, &problem.tube, u);
+    assert_eq!(contact.crossing(&u), None);
+    let settings = plan.solver.clone();
+    let mut path = Path::begin(problem.clone(), load.clone(), u, settings).unwrap();
+    path.begin_segment(load.clone());
+    path.advance(1.0, &mut ()).unwrap();
+    let state = path.state();
+    assert!(state.in_equilibrium());
+    assert_eq!(contact.crossing(&state.u), None);
+    let of = |report: ContactReport| report.faces[0].expect("the outer wall touches itself");
+    let (fine, wide) = (
+        of(problem.contact_report(&state.u).unwrap()),
+        of(coarse.contact.unwrap()),
+    );
+    assert!(fine.gap > 0.0 && fine.gap < wide.gap, "{}", fine.gap);
+    assert!(state.energy < coarse.path.state().energy);
 }
 
 #[test]
