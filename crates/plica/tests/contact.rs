@@ -82,7 +82,7 @@ fn a_fold_that_touches_itself_keeps_its_flanks_apart_and_in_equilibrium() {
 #[test]
 fn a_fold_that_touches_itself_is_carried_onto_a_finer_graded_mesh_and_range() {
     let coarse = folded(Some(RANGE));
-    let mut plan = main_case([140, 16, 6]);
+    let mut plan = main_case([100, 16, 5]);
     plan.mesh.grading = 4.0;
     let mut problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, 1));
     let contact = SelfContact::new(&problem.tube).with_range(0.5 * RANGE);
