@@ -1,7 +1,7 @@
 //! The documents agree with the files, commands, tests and columns they name.
 
 use crate::common::{SHORT, files, quoted, read, root, succeed};
-use plica::study::{ContactRow, Row, WallContactRow};
+use plica::study::Row;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
@@ -141,19 +141,8 @@ fn the_tests_named_in_verification_exist() {
 
 #[test]
 fn the_columns_of_the_history_are_documented() {
-    let mut row = Row::zero(&["M"], ["END", "END"]).with_pressures();
-    let zero = Some(0.0);
-    let wall = WallContactRow {
-        area: zero,
-        force: zero,
-        gap: zero,
-        from: zero,
-        to: zero,
-    };
-    row.contact = ContactRow {
-        energy: zero,
-        walls: [wall; 2],
-    };
+    let row = Row::zero(&["M"], ["END", "END"]);
+    let row = row.with_pressures().with_contact();
     let mut columns = row.header();
     columns.dedup();
 

@@ -139,8 +139,6 @@ fn runs_that_cannot_be_tested_are_explained() {
     );
     let twisted = short.replace("[output]", "drive.ileum.twist_degrees = 5.0\n[output]");
     note("twisted", 2, run_and_test(&directory, &twisted, &[]));
-    let touching = format!("contact = true\n{short}");
-    note("contact", 2, run_and_test(&directory, &touching, &[]));
 
     let state = directory.join("run/states/state-0001.safetensors");
     let case = directory.join("run/case.toml");

@@ -33,6 +33,7 @@ pub mod draw;
 pub mod export;
 pub mod page;
 pub mod report;
+mod sampled_tube;
 pub mod vtk;
 
 #[cfg(test)]

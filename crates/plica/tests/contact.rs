@@ -3,9 +3,10 @@
 use crate::common::main_case;
 use plica::assembly::SplineTube;
 use plica::contact::{ContactReport, SelfContact};
-use plica::equilibrium::{TubeProblem, prolong};
+use plica::equilibrium::{TubeProblem, UnstableMode, prolong, test_stability};
 use plica::measure::Measures;
 use plica::solve::{Equilibrium, Path};
+use plica::stability::Harmonics;
 use std::sync::Arc;
 
 /// Length ratio at the end of the path, at which the flanks of the fold are 0.020 D apart without contact.
@@ -49,7 +50,7 @@ fn folded(range: Option<f64>) -> Reached {
     }
     let (load, u) = (&path.state().load, &path.state().u);
     Reached {
-        contact: problem.contact_report(u),
+        contact: problem.contact_report(load, u),
         gap: Measures::of(&problem.tube, load, u).gap,
         problem,
         path,
@@ -139,9 +140,92 @@ fn the_tangent_of_a_touching_fold_is_the_derivative_of_its_residual() {
 }
 
 #[test]
-fn a_state_that_touches_nowhere_is_the_same_to_the_bit_with_contact() {
+fn the_stability_test_of_a_touching_state_includes_contact() {
+    let Reached {
+        problem, mut path, ..
+    } = folded(Some(RANGE));
+    let state = path.state().clone();
+    let harmonics = Harmonics::new(&problem, 3);
+    let tested = harmonics.test(&state.load, &state.u).unwrap();
+    let mut without = problem.clone();
+    without.contact = None;
+    let free = Harmonics::new(&without, 3);
+    let free = free.test(&state.load, &state.u).unwrap();
+    let verdict = test_stability(&problem, &mut path, 3, &mut ());
+    let mut difference = 0.0_f64;
+    for (n, (with, without)) in tested.iter().zip(&free).enumerate() {
+        println!("{n}: {with:?} {without:?}");
+        difference = difference.max((with.lowest / without.lowest - 1.0).abs());
+        assert_eq!(with.negative > 0, with.lowest < 0.0, "{n}: {with:?}");
+        let unstable = verdict
+            .unstable_modes()
+            .any(|mode| mode == UnstableMode::Circumferential(n));
+        assert_eq!(unstable, with.negative > 0, "{n}: {verdict}");
+    }
+    // Flanks that press push each other aside, or keep each other from moving together.
+    assert!(difference > 1e-4, "{difference}");
+    // Eigenvalue and quotient of differences of the residual agree for a mode of the fold.
+    let pairs = harmonics.lowest(0, &state.load, &state.u, 6).unwrap();
+    for pair in &pairs {
+        let residual = |h: f64| {
+            let moved = state.u.iter().zip(&pair.vector).map(|(u, x)| u + h * x);
+            let forces = problem.forces(&state.load, &moved.collect::<Vec<_>>());
+            forces.unwrap().residual
+        };
+        let (low, high) = (residual(-1e-7), residual(1e-7));
+        let differences = low.iter().zip(&high).map(|(low, high)| (high - low) / 2e-7);
+        let quotient: f64 = differences.zip(&pair.vector).map(|(d, x)| d * x).sum();
+        assert!(
+            (quotient / pair.value - 1.0).abs() < 1e-3,
+            "{quotient} {}",
+            pair.value
+        );
+    }
+}
+
+#[test]
+fn a_state_that_touches_nowhere_is_the_same_with_contact() {
     let free = folded(None);
     let narrow = folded(Some(1e-4));
-    assert!(narrow.contact.unwrap().faces.iter().all(Option::is_none));
-    assert_eq!(free.path.state().u, narrow.path.state().u);
+    let contact = narrow.contact.as_ref().unwrap();
+    assert!(contact.faces.iter().all(Option::is_none));
+    // Free of twist, too, which is rounding in a tube without contact.
+    let [free, narrow] = [&free, &narrow].map(|reached| &reached.path.state().u);
+    let apart = free.iter().zip(narrow).map(|(a, b)| (a - b).abs());
+    let apart = apart.fold(0.0, f64::max);
+    assert!(apart < 1e-13, "{apart}");
+}
+
+#[test]
+fn a_pushed_end_closes_a_fold_without_passing_through_it() {
+    // In few large steps: the prediction of a step, and the state whose end alone is moved, lie behind the wall.
+    let Reached {
+        problem, mut path, ..
+    } = folded(Some(RANGE));
+    let contact = problem.contact.as_ref().unwrap();
+    let mut load = path.state().load.clone();
+    load.ends[1].displacement = -0.6;
+    path.begin_segment(load);
+    for step in 1..=3 {
+        let end = path.advance(f64::from(step) / 3.0, &mut ());
+        assert_eq!(contact.crossing(&path.state().u), None, "step {step}");
+        if let Err(error) = end {
+            panic!("{step}: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_tube_with_contact_does_not_twist() {
+    let plan = main_case([10, 8, 4]);
+    let tube = || SplineTube::new(&plan.tube, &plan.mesh, 1);
+    let problem = TubeProblem::new(tube()).with_contact();
+    let mut u = vec![0.1; problem.tube.unknowns()];
+    problem.apply_prescribed(&plan.tube.rest(), &mut u);
+    let free = TubeProblem::new(tube());
+    for (i, prescribed) in problem.prescribed().iter().enumerate() {
+        let twists = i % 3 == 2;
+        assert_eq!(*prescribed, twists || free.prescribed()[i], "{i}");
+        assert!(!twists || u[i] == 0.0, "{i}: {}", u[i]);
+    }
 }

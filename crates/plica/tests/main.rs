@@ -3,6 +3,7 @@
 mod common;
 
 mod contact;
+mod contact_cases;
 mod equilibrium;
 mod examples;
 mod fuzz;

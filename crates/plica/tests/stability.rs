@@ -49,7 +49,7 @@ fn a_compressed_tube_buckles_at_euler_s_load() {
 
     let size = [length, thickness, poisson_ratio];
     let problem = passive(size, Support::Fixed, [63, 12, 4]);
-    let harmonics = Harmonics::new(&problem.tube, 3);
+    let harmonics = Harmonics::new(&problem, 3);
     let (rest, u) = (problem.tube.tube.rest(), vec![0.0; problem.tube.unknowns()]);
     let mut path = Path::begin(&problem, rest.clone(), u, Settings::default()).unwrap();
     let mut loaded = rest;
@@ -89,7 +89,7 @@ fn neutral_rigid_motions_are_excluded() {
     let size = [length, thickness, poisson_ratio];
     let problem = passive(size, Support::Sliding, [4, 60, 5]);
     let rest = problem.tube.tube.rest();
-    let harmonics = Harmonics::new(&problem.tube, 1);
+    let harmonics = Harmonics::new(&problem, 1);
     let u = vec![0.0; problem.tube.unknowns()];
     let mut path = Path::begin(&problem, rest.clone(), u, Settings::default()).unwrap();
     let mut loaded = rest;

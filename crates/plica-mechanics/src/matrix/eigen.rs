@@ -5,8 +5,8 @@
 //! the inertia of A − σB shows no negative one. Finally, the inertia of A − τB, with τ just below the
 //! last pair, shows whether a lower pair was missed.
 
-use super::block_banded::{BlockBanded, Factor};
 use super::dense::symmetric_eigen;
+use super::{BlockBanded, CoupledBanded, CoupledFactor};
 
 /// Largest number of Lanczos vectors.
 const LANCZOS_VECTORS: usize = 160;
@@ -44,7 +44,7 @@ pub struct NoEigenpairs {
 /// [`NoEigenpairs`] if pairs are still missing after three starting vectors, or the matrices are not
 /// finite.
 pub fn lowest_eigenpairs(
-    a: &BlockBanded,
+    a: &CoupledBanded,
     b: &BlockBanded,
     prescribed: &[bool],
     count: usize,
@@ -58,7 +58,7 @@ pub fn lowest_eigenpairs(
 /// # Errors
 /// Those of [`lowest_eigenpairs`].
 pub fn lowest_eigenpairs_excluding(
-    a: &BlockBanded,
+    a: &CoupledBanded,
     b: &BlockBanded,
     prescribed: &[bool],
     count: usize,
@@ -90,14 +90,14 @@ pub fn lowest_eigenpairs_excluding(
 }
 
 struct Pencil<'a> {
-    a: &'a BlockBanded,
+    a: &'a CoupledBanded,
     b: &'a BlockBanded,
     prescribed: &'a [bool],
 }
 
 impl Pencil<'_> {
     /// A − σB on the free unknowns, factored.
-    fn factor(&self, shift: f64) -> Option<Factor> {
+    fn factor(&self, shift: f64) -> Option<CoupledFactor> {
         let mut shifted = self.a.clone();
         if shift != 0.0 {
             shifted.add_scaled(-shift, self.b);
@@ -107,8 +107,8 @@ impl Pencil<'_> {
     }
 
     /// Returns a shift below all eigenvalues, zero if possible, and the factored A − σB.
-    fn below_all(&self, singular: bool) -> Option<(f64, Factor)> {
-        let negative = |factor: &Factor| factor.negative_pivots();
+    fn below_all(&self, singular: bool) -> Option<(f64, CoupledFactor)> {
+        let negative = |factor: &CoupledFactor| factor.negative_pivots();
         let at_zero = || self.factor(0.0).filter(|factor| negative(factor) == 0);
         if let Some(factor) = (!singular).then(at_zero).flatten() {
             return Some((0.0, factor));
@@ -145,7 +145,7 @@ impl Pencil<'_> {
             let free = (0..m.unknowns()).filter(|&i| !self.prescribed[i]);
             free.map(|i| m.entry(i, i)).sum()
         };
-        (diagonal(self.a) / diagonal(self.b)).abs()
+        (diagonal(&self.a.band) / diagonal(self.b)).abs()
     }
 
     /// Returns B x on the free unknowns.
@@ -164,7 +164,7 @@ impl Pencil<'_> {
     fn lanczos(
         &self,
         shift: f64,
-        factor: &Factor,
+        factor: &CoupledFactor,
         count: usize,
         start: u64,
         known: &[Eigenpair],
@@ -307,7 +307,7 @@ mod tests {
 
     /// A chain of 40 unit masses between 41 unit springs, in blocks of two, with `shift` subtracted from
     /// its diagonal: λ_k = 4 sin²(kπ/82) − shift.
-    fn chain(shift: f64) -> (BlockBanded, BlockBanded) {
+    fn chain(shift: f64) -> (CoupledBanded, BlockBanded) {
         let (mut a, mut b) = (BlockBanded::zeros(20, 2, 1), BlockBanded::zeros(20, 2, 1));
         let [first, coupled, second, on] = [(0, 0, 0), (0, 1, 0), (0, 1, 1), (1, 0, 1)]
             .map(|(d, row, column)| a.place(d, row, column));
@@ -321,7 +321,7 @@ mod tests {
         for panel in b.panels_mut() {
             (panel[first], panel[second]) = (1.0, 1.0);
         }
-        (a, b)
+        (a.into(), b)
     }
 
     fn eigenvalue(k: usize, masses: usize) -> f64 {
@@ -349,6 +349,22 @@ mod tests {
                 assert!(dot(&residual, &residual).sqrt() < 1e-8);
             }
         }
+    }
+
+    #[test]
+    fn a_spring_between_the_ends_closes_the_chain_to_a_ring() {
+        // λ = 4 sin²(kπ/40) of a ring of 40 masses, each but the first and the last twice.
+        let (mut a, b) = chain(0.05);
+        a.add_at(39, 0, -1.0);
+        assert!(!a.far.is_empty());
+        let pairs = lowest_eigenpairs(&a, &b, &[false; 40], 5).unwrap();
+        for (k, pair) in [0, 1, 1, 2, 2].iter().zip(&pairs) {
+            let expected = 4.0 * (f64::from(*k) * std::f64::consts::PI / 40.0).sin().powi(2) - 0.05;
+            assert!((pair.value - expected).abs() < 1e-11, "{k}: {}", pair.value);
+        }
+        let prescribed: Vec<bool> = (0..40).map(|i| i == 39).collect();
+        let fixed = lowest_eigenpairs(&a, &b, &prescribed, 1).unwrap()[0].value;
+        assert!((fixed + 0.05 - eigenvalue(1, 39)).abs() < 1e-11, "{fixed}");
     }
 
     #[test]

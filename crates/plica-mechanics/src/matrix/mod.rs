@@ -3,6 +3,7 @@
 
 mod block_banded;
 mod block_sparse;
+mod coupled;
 mod dense;
 mod eigen;
 mod elimination;
@@ -11,6 +12,7 @@ mod tall_matrix;
 
 pub use block_banded::{BlockBanded, Factor, Singular};
 pub use block_sparse::SparseFactor;
+pub use coupled::{CoupledBanded, CoupledFactor};
 pub use dense::multiply;
 pub use eigen::{Eigenpair, NoEigenpairs, lowest_eigenpairs, lowest_eigenpairs_excluding};
 pub use far_blocks::FarBlocks;

@@ -28,7 +28,13 @@ const fn field(
     }
 }
 
-/// All fields.
+/// The fields of runs with contact.
+pub(super) const OF_CONTACT: &[Field] = &[field("contact_pressure", &[], |points, scale| {
+    let stress = scale.stress as f32;
+    scalar(points, |point| stress * point.contact_pressure)
+})];
+
+/// The fields of all runs.
 pub(super) const FIELDS: &[Field] = &[
     field("displacement", XYZ, |points, scale| {
         let length = scale.length as f32;

@@ -15,22 +15,23 @@
 //! | `von_mises_stress` | √(3/2 s : s) with the deviator s of σ |
 //! | `elastic_stretch` | principal stretches of Fe, largest first |
 //! | `elastic_direction_1` to `_3` | unit vectors of the principal directions in the deformed wall |
+//! | `contact_pressure` | pressure of contact on the faces, per current area; zero inside; in runs with contact |
 //! | `green_lagrange_strain` | ½ (FᵀF − 1) in the axes ζ (along), η (around), ξ (outwards) of the undeformed wall: ζζ, ηη, ξξ, ζη, ηξ, ζξ |
 
 mod fields;
 mod point;
 mod points;
 
+use crate::sampled_tube::SampledTube;
 use crate::vtk::{Column, Document, Series};
-use fields::FIELDS;
-use plica::assembly::SplineTube;
+use fields::{FIELDS, OF_CONTACT};
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row, Scale};
 use points::{Points, boundary_lattice, meridian_lattice, volume_lattice};
 
 /// Converts states of a run to VTK files.
 pub struct Exporter {
-    tube: SplineTube,
+    tube: SampledTube,
     scale: Scale,
 }
 
@@ -82,11 +83,17 @@ const FACE: &str = "face";
 impl Exporter {
     /// Creates an exporter for the states of a run.
     pub fn new(plan: &Plan) -> Self {
-        let rings = plan.mesh.rings(plan.symmetry);
         Self {
-            tube: SplineTube::new(&plan.tube, &plan.mesh, rings),
+            tube: SampledTube::of(plan),
             scale: Scale::of(plan.units.as_ref()),
         }
+    }
+
+    /// Returns the fields, those of contact only if the run has it.
+    fn fields(&self) -> impl Iterator<Item = &'static fields::Field> {
+        let contact = self.tube.has_contact();
+        let of_contact: &[fields::Field] = if contact { OF_CONTACT } else { &[] };
+        FIELDS.iter().chain(of_contact)
     }
 
     /// Returns the bytes of the file of a state.
@@ -97,9 +104,10 @@ impl Exporter {
             Geometry::Meridian => meridian_lattice(tube, INTERVALS),
             Geometry::Volume | Geometry::Linear => volume_lattice(tube),
         };
+        let sampled = tube.state(&state.load, &state.u);
         let points = match geometry {
-            Geometry::Meridian => Points::meridian(tube, &state.load, &state.u, lattice),
-            _ => Points::sample(tube, &state.load, &state.u, lattice),
+            Geometry::Meridian => Points::meridian(&sampled, lattice),
+            _ => Points::sample(&sampled, lattice),
         };
         let positions: Vec<[f64; 3]> = points
             .evaluate(|point, rotation| rotation.vector(point.position))
@@ -120,7 +128,7 @@ impl Exporter {
         for (name, value) in values(row) {
             file.field_data(name, value);
         }
-        for field in FIELDS {
+        for field in self.fields() {
             file.point_data(
                 field.name,
                 field.components,
@@ -141,7 +149,7 @@ impl Exporter {
     /// Appends a state to a series, with the number of the state as the time.
     pub fn append(&self, series: &mut Series, state: &SavedState, row: &Row) {
         let lattice = boundary_lattice(&self.tube, FACETS);
-        let points = Points::sample(&self.tube, &state.load, &state.u, lattice);
+        let points = Points::sample(&self.tube.state(&state.load, &state.u), lattice);
         let length = self.scale.length;
         let positions =
             points.evaluate(|p, rotation| rotation.vector(p.position).map(|x| length * x));
@@ -149,7 +157,7 @@ impl Exporter {
             let values = (field.values)(&points, &self.scale);
             (field.name, field.components.len().max(1), values)
         };
-        let fields = FIELDS.iter().map(field).collect();
+        let fields = self.fields().map(field).collect();
         series.push(state.row as f64, values(row), positions, fields);
     }
 }

@@ -1,7 +1,7 @@
 //! Position and fields of a point of the wall in (x, y, z) coordinates.
 #![allow(non_snake_case)] // the formulas use the letters of their sources
 
-use plica::assembly::Sample;
+use crate::sampled_tube::FieldSample;
 use plica::tensor::Tensor2;
 
 /// Position and field values of a point.
@@ -27,6 +27,8 @@ pub(super) struct PointData {
     pub stretches: [f32; 3],
     /// Principal directions.
     pub directions: [[f32; 3]; 3],
+    /// Pressure of contact in units of E.
+    pub contact_pressure: f32,
     /// Green–Lagrange strain ½ (FᵀF − 1): ζζ, ηη, ξξ, ζη, ηξ, ζξ.
     pub strain: [f32; 6],
 }
@@ -74,7 +76,7 @@ impl Rotation {
 
 impl PointData {
     /// Converts a sample of the tube from (z, outwards, around) to (x, y, z).
-    pub fn new(sample: &Sample) -> Self {
+    pub fn new(sample: &FieldSample) -> Self {
         let rotation = Rotation::by(sample.element_angle);
         let reorder = |[z, x, y]: [f64; 3]| [x, y, z];
         let vector = |v: [f64; 3]| rotation.vector(reorder(v));
@@ -112,6 +114,7 @@ impl PointData {
             von_mises: existing(sample.von_mises()) as f32,
             stretches: stretches.map(|(stretch, _)| stretch as f32),
             directions: stretches.map(|(_, v)| vector(oriented(v)).map(|x| x as f32)),
+            contact_pressure: sample.contact_pressure as f32,
             strain: [(0, 0), (2, 2), (1, 1), (0, 2), (2, 1), (0, 1)].map(|(i, j)| E(i, j) as f32),
         }
     }
@@ -129,6 +132,7 @@ fn oriented(v: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::fixture;
+    use crate::sampled_tube::SampledState;
     use plica::assembly::{Point, SplineTube};
     use plica::material::{Material, NeoHookean, Volumetric};
     use plica::tube::{Integration, Mesh, Tube};
@@ -163,15 +167,12 @@ mod tests {
                 for k in 0..=60 {
                     for layer in 0..=6 {
                         let (z, radius) = (f64::from(k) / 60.0, 0.4 + 0.1 * f64::from(layer) / 6.0);
-                        let sample = tube.sample(
-                            &load,
-                            &u,
-                            Point {
-                                z,
-                                radius,
-                                angle: 0.0,
-                            },
-                        );
+                        let state = SampledState::without_contact(&tube, &load, &u);
+                        let sample = state.at(Point {
+                            z,
+                            radius,
+                            angle: 0.0,
+                        });
                         let point = PointData::new(&sample);
                         let stresses = [
                             point.stress,

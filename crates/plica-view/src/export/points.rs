@@ -1,9 +1,9 @@
 //! Sampling of the wall at the points of a lattice.
 
 use super::point::{PointData, Rotation};
+use crate::sampled_tube::SampledState;
 use crate::vtk::Lattice;
 use plica::assembly::{Point, SplineTube};
-use plica::tube::Load;
 use rayon::prelude::*;
 
 /// Samples of one sector, ordered outwards, then around, then along; the other sectors are rotated copies.
@@ -57,7 +57,8 @@ pub(super) fn meridian_lattice(tube: &SplineTube, most: [usize; 2]) -> Lattice {
 
 impl Points {
     /// Samples a state at the points of a lattice of the meridian at angle zero.
-    pub fn meridian(tube: &SplineTube, load: &Load, u: &[f64], lattice: Lattice) -> Self {
+    pub fn meridian(state: &SampledState<'_>, lattice: Lattice) -> Self {
+        let tube = state.tube();
         let [outwards, _, along] = lattice.points();
         let radii = tube.wall.positions(outwards);
         let zs = tube.axial.positions(along);
@@ -68,7 +69,7 @@ impl Points {
                     radius,
                     angle: 0.0,
                 };
-                PointData::new(&tube.sample(load, u, at))
+                PointData::new(&state.at(at))
             })
         });
         Self {
@@ -80,7 +81,8 @@ impl Points {
     }
 
     /// Samples a state at the points of a lattice.
-    pub fn sample(tube: &SplineTube, load: &Load, u: &[f64], lattice: Lattice) -> Self {
+    pub fn sample(state: &SampledState<'_>, lattice: Lattice) -> Self {
+        let tube = state.tube();
         let [outwards, all_around, along] = lattice.points();
         let sectors = tube.sector.around / tube.sector.rings;
         let around = all_around / sectors;
@@ -93,9 +95,9 @@ impl Points {
                 // Element 0 is centred on angle zero.
                 let elements = j as f64 / per_element as f64 - 0.5;
                 let angle = elements * tube.sector.angle();
-                radii.iter().map(move |&radius| {
-                    PointData::new(&tube.sample(load, u, Point { z, radius, angle }))
-                })
+                radii
+                    .iter()
+                    .map(move |&radius| PointData::new(&state.at(Point { z, radius, angle })))
             })
         });
         let sector = tube.sector.angle() * tube.sector.rings as f64;
@@ -141,7 +143,9 @@ mod tests {
     fn points(tube: &SplineTube, lattice: Lattice) -> Vec<PointData> {
         // Wider along the tube, and twisted.
         let u = tube.control_values_from(|z, r, _| [0.1 * z * z, 0.2 * z * r, 0.3 * z * r]);
-        let points = Points::sample(tube, &tube.tube.rest(), &u, lattice);
+        let load = tube.tube.rest();
+        let state = SampledState::without_contact(tube, &load, &u);
+        let points = Points::sample(&state, lattice);
         let rotated = points.evaluate(|point, rotation| PointData {
             position: rotation.vector(point.position),
             displacement: rotation.vector_f32(point.displacement),

@@ -4,11 +4,12 @@ use crate::draw::ColourMap;
 #[cfg(test)]
 use crate::draw::ResolvedRange;
 use crate::report::{Field, FieldScales};
+use crate::sampled_tube::{FieldSample, SampledTube};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use plica::assembly::{Point, Sample, SplineTube};
+use plica::assembly::{Point, SplineTube};
 use plica::saved_state::SavedState;
 use plica::study::Plan;
 use rayon::prelude::*;
@@ -26,8 +27,10 @@ const RESOLUTIONS: [[usize; 2]; 4] = [[401, 60], [241, 48], [161, 40], [121, 32]
 pub const STEPS: (f64, f64) = (65535.0, 4095.0);
 /// Code of a missing value.
 const MISSING: u16 = u16::MAX;
-/// Numbers per point, two bytes each.
-const NUMBERS: usize = 3 + Field::ALL.len();
+/// Returns the numbers per point, two bytes each.
+fn numbers(plan: &Plan) -> usize {
+    3 + Field::of_plan(plan).len()
+}
 
 /// Walls of all drawn states of a path.
 ///
@@ -115,17 +118,15 @@ struct Wall {
 
 /// Selects the saved states to draw, which take at most `max_bytes` before compression.
 pub fn drawn(plan: &Plan, saved: &[usize], max_bytes: usize) -> Vec<usize> {
-    let tube = tube_of(plan);
-    let (points, _) = resolution(&tube, saved.len(), max_bytes);
-    let every = (bytes(points) * saved.len()).div_ceil(max_bytes).max(1);
+    let tube = SampledTube::of(plan);
+    let (points, _) = resolution(&tube, numbers(plan), saved.len(), max_bytes);
+    let every = (bytes(points, numbers(plan)) * saved.len())
+        .div_ceil(max_bytes)
+        .max(1);
     // The last state is always kept.
     let kept = |(i, _): &(usize, &usize)| (saved.len() - 1 - i).is_multiple_of(every);
     let kept = saved.iter().enumerate().filter(kept);
     kept.map(|(_, number)| *number).collect()
-}
-
-fn tube_of(plan: &Plan) -> SplineTube {
-    SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry))
 }
 
 impl Scene {
@@ -155,20 +156,22 @@ impl Scene {
         upwards: f64,
         max_bytes: usize,
     ) -> Self {
-        let tube = tube_of(plan);
-        let (points, sectors) = resolution(&tube, states.len(), max_bytes);
-        let labels: Vec<(String, f64)> = Field::ALL.iter().map(|f| f.label(plan)).collect();
+        let tube = SampledTube::of(plan);
+        let (points, sectors) = resolution(&tube, numbers(plan), states.len(), max_bytes);
+        let fields = Field::of_plan(plan).iter();
+        let labels: Vec<(Field, (String, f64))> = fields.map(|f| (*f, f.label(plan))).collect();
         let length = Field::Displacement.label(plan).1;
         let walls: Vec<Wall> = states
             .par_iter()
             .map(|state| {
-                let at = |point| tube.sample(&state.load, &state.u, point);
+                let sampled = tube.state(&state.load, &state.u);
+                let at = |point| sampled.at(point);
                 Wall::of(&tube, points, sectors, upwards, length, &labels, at)
             })
             .collect();
         let scales: Vec<FieldScales> = states
             .par_iter()
-            .map(|state| FieldScales::of(&tube, &state.load, &state.u))
+            .map(|state| FieldScales::of(&tube.state(&state.load, &state.u)))
             .collect();
 
         let bounds = |i: usize| ends(walls.iter().flat_map(|wall| &wall.position[i]));
@@ -187,23 +190,20 @@ impl Scene {
                 add(values, ends(values.iter()), STEPS.1);
             }
         }
-        let fields = Field::ALL.iter().zip(labels).enumerate();
-        let colouring = fields.map(|(i, (field, (label, _)))| {
-            let field = *field;
-            Colouring {
-                name: field.name(),
-                label: crate::draw::label::plain(&label),
-                diverging: field.map() == ColourMap::Diverging,
-                path: Scale::of(path, field, plan),
-                states: scales
-                    .iter()
-                    .map(|scales| Scale::of(scales, field, plan))
-                    .collect(),
-                ends: walls
-                    .iter()
-                    .map(|wall| ends(wall.values[i].iter()))
-                    .collect(),
-            }
+        let fields = labels.into_iter().enumerate();
+        let colouring = fields.map(|(i, (field, (label, _)))| Colouring {
+            name: field.name(),
+            label: crate::draw::label::plain(&label),
+            diverging: field.map() == ColourMap::Diverging,
+            path: Scale::of(path, field, plan),
+            states: scales
+                .iter()
+                .map(|scales| Scale::of(scales, field, plan))
+                .collect(),
+            ends: walls
+                .iter()
+                .map(|wall| ends(wall.values[i].iter()))
+                .collect(),
         });
         Self {
             drawn: true,
@@ -222,12 +222,17 @@ impl Scene {
 }
 
 /// Returns the size of a state in bytes.
-fn bytes(points: [usize; 3]) -> usize {
-    points.iter().product::<usize>() * 2 * NUMBERS
+fn bytes(points: [usize; 3], numbers: usize) -> usize {
+    points.iter().product::<usize>() * 2 * numbers
 }
 
 /// Returns the number of points along, through and around a sector, and the number of sectors.
-fn resolution(tube: &SplineTube, states: usize, max_bytes: usize) -> ([usize; 3], usize) {
+fn resolution(
+    tube: &SplineTube,
+    numbers: usize,
+    states: usize,
+    max_bytes: usize,
+) -> ([usize; 3], usize) {
     let along = 2 * tube.axial.elements() + 1;
     let sector = &tube.sector;
     if sector.rings == 1 {
@@ -241,7 +246,7 @@ fn resolution(tube: &SplineTube, states: usize, max_bytes: usize) -> ([usize; 3]
             .max(2);
         [along.min(most_along), LEVELS[1], around]
     };
-    let small = |points: &[usize; 3]| bytes(*points) * states <= max_bytes;
+    let small = |points: &[usize; 3]| bytes(*points, numbers) * states <= max_bytes;
     let points = RESOLUTIONS.map(of).into_iter().find(small);
     (points.unwrap_or(of(RESOLUTIONS[3])), sectors)
 }
@@ -269,12 +274,12 @@ impl Wall {
         sectors: usize,
         upwards: f64,
         length: f64,
-        labels: &[(String, f64)],
-        sample: impl Fn(Point) -> Sample,
+        labels: &[(Field, (String, f64))],
+        sample: impl Fn(Point) -> FieldSample,
     ) -> Self {
         let mut wall = Self {
             position: [vec![], vec![], vec![]],
-            values: vec![vec![]; Field::ALL.len()],
+            values: vec![vec![]; labels.len()],
         };
         let (zs, radii) = (tube.axial.positions(along), tube.wall.positions(through));
         let (sin, cos) = upwards.sin_cos();
@@ -288,8 +293,7 @@ impl Wall {
                     for (list, x) in wall.position.iter_mut().zip(place) {
                         list.push(length * x);
                     }
-                    let fields = Field::ALL.iter().zip(labels);
-                    for (list, (field, (_, factor))) in wall.values.iter_mut().zip(fields) {
+                    for (list, (field, (_, factor))) in wall.values.iter_mut().zip(labels) {
                         list.push(factor * field.of(&sample));
                     }
                 }
@@ -378,11 +382,11 @@ mod tests {
 
     fn decoded_scene_equals_the_tube(symmetry: Symmetry) {
         let plan = plan(symmetry);
-        let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(symmetry));
+        let tube = SampledTube::of(&plan);
         let (states, upwards) = ([1, 2].map(|row| state(&plan, row)), 0.4);
         let scales = states
             .each_ref()
-            .map(|state| FieldScales::of(&tube, &state.load, &state.u));
+            .map(|state| FieldScales::of(&tube.state(&state.load, &state.u)));
         let path = FieldScales::union(scales);
         let scene = Scene::of(&plan, &states, &path, upwards, 1 << 30);
         assert_eq!(scene.rows, [1, 2]);
@@ -393,10 +397,10 @@ mod tests {
         ZlibDecoder::new(&packed[..])
             .read_to_end(&mut bytes)
             .unwrap();
-        assert_eq!(bytes.len(), 2 * 2 * NUMBERS * count);
+        assert_eq!(bytes.len(), 2 * 2 * numbers(&plan) * count);
         for (k, state) in states.iter().enumerate() {
             let part = |which: usize| {
-                let start = 2 * count * (NUMBERS * k + which);
+                let start = 2 * count * (numbers(&plan) * k + which);
                 &bytes[start..start + 2 * count]
             };
             let position =
@@ -412,15 +416,11 @@ mod tests {
                     point / along / through,
                 );
                 let angle = TAU * j as f64 / (around * scene.sectors) as f64;
-                let sample = tube.sample(
-                    &state.load,
-                    &state.u,
-                    Point {
-                        z: tube.axial.positions(along)[i],
-                        radius: tube.wall.positions(through)[level],
-                        angle: angle + upwards,
-                    },
-                );
+                let sample = tube.state(&state.load, &state.u).at(Point {
+                    z: tube.axial.positions(along)[i],
+                    radius: tube.wall.positions(through)[level],
+                    angle: angle + upwards,
+                });
                 let [z, x, y] = sample.position;
                 let (sin, cos) = upwards.sin_cos();
                 // Rotated so that the angle `upwards` points up.
@@ -429,7 +429,7 @@ mod tests {
                     let off = (position[c][point] - expected[c]).abs();
                     assert!(off <= (scene.high[c] - scene.low[c]) / STEPS.0, "{off}");
                 }
-                for (f, field) in Field::ALL.iter().enumerate() {
+                for (f, field) in Field::of_plan(&plan).iter().enumerate() {
                     let [low, high] = scene.fields[f].ends[k];
                     let off = (values[f][point] - field.of(&sample)).abs();
                     assert!(off <= (high - low) / STEPS.1 + 1e-15, "{field:?} {off}");
@@ -450,13 +450,13 @@ mod tests {
         let plan = plan(Symmetry::None);
         let tube = SplineTube::new(&plan.tube, &plan.mesh, 12);
         let whole = |states: usize| {
-            let (points, sectors) = resolution(&tube, states, 10_000_000);
+            let (points, sectors) = resolution(&tube, numbers(&plan), states, 10_000_000);
             assert_eq!(sectors, 1);
-            bytes(points) * states
+            bytes(points, numbers(&plan)) * states
         };
         assert!(whole(10) <= 10_000_000 && whole(100) <= 10_000_000);
         let saved: Vec<usize> = (0..7).collect();
-        let two = 2 * bytes(resolution(&tube, 7, 1).0);
+        let two = 2 * bytes(resolution(&tube, numbers(&plan), 7, 1).0, numbers(&plan));
         // The last state is always kept.
         assert_eq!(drawn(&plan, &saved, two), [2, 6]);
         assert_eq!(drawn(&plan, &saved, 100 * two), saved);

@@ -225,12 +225,20 @@ fn of_states(rows: &[Row], symmetry: Symmetry) -> Vec<String> {
         "accepted without equilibrium, as the scheme of the case permits.",
     );
     warn(
-        &|row| row.crosses_itself(),
+        &|row| row.crosses_itself() && !row.has_contact(),
         "the wall penetrates itself. There is no contact, so the result is not physical there.",
+    );
+    warn(
+        &|row| row.crosses_itself() && row.has_contact(),
+        "the wall penetrates itself, which contact rules out: please report it.",
     );
     warn(
         &|row| row.has_closed(),
         "the lumen is closed. There is no contact between opposite walls, so the result is not physical there.",
+    );
+    warn(
+        &|row| row.contact.is_unresolved(),
+        "a wall turns by more than 20° within one element: a crease may be finer than the mesh (mesh.refine).",
     );
     warn(
         &|row| row.method == Method::Relaxation && row.step > 0,

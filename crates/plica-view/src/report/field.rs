@@ -1,7 +1,7 @@
 //! Fields for the colours of a picture.
 
 use crate::draw::{ColourMap, Range};
-use plica::assembly::Sample;
+use crate::sampled_tube::FieldSample;
 use plica::study::{Plan, Scale};
 
 /// A scalar field on the wall.
@@ -32,6 +32,8 @@ pub enum Field {
     GrownAround,
     /// Magnitude of the displacement from the stress-free state.
     Displacement,
+    /// Pressure of contact on the faces of the wall; zero inside it.
+    ContactPressure,
 }
 
 /// Energy densities below this, in units of E, are rounding errors of a stress-free wall.
@@ -40,8 +42,8 @@ const ENERGY_ROUNDING: f64 = 1e-12;
 const ROUNDING: f64 = 1e-12;
 
 impl Field {
-    /// All fields.
-    pub const ALL: [Self; 12] = [
+    /// All fields; the last one exists only in runs with contact.
+    pub const ALL: [Self; 13] = [
         Self::EnergyDensity,
         Self::VonMises,
         Self::Pressure,
@@ -54,7 +56,16 @@ impl Field {
         Self::GrownAlong,
         Self::GrownAround,
         Self::Displacement,
+        Self::ContactPressure,
     ];
+
+    /// Returns the fields of a plan.
+    pub fn of_plan(plan: &Plan) -> &'static [Self] {
+        match plan.contact {
+            true => &Self::ALL,
+            false => &Self::ALL[..Self::ALL.len() - 1],
+        }
+    }
 
     /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
@@ -71,6 +82,7 @@ impl Field {
             Self::GrownAlong => "theta-zeta",
             Self::GrownAround => "theta-eta",
             Self::Displacement => "displacement",
+            Self::ContactPressure => "contact-pressure",
         }
     }
 
@@ -93,7 +105,7 @@ impl Field {
     }
 
     /// Returns the dimensionless value at a point.
-    pub fn of(self, sample: &Sample) -> f64 {
+    pub(crate) fn of(self, sample: &FieldSample) -> f64 {
         let s = sample.stress.0;
         match self {
             Self::EnergyDensity if sample.energy_density < ENERGY_ROUNDING => 0.0,
@@ -112,6 +124,7 @@ impl Field {
                 let moved = [0, 1, 2].map(|i| sample.position[i] - sample.reference[i]);
                 above_rounding(moved.iter().map(|x| x * x).sum::<f64>().sqrt())
             }
+            Self::ContactPressure => sample.contact_pressure,
         }
     }
 
@@ -137,6 +150,7 @@ impl Field {
             Self::HoopStress => stress("hoop stress", "*σ*_{η}"),
             Self::AxialStress => stress("axial stress", "*σ*_{ζ}"),
             Self::RadialStress => stress("radial stress", "*σ*_{ξ}"),
+            Self::ContactPressure => stress("pressure of contact", "*p*_{c}"),
             Self::VolumeChange => plain("elastic volume ratio det *F*_{e}"),
             Self::LargestStretch => plain("largest elastic stretch *λ*_{1}"),
             Self::SmallestStretch => plain("smallest elastic stretch *λ*_{3}"),
@@ -160,11 +174,12 @@ fn above_rounding(x: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::fixture;
+    use crate::sampled_tube::SampledState;
     use plica::assembly::{Point, SplineTube};
     use plica::tube::{Mesh, Symmetry};
 
     /// Returns the fields at a point of the wall, displaced by (axial, radial) functions of z and r.
-    fn sample(at: f64, displacement: impl Fn(f64, f64) -> [f64; 2]) -> Sample {
+    fn sample(at: f64, displacement: impl Fn(f64, f64) -> [f64; 2]) -> FieldSample {
         let mesh = Mesh {
             thickness: 20,
             around: 60,
@@ -180,7 +195,7 @@ mod tests {
             radius: at,
             angle: 0.3,
         };
-        tube.sample(&tube.tube.rest(), &u, place)
+        SampledState::without_contact(&tube, &tube.tube.rest(), &u).at(place)
     }
 
     #[test]
@@ -254,7 +269,8 @@ mod tests {
                 | Field::Pressure
                 | Field::HoopStress
                 | Field::AxialStress
-                | Field::RadialStress => ("(kPa)", 20.0),
+                | Field::RadialStress
+                | Field::ContactPressure => ("(kPa)", 20.0),
                 _ => ("", 1.0),
             };
             assert!(label.ends_with(unit) && factor == expected, "{label}");

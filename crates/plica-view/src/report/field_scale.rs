@@ -2,10 +2,10 @@
 
 use super::Field;
 use crate::draw::{DrawError, Range, ResolvedRange, Spread};
+use crate::sampled_tube::{SampledState, SampledTube};
 use plica::assembly::{Point, SplineTube};
 use plica::saved_state::SavedState;
 use plica::study::Plan;
-use plica::tube::Load;
 use rayon::prelude::*;
 use std::borrow::Borrow;
 use std::f64::consts::TAU;
@@ -29,10 +29,10 @@ pub struct FieldScales {
 
 impl FieldScales {
     /// Evaluates all fields of a state.
-    pub fn of(tube: &SplineTube, load: &Load, u: &[f64]) -> Self {
+    pub(crate) fn of(state: &SampledState<'_>) -> Self {
         let mut values = vec![vec![]; Field::ALL.len()];
-        for point in points(tube) {
-            let sample = tube.sample(load, u, point);
+        for point in points(state.tube()) {
+            let sample = state.at(point);
             for (values, field) in values.iter_mut().zip(Field::ALL) {
                 values.push(field.of(&sample));
             }
@@ -49,8 +49,8 @@ impl FieldScales {
         plan: &Plan,
         states: impl ParallelIterator<Item = S>,
     ) -> Self {
-        let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry));
-        let of = |state: S| Self::of(&tube, &state.borrow().load, &state.borrow().u);
+        let tube = SampledTube::of(plan);
+        let of = |state: S| Self::of(&tube.state(&state.borrow().load, &state.borrow().u));
         let scales: Vec<Self> = states.map(of).collect();
         Self::union(scales)
     }

@@ -4,6 +4,7 @@ mod columns;
 mod field;
 mod field_scale;
 mod labels;
+mod manometry;
 mod modes;
 mod orientation;
 mod pictures;

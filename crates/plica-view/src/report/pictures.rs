@@ -1,6 +1,7 @@
 //! Standard pictures of a run.
 
 use super::labels::{scale_bar, unit};
+use super::manometry::Manometry;
 use super::orientation::upward_angle;
 use super::selection::{Abscissa, Selection};
 use super::surfaces::{SurfaceOptions, tube_surfaces};
@@ -10,7 +11,7 @@ use crate::draw::{
     Chart, Compression, Curve, Cutaway, DrawError, Marker, Panel, Range, ResolvedRange,
     VerticalLine,
 };
-use plica::assembly::SplineTube;
+use crate::sampled_tube::SampledTube;
 use plica::run_directory::{Snapshot, Summary};
 use plica::study::findings::Interval;
 use plica::study::{Plan, Row, Scale};
@@ -24,7 +25,8 @@ const WIDTH: usize = 1200;
 ///
 /// - `energy.png`: strain energy along the path;
 /// - `walls.png`: outer and inner wall at selected states;
-/// - `tube.png`: the tube cut open at the same states, coloured by strain energy density.
+/// - `tube.png`: the tube cut open at the same states, coloured by strain energy density;
+/// - `manometry.png` and the table `manometry.csv`, if a wall touches itself: the force of contact along the tube.
 ///
 /// # Errors
 /// [`DrawError`] if a picture has no finite value.
@@ -32,8 +34,7 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
     if summary.snapshots().is_empty() || summary.rows().len() < 2 {
         return Ok(vec![]);
     }
-    let rings = plan.mesh.rings(plan.symmetry);
-    let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
+    let tube = SampledTube::of(plan);
     let selection = Selection::of(summary);
     let scale = Scale::of(plan.units.as_ref());
     let state = |row: &&Row| {
@@ -66,7 +67,14 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
         ("walls.png", walls),
         ("tube.png", tube?),
     ];
-    Ok(pictures.map(|(name, png)| (name.to_owned(), png)).into())
+    let mut pictures: Vec<(String, Vec<u8>)> =
+        pictures.map(|(name, png)| (name.to_owned(), png)).into();
+    if let Some(manometry) = Manometry::of(plan, summary) {
+        let chart = manometry.chart(&selection).png(WIDTH)?;
+        pictures.push(("manometry.png".into(), chart));
+        pictures.push(("manometry.csv".into(), manometry.table().into_bytes()));
+    }
+    Ok(pictures)
 }
 
 /// Returns the label of the energy axis.
@@ -133,7 +141,7 @@ fn energy(plan: &Plan, summary: &Summary, selection: &Selection<'_>) -> Chart {
 /// Returns the colour range of the strain energy density for the states that are saved, or all if none is, and for those shown.
 fn path_range(
     plan: &Plan,
-    tube: &SplineTube,
+    tube: &SampledTube,
     (rows, snapshots): (&[Row], &[Option<Snapshot>]),
     shown: &[&Row],
 ) -> Result<ResolvedRange, DrawError> {
@@ -152,7 +160,7 @@ fn path_range(
         .enumerate()
         .filter_map(|(i, snapshot)| {
             let Snapshot { load, u } = snapshot.as_ref()?;
-            (is_saved(i) || is_shown(&rows[i])).then(|| FieldScales::of(tube, load, u))
+            (is_saved(i) || is_shown(&rows[i])).then(|| FieldScales::of(&tube.state(load, u)))
         });
     FieldScales::union(scales.collect::<Vec<_>>()).range(Field::EnergyDensity, plan, None)
 }
@@ -160,7 +168,7 @@ fn path_range(
 /// Draws the tube cut open at the selected states, with the angle `upwards` pointing up.
 fn cutaway(
     plan: &Plan,
-    tube: &SplineTube,
+    tube: &SampledTube,
     chosen: &[Wall<'_>],
     upwards: f64,
     range: ResolvedRange,
@@ -172,7 +180,7 @@ fn cutaway(
     };
     let panel = |look: &SurfaceOptions, state: &Wall<'_>| Panel {
         label: state.label.clone(),
-        surfaces: tube_surfaces(tube, state.load, state.u, upwards, look),
+        surfaces: tube_surfaces(&tube.state(state.load, state.u), upwards, look),
         ..Panel::default()
     };
     let picture = Cutaway {
@@ -219,7 +227,7 @@ mod tests {
     fn a_field_has_one_range_and_one_maximum_in_every_picture_and_on_the_page() {
         for symmetry in [Symmetry::Axisymmetric, Symmetry::Fold(4)] {
             let plan = fixture::plan(symmetry);
-            let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(symmetry));
+            let tube = SampledTube::of(&plan);
             let states = [0, 1, 2].map(|number| fixture::state(&plan, number));
             let rows = [0, 1, 2].map(|step| Row {
                 step,

@@ -9,7 +9,7 @@ use crate::draw::{
     Chart, Curve, Cutaway, DrawError, Image, Marker, Panel, Range, ResolvedRange, VerticalLine,
     animation,
 };
-use plica::assembly::SplineTube;
+use crate::sampled_tube::SampledTube;
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row, Scale};
 use rayon::prelude::*;
@@ -83,7 +83,7 @@ pub(super) fn cutaway(
     path: &FieldScales,
     look: &Appearance,
 ) -> Result<Cutaway, DrawError> {
-    let tube = spline_tube(plan);
+    let tube = SampledTube::of(plan);
     let upwards = upward_angle(states.iter().map(|(_, row)| row), &scale(plan));
     let range = range(plan, states, path, look)?;
     let coarse = coarse(&tube, plan, states, upwards, look);
@@ -115,7 +115,7 @@ pub fn animate(
     seconds: f64,
     proceed: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Option<Vec<u8>>, DrawError> {
-    let tube = spline_tube(plan);
+    let tube = SampledTube::of(plan);
     let upwards = upward_angle(states.iter().map(|(_, row)| row), &scale(plan));
     // A coarse sampling of all states determines their common bounds.
     let bounds = states.par_iter().map(|shown| {
@@ -158,11 +158,7 @@ fn scale(plan: &Plan) -> Scale {
     Scale::of(plan.units.as_ref())
 }
 
-fn spline_tube(plan: &Plan) -> SplineTube {
-    SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(plan.symmetry))
-}
-
-fn surface_options(tube: &SplineTube, plan: &Plan, look: &Appearance) -> SurfaceOptions {
+fn surface_options(tube: &SampledTube, plan: &Plan, look: &Appearance) -> SurfaceOptions {
     SurfaceOptions {
         field: look.field,
         factor: look.field.label(plan).1,
@@ -172,7 +168,7 @@ fn surface_options(tube: &SplineTube, plan: &Plan, look: &Appearance) -> Surface
 
 /// Draws states with a coarse sampling.
 fn coarse(
-    tube: &SplineTube,
+    tube: &SampledTube,
     plan: &Plan,
     states: &[Shown],
     upwards: f64,
@@ -186,14 +182,14 @@ fn coarse(
 }
 
 fn panel(
-    tube: &SplineTube,
+    tube: &SampledTube,
     (state, row): &Shown,
     upwards: f64,
     look: &SurfaceOptions,
     shown: &Appearance,
 ) -> Panel {
-    let surfaces =
-        |look: &SurfaceOptions| tube_surfaces(tube, &state.load, &state.u, upwards, look);
+    let sampled = tube.state(&state.load, &state.u);
+    let surfaces = |look: &SurfaceOptions| tube_surfaces(&sampled, upwards, look);
     let removed = look.removed().filter(|_| shown.see_through);
     Panel {
         label: state_label(row),

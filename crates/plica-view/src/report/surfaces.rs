@@ -3,6 +3,7 @@
 use super::Field;
 use super::sampling::{MeshInfo, Sampled, Tolerance};
 use crate::draw::{Cutaway, DrawError, Opening, REAR_HALF, ResolvedRange, Surface};
+use crate::sampled_tube::SampledState;
 use plica::assembly::{Point, SplineTube};
 use plica::tube::Load;
 use std::cell::RefCell;
@@ -102,22 +103,22 @@ impl SurfaceOptions {
 /// Returns the surfaces of a tube without its near half and with the strain energy density in units of E; the angle `upwards`
 /// points up.
 pub fn open_tube_surfaces(tube: &SplineTube, load: &Load, u: &[f64], upwards: f64) -> Vec<Surface> {
-    tube_surfaces(tube, load, u, upwards, &SurfaceOptions::half(tube))
+    let state = SampledState::without_contact(tube, load, u);
+    tube_surfaces(&state, upwards, &SurfaceOptions::half(tube))
 }
 
 /// Returns the surfaces of a tube; the angle `upwards` points up.
 pub(super) fn tube_surfaces(
-    tube: &SplineTube,
-    load: &Load,
-    u: &[f64],
+    state: &SampledState<'_>,
     upwards: f64,
     look: &SurfaceOptions,
 ) -> Vec<Surface> {
+    let tube = state.tube();
     let elements = tube.axial.elements();
     let sample = |along: f64, angle: f64, xi: f64| {
         let z = tube.axial.position(along);
         let radius = tube.tube.inner_radius() + xi * tube.tube.thickness;
-        let sample = tube.sample(load, u, Point { z, radius, angle });
+        let sample = state.at(Point { z, radius, angle });
         (sample.position, look.factor * look.field.of(&sample))
     };
     // An axisymmetric tube is sampled on one meridian, which is rotated.

@@ -21,14 +21,18 @@ mod curve;
 mod energy;
 mod nearest;
 mod pairs;
+mod pressure;
 mod report;
 mod step;
+mod surface;
 #[cfg(test)]
 mod tests;
 
 pub use crate::assembly::Barrier;
 pub use curve::Face;
+pub use pressure::{PressedPoint, PressureField, place_of};
 pub use report::{ContactReport, FaceContact};
+pub use surface::{BIOT, CREASE, FaceSurface};
 
 use crate::assembly::SplineTube;
 use curve::FaceCurve;

@@ -53,6 +53,16 @@ impl FaceQuadrature {
             areas,
         }
     }
+
+    /// Returns the points of an element, from 0 to 1, with their weights.
+    pub fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+
+    /// Returns the area at rest of an element.
+    pub fn area(&self, element: usize) -> f64 {
+        self.areas[element]
+    }
 }
 
 /// Returns all pairs of a state, in the order of their elements. The distance of a point from itself is not a pair, nor
@@ -87,7 +97,8 @@ pub fn pairs(
     by_element.concat()
 }
 
-fn pairs_of_point(
+/// Adds the pairs of a point x with points y of one element.
+pub fn pairs_of_point(
     face: &FaceCurve,
     (e, a, xi): (usize, &Bezier, f64),
     (other, b): (usize, &Bezier),

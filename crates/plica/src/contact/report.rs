@@ -1,14 +1,16 @@
 //! Contact of a state in numbers.
 
-use super::{ContactState, Face, SelfContact};
+use super::{ContactState, Face, FaceSurface, SelfContact};
 
 /// Contact of a state, on the whole tube.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ContactReport {
     /// Energy of contact Π_c, in E·D³.
     pub energy: f64,
     /// Contact of the outer face and of the inner face; none where a face touches itself nowhere.
     pub faces: [Option<FaceContact>; 2],
+    /// Stretch and turning of the outer and the inner face.
+    pub surfaces: [FaceSurface; 2],
 }
 
 /// Contact of one face with itself.
@@ -25,9 +27,18 @@ pub struct FaceContact {
 }
 
 impl SelfContact {
-    /// Sums up the contact of a state.
-    pub fn report(&self, at: &ContactState, position: impl Fn(usize, f64) -> f64) -> ContactReport {
-        let mut report = ContactReport::default();
+    /// Sums up the contact of a state, with its surfaces.
+    pub fn report(
+        &self,
+        at: &ContactState,
+        surfaces: [FaceSurface; 2],
+        position: impl Fn(usize, f64) -> f64,
+    ) -> ContactReport {
+        let mut report = ContactReport {
+            energy: 0.0,
+            faces: [None; 2],
+            surfaces,
+        };
         for ((curve, _), pairs) in self.faces.iter().zip(&at.0) {
             let mut sum: Option<FaceContact> = None;
             // A point may belong to several pairs; its area counts once.

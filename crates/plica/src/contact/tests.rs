@@ -144,10 +144,12 @@ fn flanks_press_with_the_slope_of_the_barrier() {
     // Flat flanks at the gap g feel the pressure −b′(g) on their area at rest.
     let (tube, u) = hairpin(0.01);
     let contact = contact(&tube);
-    let report = contact.report(&contact.at(&u), |e, xi| {
+    let position = |e: usize, xi: f64| {
         let (from, to) = tube.axial.element(e);
         from + xi * (to - from)
-    });
+    };
+    let surfaces = contact.surfaces(&tube, &tube.tube.rest(), &u);
+    let report = contact.report(&contact.at(&u), surfaces, position);
     let outer = report.faces[0].unwrap();
     assert!(report.energy > 0.0 && outer.force > 0.0);
     let pressure = |gap: f64| -contact.barrier().at(gap).slope;
@@ -155,6 +157,25 @@ fn flanks_press_with_the_slope_of_the_barrier() {
     assert!(
         pressure(0.02) < mean && mean < pressure(outer.gap),
         "{outer:?}"
+    );
+}
+
+#[test]
+fn pressures_carry_the_forces_of_the_flanks() {
+    // ∫ p da over one flank is the force between both; over all points it counts twice. Both flanks are curved.
+    let (tube, u) = hairpin(0.01);
+    let contact = contact(&tube);
+    let pressed = contact.pressed_points(&u, Face::Outer);
+    let carried: f64 = pressed
+        .iter()
+        .map(|point| point.pressure * point.area)
+        .sum();
+    let surfaces = contact.surfaces(&tube, &tube.tube.rest(), &u);
+    let report = contact.report(&contact.at(&u), surfaces, |_, xi| xi);
+    let force = report.faces[0].unwrap().force;
+    assert!(
+        (carried / (2.0 * force) - 1.0).abs() < 0.02,
+        "{carried} {force}"
     );
 }
 

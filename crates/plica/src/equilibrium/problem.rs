@@ -2,12 +2,11 @@
 
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
 use crate::assembly::{Inverted, SplineTube};
-use crate::contact::{ContactReport, SelfContact};
-use crate::matrix::{BlockBanded, FarBlocks, Singular};
+use crate::contact::{ContactReport, Face, SelfContact, place_of};
+use crate::matrix::{BlockBanded, CoupledBanded, CoupledFactor, Singular};
 use crate::monitor::Monitor;
 use crate::solve::{
-    Direct, DirectFactor, Equilibrium, NegativeCurvature, ResidualEvaluation, Solved, Solver,
-    Tangent,
+    Direct, Equilibrium, NegativeCurvature, ResidualEvaluation, Solved, Solver, Tangent,
 };
 use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
@@ -49,7 +48,7 @@ pub enum TubeTangent {
 #[derive(Debug)]
 pub enum TubeSolver {
     /// One ring.
-    Direct(DirectFactor),
+    Direct(CoupledFactor),
     /// Several rings.
     Harmonic(HarmonicSystem),
 }
@@ -74,50 +73,52 @@ impl TubeProblem {
         }
     }
 
-    /// Returns the problem with contact of the wall with itself.
+    /// Returns the problem with contact of the wall with itself. Its circumferential displacements are prescribed to be
+    /// zero: a tube that buckles by twisting leaves the meridians on which contact is found.
     ///
     /// # Panics
     ///
     /// If the tube has several rings.
     pub fn with_contact(mut self) -> Self {
         self.contact = Some(Arc::new(SelfContact::new(&self.tube)));
+        let prescribed = self.prescribed.iter().enumerate();
+        self.prescribed = prescribed.map(|(i, own)| *own || i % 3 == 2).collect();
         self
     }
 
     /// Sums up the contact of a state; none of a problem without contact.
-    pub fn contact_report(&self, u: &[f64]) -> Option<ContactReport> {
+    pub fn contact_report(&self, load: &Load, u: &[f64]) -> Option<ContactReport> {
         let contact = self.contact.as_ref()?;
         let position = |element: usize, xi: f64| {
             let (from, to) = self.tube.axial.element(element);
             from + xi * (to - from)
         };
-        Some(contact.report(&contact.at(u), position))
+        let surfaces = contact.surfaces(&self.tube, load, u);
+        Some(contact.report(&contact.at(u), surfaces, position))
     }
 
-    /// Assembles the tangent of one ring, with contact, for a circumferential mode: its band, and the blocks outside.
-    pub(super) fn ring_tangent(
-        &self,
-        load: &Load,
-        u: &[f64],
-        mode: usize,
-    ) -> (BlockBanded, FarBlocks) {
-        let mut band = match mode {
+    /// Returns the pressure of contact, per current area in E, at axial positions at rest of a face; zero without contact.
+    pub fn contact_pressures(&self, u: &[f64], face: Face, z: &[f64]) -> Vec<f64> {
+        let Some(contact) = &self.contact else {
+            return vec![0.0; z.len()];
+        };
+        let field = contact.pressure(u);
+        let at = |z: &f64| field.at(face, place_of(&self.tube, *z));
+        z.iter().map(at).collect()
+    }
+
+    /// Assembles the tangent of one ring, with contact, for a circumferential mode at a state without twist.
+    pub fn ring_tangent(&self, load: &Load, u: &[f64], mode: usize) -> CoupledBanded {
+        let mut tangent = CoupledBanded::from(match mode {
             0 => self.tube.tangent(load, u),
             n => self.tube.tangent_in_harmonic(load, u, n),
-        };
-        let size = band.size();
-        let mut far = FarBlocks::new(size, band.band());
+        });
         if let Some(contact) = &self.contact {
             contact.add_tangent(&contact.at(u), mode, |row, column, value| {
-                let (i, j) = (row / size, column / size);
-                if i - j > band.band() {
-                    far.add_at(row, column, value);
-                } else {
-                    band.add_at(j, i - j, row % size, column % size, value);
-                }
+                tangent.add_at(row, column, value);
             });
         }
-        (band, far)
+        tangent
     }
 }
 
@@ -131,6 +132,9 @@ impl Equilibrium for TubeProblem {
     }
     fn apply_prescribed(&self, load: &Load, u: &mut [f64]) {
         self.tube.apply_prescribed(load, u);
+        if self.contact.is_some() {
+            u.iter_mut().skip(2).step_by(3).for_each(|u| *u = 0.0);
+        }
     }
     fn between(&self, from: &Load, to: &Load, t: f64) -> Load {
         from.towards(to, t)

@@ -6,7 +6,6 @@ use super::problem::{TubeSolver, TubeTangent};
 use super::verdict::{Instability, Stability, UnstableMode};
 use super::{TubeProblem, harmonic_tangent::HarmonicSystem};
 use crate::assembly::SplineTube;
-use crate::matrix::SparseFactor;
 use crate::monitor::Monitor;
 use crate::solve::{Equilibrium, Operator, Path, Search, lowest};
 use crate::tube::Load;
@@ -79,32 +78,20 @@ pub fn test_stability(
     };
     let known = known.unwrap_or(&[]).to_vec();
     // The blocks of an axisymmetric state are those of its ring alone.
-    let ring = (k > 1).then(|| tube.axisymmetric());
-    let ring = ring.as_ref().unwrap_or(tube);
+    let ring = (k > 1).then(|| TubeProblem::new(tube.axisymmetric()));
+    let ring = ring.as_ref().unwrap_or(problem);
     let load = &path.state().load;
     let negative = |n: usize| {
-        if k == 1 && n == 0 {
+        // With contact, the run's own tangent does not twist.
+        if k == 1 && n == 0 && problem.contact.is_none() {
             return own;
         }
         if let (0, Some(&count)) = (n % repeats, known.get(n / repeats)) {
             return count;
         }
-        let prescribed = ring.prescribed_in_harmonic(n);
+        let prescribed = ring.tube.prescribed_in_harmonic(n);
         // A singular block is at the limit of stability and counts as unstable.
-        if problem.contact.is_some() {
-            let (mut band, mut far) = problem.ring_tangent(load, &of_ring, n);
-            band.constrain(&prescribed);
-            if far.is_empty() {
-                return band.factor().map_or(1, |factor| factor.negative_pivots());
-            }
-            far.constrain(&prescribed);
-            let factor = SparseFactor::of(&band, &far);
-            return factor.map_or(1, |factor| factor.negative_pivots());
-        }
-        let mut tangent = match n {
-            0 => ring.tangent(load, &of_ring),
-            n => ring.tangent_in_harmonic(load, &of_ring, n),
-        };
+        let mut tangent = ring.ring_tangent(load, &of_ring, n);
         tangent.constrain(&prescribed);
         tangent
             .factor()

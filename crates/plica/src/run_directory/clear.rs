@@ -13,7 +13,14 @@ pub(super) fn clear(path: &Path) -> Result<(), RunError> {
     // The case first: without it the rest is not a run, if this is interrupted.
     let mut old = vec![path.join(CASE)];
     old.extend(stability_files(path));
-    let pictures = ["energy.png", "walls.png", "tube.png", "report.html"];
+    let pictures = [
+        "energy.png",
+        "walls.png",
+        "tube.png",
+        "manometry.png",
+        "manometry.csv",
+        "report.html",
+    ];
     old.extend(
         [START, HISTORY, "history.part", "checkpoint.part"]
             .iter()

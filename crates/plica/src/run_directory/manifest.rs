@@ -61,6 +61,12 @@ pub(super) struct Manifest {
     pub states_crossing: usize,
     /// Number of states in which the lumen is closed.
     pub states_closed: usize,
+    /// Number of states in which a wall touches itself; none without contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub states_touching: Option<usize>,
+    /// Number of states in which a crease may be finer than the mesh; none without contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub states_unresolved: Option<usize>,
     /// Profiles and saved states that are missing or damaged at the end of the run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_files: Vec<String>,
@@ -101,6 +107,8 @@ impl Manifest {
             states_untested: 0,
             states_crossing: 0,
             states_closed: 0,
+            states_touching: plan.contact.then_some(0),
+            states_unresolved: plan.contact.then_some(0),
             missing_files: vec![],
             stability: None,
             closed: false,
@@ -169,6 +177,10 @@ impl Manifest {
         self.states_untested = count(|row| row.stability == Stability::Unknown);
         self.states_crossing = count(Row::crosses_itself);
         self.states_closed = count(Row::has_closed);
+        let touching = count(|row| row.contact.touches());
+        self.states_touching = self.states_touching.map(|_| touching);
+        let unresolved = count(|row| row.contact.is_unresolved());
+        self.states_unresolved = self.states_unresolved.map(|_| unresolved);
     }
 }
 

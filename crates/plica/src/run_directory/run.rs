@@ -6,6 +6,7 @@ use super::{
     Checkpoint, Record, RunDirectory, RunError, START, Snapshot, Summary, imperfection,
     name_of_profile, name_of_temporary_state,
 };
+use crate::contact;
 use crate::measure::{Face, Meridians};
 use crate::monitor::Monitor;
 use crate::saved_state::SavedState;
@@ -363,13 +364,27 @@ impl<'a> Run<'a> {
         };
         let [outer, inner] =
             [Face::Outer, Face::Inner].map(|face| meridians.walls(face, angles, &z));
-        let length = self.scale.length;
+        let (length, stress) = (self.scale.length, self.scale.stress);
+        let contact = [contact::Face::Outer, contact::Face::Inner].map(|face| {
+            let contact = self.plan.contact;
+            contact.then(|| {
+                self.study
+                    .problem()
+                    .contact_pressures(&state.unknowns, face, &z)
+            })
+        });
         let rows = (0..z.len()).map(|i| {
             let mut row = vec![length * z[i]];
             for (outer, inner) in outer.iter().zip(&inner) {
                 let (a, b) = (outer.points[i], inner.points[i]);
                 row.extend([a.0, a.1, b.0, b.1].map(|x| length * x));
             }
+            row.extend(
+                contact
+                    .iter()
+                    .flatten()
+                    .map(|pressures| stress * pressures[i]),
+            );
             row
         });
         let header = [
@@ -383,7 +398,10 @@ impl<'a> Run<'a> {
             "trough_inner_z",
             "trough_inner_r",
         ];
-        let header = &header[..1 + 4 * angles.len()];
-        self.directory.table(name, header, rows)
+        let mut header = header[..1 + 4 * angles.len()].to_vec();
+        if self.plan.contact {
+            header.extend(["outer_contact_pressure", "inner_contact_pressure"]);
+        }
+        self.directory.table(name, &header, rows)
     }
 }

@@ -75,6 +75,12 @@ impl<P: Equilibrium> Equilibrium for &P {
     }
 }
 
+/// Returns whether the whole straight way from `u` to `to` may be taken.
+pub(super) fn is_reachable<P: Equilibrium>(problem: &P, u: &[f64], to: &[f64]) -> bool {
+    let step: Vec<f64> = to.iter().zip(u).map(|(a, b)| a - b).collect();
+    problem.longest_step(u, &step) == 1.0
+}
+
 /// Energy and residual at some u.
 #[derive(Clone, Debug)]
 pub struct ResidualEvaluation {

@@ -14,6 +14,9 @@ pub enum Failure<E: std::error::Error> {
     /// The energy is not defined at the shortest step that was tried.
     #[error(transparent)]
     Evaluation(E),
+    /// The start of the step lies behind a barrier of the energy: [`longest_step`](super::Equilibrium::longest_step).
+    #[error("moving the prescribed values leads past a barrier")]
+    Blocked,
     /// The residual is not within the tolerance.
     #[error("{cause} after {linear_solves} solves (residual {relative_residual:.1e})")]
     NotConverged {

@@ -30,6 +30,8 @@
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
+#[cfg(test)]
+mod barrier_tests;
 mod conjugate_gradients;
 mod continuation;
 mod damping_controller;
@@ -66,4 +68,4 @@ pub use path::{Path, PathError, Step};
 pub use relaxation::relaxation;
 pub use settings::{Integrator, PseudoTime, Scheme, Settings};
 pub use state::{Effort, Method, Solution, State};
-pub use tangent::{Direct, DirectFactor, NegativeCurvature, Solved, Solver, Tangent};
+pub use tangent::{Direct, NegativeCurvature, Solved, Solver, Tangent};

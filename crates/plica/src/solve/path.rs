@@ -1,7 +1,7 @@
 //! The path from state to state along a load, and through a snap.
 
 use super::continuation::{ContinuationState, PreviousPoint};
-use super::equilibrium::{Equilibrium, ResidualEvaluation};
+use super::equilibrium::{Equilibrium, ResidualEvaluation, is_reachable};
 use super::failure::{Cause, Failure};
 use super::limit_point::limit_point;
 use super::newton::newton;
@@ -270,6 +270,7 @@ impl<P: Equilibrium> Path<P> {
         }
         let load = self.load_at(t);
         let start = self.predict(t, &load, tangent.as_deref());
+        let start = start.ok_or(Failure::Blocked)?;
         self.solver = None;
         let (settings, effort) = (&self.settings, &mut step.effort);
         let found = newton(&self.problem, &load, start, settings, effort, monitor)
@@ -298,7 +299,9 @@ impl<P: Equilibrium> Path<P> {
         if start != self.state.u {
             self.continuation.previous = None;
             let tangent = self.tangent(&mut step.effort, monitor);
-            start = self.predict(t, &load, tangent.as_deref());
+            start = self
+                .predict(t, &load, tangent.as_deref())
+                .ok_or(Failure::Blocked)?;
         }
         self.solver = None;
         let (settings, effort) = (&self.settings, &mut step.effort);
@@ -411,17 +414,17 @@ impl<P: Equilibrium> Path<P> {
     }
 
     /// Predicts u at `t`: along the tangent, or along the cubic through the previous point and the
-    /// state, whichever has the smaller residual. A prediction that may not be reached is replaced by the state itself.
-    fn predict(&self, t: f64, load: &P::Load, tangent: Option<&[f64]>) -> Vec<f64> {
-        let predicted = self.extrapolate(t, load, tangent);
+    /// state, whichever has the smaller residual. A prediction behind a barrier is replaced by the state with the
+    /// prescribed values of `t`. Returns none if that lies behind a barrier, too.
+    fn predict(&self, t: f64, load: &P::Load, tangent: Option<&[f64]>) -> Option<Vec<f64>> {
         let (problem, u) = (&self.problem, &self.state.u);
-        let step: Vec<f64> = predicted.iter().zip(u).map(|(a, b)| a - b).collect();
-        if problem.longest_step(u, &step) == 1.0 {
-            return predicted;
+        let predicted = self.extrapolate(t, load, tangent);
+        if is_reachable(problem, u, &predicted) {
+            return Some(predicted);
         }
         let mut start = u.clone();
         problem.apply_prescribed(load, &mut start);
-        start
+        is_reachable(problem, u, &start).then_some(start)
     }
 
     /// Extrapolates u to `t` along the tangent, or along the cubic, whichever has the smaller residual.

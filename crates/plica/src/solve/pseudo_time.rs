@@ -1,11 +1,12 @@
 //! Pseudo-time with constant damping: the scheme of the paper, and backward Euler.
 
-use super::equilibrium::{Equilibrium, ResidualEvaluation, largest};
+use super::equilibrium::{Equilibrium, ResidualEvaluation, is_reachable, largest};
 use super::failure::Failure;
 use super::newton::newton;
 use super::relaxation::relaxation;
 use super::settings::{Integrator, PseudoTime, Settings};
 use super::state::{Effort, Solution};
+use super::step_controller::StepController;
 use super::tangent::Tangent;
 use crate::matrix::Singular;
 use crate::monitor::{Monitor, Part};
@@ -27,20 +28,18 @@ pub(super) fn pseudo_time<P: Equilibrium>(
     effort: &mut Effort,
     monitor: &mut dyn Monitor,
 ) -> Result<(Solution, Vec<f64>), Failure<P::EvaluationError>> {
-    let (mut damping_work, mut moved) = (0.0, (0, 0.0));
+    let (mut damping_work, mut moved, mut before) = (0.0, (0, 0.0), 0.0);
     for n in 1..=scheme.ramp + scheme.max_steps {
         let monitor = &mut Part::new(monitor, format!("pseudo-time step {n}"), 0.0, 1.0);
         let t = (n as f64 / scheme.ramp as f64).min(1.0);
         let load = problem.between(from, target, t);
-        let mut start = u.clone();
-        problem.apply_prescribed(&load, &mut start);
         let damped = Damped::new(problem, scheme, &u, &velocity);
-        let next = match newton(&damped, &load, start.clone(), settings, effort, monitor) {
-            Ok(next) => next,
-            Err(Failure::Cancelled) => return Err(Failure::Cancelled),
-            // The same step, approached with more damping that decreases to that of the scheme.
-            Err(_) => relaxation(&damped, &load, start, settings, effort, monitor)?,
+        let ramp = Ramp {
+            loads: [from, target],
+            part: [before, t],
         };
+        let next = ramp.climb(&damped, settings, effort, monitor)?;
+        before = t;
         let next_velocity = damped.velocity_at(&next.u);
         let force = damped.damping_force(&next_velocity);
         let step: Vec<f64> = next.u.iter().zip(&u).map(|(a, b)| a - b).collect();
@@ -62,6 +61,49 @@ pub(super) fn pseudo_time<P: Equilibrium>(
         displacement: moved.1,
         worst_unknown: moved.0,
     })
+}
+
+/// The load of one pseudo-time step: part of the way between two loads.
+struct Ramp<'a, L> {
+    loads: [&'a L; 2],
+    part: [f64; 2],
+}
+
+impl<L> Ramp<'_, L> {
+    /// Solves a pseudo-time step from its u. Where moving the prescribed values alone leads past a barrier, they are
+    /// moved in parts, with a solution of the same step at the end of each.
+    fn climb<P: Equilibrium<Load = L>>(
+        &self,
+        damped: &Damped<'_, P>,
+        settings: &Settings,
+        effort: &mut Effort,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Solution, Failure<P::EvaluationError>> {
+        let [from, target] = self.loads;
+        let mut parts = StepController::new(self.part, 0, settings.max_step_halvings);
+        let (mut u, mut solution) = (damped.u.to_vec(), None);
+        while let Some(t) = parts.next() {
+            let load = damped.between(from, target, t);
+            let mut start = u.clone();
+            damped.apply_prescribed(&load, &mut start);
+            if !is_reachable(damped, &u, &start) {
+                if parts.halve() {
+                    continue;
+                }
+                return Err(Failure::Blocked);
+            }
+            let found = match newton(damped, &load, start.clone(), settings, effort, monitor) {
+                Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+                // The same step, approached with more damping that decreases to that of the scheme.
+                Err(_) => relaxation(damped, &load, start, settings, effort, monitor)?,
+                Ok(found) => found,
+            };
+            u.clone_from(&found.u);
+            solution = Some(found);
+            parts.accept();
+        }
+        solution.ok_or(Failure::Blocked)
+    }
 }
 
 /// One pseudo-time step as an equilibrium problem: the energy

@@ -1,7 +1,7 @@
 //! The tangent stiffness as the solvers see it: it multiplies vectors, and can be solved with once
 //! damping is added.
 
-use crate::matrix::{BlockBanded, Factor, FarBlocks, Singular, SparseFactor};
+use crate::matrix::{BlockBanded, CoupledBanded, CoupledFactor, Singular};
 use crate::monitor::Monitor;
 use std::sync::Arc;
 
@@ -85,39 +85,27 @@ pub struct NegativeCurvature {
 /// A tangent stiffness that is assembled and factored.
 #[derive(Clone, Debug)]
 pub struct Direct {
-    stiffness: BlockBanded,
-    /// Entries of K outside its band.
-    far: FarBlocks,
+    stiffness: CoupledBanded,
     damping: Arc<BlockBanded>,
     prescribed: Arc<[bool]>,
 }
 
-/// The factorisation of a [`Direct`] tangent: of the band, or with blocks outside it where there are any.
-#[derive(Clone, Debug)]
-pub enum DirectFactor {
-    /// The band alone.
-    Banded(Factor),
-    /// With blocks outside the band.
-    Sparse(SparseFactor),
-}
-
 impl Direct {
-    /// Takes the assembled stiffness K, as its band and the blocks outside it, the damping matrix C of all unknowns, and
-    /// which of them are prescribed.
+    /// Takes the assembled stiffness K and damping matrix C of all unknowns, and which of them are prescribed.
     ///
     /// # Panics
     ///
     /// If their sizes differ.
     pub fn new(
-        (stiffness, far): (BlockBanded, FarBlocks),
+        stiffness: impl Into<CoupledBanded>,
         damping: Arc<BlockBanded>,
         prescribed: Arc<[bool]>,
     ) -> Self {
+        let stiffness = stiffness.into();
         assert_eq!(stiffness.unknowns(), damping.unknowns());
         assert_eq!(stiffness.unknowns(), prescribed.len());
         Self {
             stiffness,
-            far,
             damping,
             prescribed,
         }
@@ -125,44 +113,33 @@ impl Direct {
 }
 
 impl Tangent for Direct {
-    type Solver = DirectFactor;
+    type Solver = CoupledFactor;
 
     fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         self.stiffness.multiply_add(factor, v, y);
-        self.far.multiply_add(factor, v, y);
     }
 
-    fn shifted(&self, alpha: f64) -> Result<DirectFactor, Singular> {
+    fn shifted(&self, alpha: f64) -> Result<CoupledFactor, Singular> {
         self.clone().into_shifted(alpha)
     }
 
-    fn into_shifted(self, alpha: f64) -> Result<DirectFactor, Singular> {
-        let (mut A, mut far) = (self.stiffness, self.far);
+    fn into_shifted(self, alpha: f64) -> Result<CoupledFactor, Singular> {
+        let mut A = self.stiffness;
         if alpha != 0.0 {
             A.add_scaled(alpha, &self.damping);
         }
         A.constrain(&self.prescribed);
-        if far.is_empty() {
-            return A.factor().map(DirectFactor::Banded);
-        }
-        far.constrain(&self.prescribed);
-        SparseFactor::of(&A, &far).map(DirectFactor::Sparse)
+        A.factor()
     }
 }
 
-impl Solver for DirectFactor {
+impl Solver for CoupledFactor {
     fn negative_pivots(&self) -> usize {
-        match self {
-            Self::Banded(factor) => factor.negative_pivots(),
-            Self::Sparse(factor) => factor.negative_pivots(),
-        }
+        Self::negative_pivots(self)
     }
 
     fn solve(&self, b: &mut [f64], _: f64, _: &dyn Monitor) -> Result<Solved, NegativeCurvature> {
-        match self {
-            Self::Banded(factor) => factor.solve(b),
-            Self::Sparse(factor) => factor.solve(b),
-        }
+        Self::solve(self, b);
         Ok(Solved {
             iterations: 0,
             converged: true,

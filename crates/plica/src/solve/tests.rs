@@ -2,7 +2,7 @@
 
 use super::iterate::Iterate;
 use super::*;
-use crate::matrix::{BlockBanded, FarBlocks, Singular};
+use crate::matrix::{BlockBanded, Singular};
 use crate::monitor::Monitor;
 use std::cell::Cell;
 use std::rc::Rc;
@@ -22,7 +22,7 @@ struct Toy<const N: usize> {
 /// The first unknown is behind the wall.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("behind the wall")]
-struct BehindTheWall;
+pub(super) struct BehindTheWall;
 
 fn toy<const N: usize>(jet: fn(f64, [f64; N]) -> Jet<N>) -> Toy<N> {
     let mut unit = [[0.0; N]; N];
@@ -36,7 +36,7 @@ fn toy<const N: usize>(jet: fn(f64, [f64; N]) -> Jet<N>) -> Toy<N> {
     }
 }
 
-fn matrix<const N: usize>(entries: [[f64; N]; N]) -> BlockBanded {
+pub(super) fn matrix<const N: usize>(entries: [[f64; N]; N]) -> BlockBanded {
     let mut matrix = BlockBanded::zeros(1, N, 1);
     let places: Vec<[usize; N]> = (0..N)
         .map(|i| std::array::from_fn(|j| matrix.place(0, i, j)))
@@ -76,11 +76,7 @@ impl<const N: usize> Equilibrium for Toy<N> {
     }
     fn tangent(&self, load: &f64, u: &[f64]) -> Direct {
         let stiffness = matrix((self.jet)(*load, u.try_into().unwrap()).2);
-        Direct::new(
-            (stiffness, FarBlocks::new(1, 1)),
-            self.damping.clone(),
-            self.prescribed().into(),
-        )
+        Direct::new(stiffness, self.damping.clone(), self.prescribed().into())
     }
     fn damping(&self, factor: f64, v: &[f64], y: &mut [f64]) {
         self.damping.multiply_add(factor, v, y);

@@ -198,7 +198,7 @@ mod tests {
             volumetric: Default::default(),
         };
         let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 1));
-        let harmonics = Harmonics::new(&problem.tube, 2);
+        let harmonics = Harmonics::new(&problem, 2);
         let settings = Settings::default();
         let mut path = Path::begin(
             &problem,

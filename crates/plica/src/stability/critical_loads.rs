@@ -5,7 +5,6 @@ use super::{
     Harmonics, Mode, ModeStability, PathStability, Quantity, StabilityChange, StabilityError,
     TestedState, Transition,
 };
-use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
 use crate::matrix::NoEigenpairs;
 use crate::monitor::{Monitor, Part};
@@ -51,9 +50,6 @@ impl<'a> CriticalLoads<'a> {
         if plan.mesh.rings(plan.symmetry) != 1 {
             return Err(StabilityError::Symmetry);
         }
-        if plan.contact {
-            return Err(StabilityError::Contact);
-        }
         let files = directory.states()?;
         if files.len() < 2 {
             return Err(StabilityError::NoStates {
@@ -61,8 +57,8 @@ impl<'a> CriticalLoads<'a> {
                 found: files.len(),
             });
         }
-        let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, 1));
-        let harmonics = Harmonics::new(&problem.tube, highest);
+        let problem = plan.problem();
+        let harmonics = Harmonics::new(&problem, highest);
         Ok(Self {
             plan,
             settings: Settings {

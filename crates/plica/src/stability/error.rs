@@ -20,12 +20,6 @@ pub enum StabilityError {
          single states run the case with symmetry = \"none\""
     )]
     OneRing,
-    /// The case has contact.
-    #[error(
-        "the case has contact = true, which this test does not include: see the column unstable_modes of history.csv, \
-         where it is included"
-    )]
-    Contact,
     /// A selected state was not saved.
     #[error(
         "{} has no saved state {row}: see its folder states; output.states_every = 1 saves all",
@@ -106,7 +100,6 @@ impl StabilityError {
         matches!(
             self,
             Self::Symmetry
-                | Self::Contact
                 | Self::OneRing
                 | Self::Twisted { .. }
                 | Self::NoStates { .. }

@@ -1,18 +1,18 @@
 //! Stability test of an axisymmetric state by circumferential mode.
 
 use super::mass::harmonic_mass;
-use crate::assembly::SplineTube;
+use crate::equilibrium::TubeProblem;
 use crate::matrix::{
-    BlockBanded, Eigenpair, NoEigenpairs, lowest_eigenpairs, lowest_eigenpairs_excluding,
+    BlockBanded, CoupledBanded, Eigenpair, NoEigenpairs, lowest_eigenpairs,
+    lowest_eigenpairs_excluding,
 };
 use crate::tube::Load;
 use rayon::prelude::*;
-use std::sync::Arc;
 
-/// An axisymmetric tube with the mass matrices and constraints of its circumferential modes.
+/// An axisymmetric tube, with its contact if it has that, and the mass matrices and constraints of its circumferential modes.
 #[derive(Clone, Debug)]
 pub struct Harmonics {
-    tube: Arc<SplineTube>,
+    problem: TubeProblem,
     harmonics: Vec<Harmonic>,
 }
 
@@ -37,14 +37,15 @@ pub struct ModeStability {
 
 impl Harmonics {
     /// Prepares modes 0 to `highest` of a tube of one ring, or as many as its control points around resolve.
-    pub fn new(tube: &Arc<SplineTube>, highest: usize) -> Self {
+    pub fn new(problem: &TubeProblem, highest: usize) -> Self {
+        let tube = &problem.tube;
         let highest = highest.min((tube.sector.around - 1) / 2);
         let harmonic = |n| Harmonic {
             mass: harmonic_mass(tube, n),
             prescribed: tube.prescribed_in_harmonic(n),
         };
         Self {
-            tube: tube.clone(),
+            problem: problem.clone(),
             harmonics: (0..=highest).into_par_iter().map(harmonic).collect(),
         }
     }
@@ -92,8 +93,8 @@ impl Harmonics {
     ) -> Result<Vec<Eigenpair>, NoEigenpairs> {
         let Harmonic { mass, prescribed } = &self.harmonics[n];
         let block = self.block(n, load, u);
-        let motions = self.tube.rigid_motions_in_harmonic(u, n);
-        let fixed = self.tube.prescribed_at_ends();
+        let motions = self.problem.tube.rigid_motions_in_harmonic(u, n);
+        let fixed = self.problem.tube.prescribed_at_ends();
         if motions
             .iter()
             .all(|motion| is_neutral(&block, &fixed, motion))
@@ -104,29 +105,26 @@ impl Harmonics {
         }
     }
 
-    fn block(&self, n: usize, load: &Load, u: &[f64]) -> BlockBanded {
-        match n {
-            0 => self.tube.tangent(load, u),
-            n => self.tube.tangent_in_harmonic(load, u, n),
-        }
+    fn block(&self, n: usize, load: &Load, u: &[f64]) -> CoupledBanded {
+        self.problem.ring_tangent(load, u, n)
     }
 }
 
 /// Returns whether a rigid-body motion meets no force.
-fn is_neutral(block: &BlockBanded, fixed: &[bool], motion: &[f64]) -> bool {
+fn is_neutral(block: &CoupledBanded, fixed: &[bool], motion: &[f64]) -> bool {
     let mut force = vec![0.0; motion.len()];
     block.multiply_add(1.0, motion, &mut force);
     let (mut forces, mut size) = (0.0, 0.0);
     for i in (0..motion.len()).filter(|&i| !fixed[i]) {
         forces += force[i] * force[i];
-        size += (block.entry(i, i) * motion[i]).powi(2);
+        size += (block.band.entry(i, i) * motion[i]).powi(2);
     }
     forces <= NEUTRAL * NEUTRAL * size
 }
 
 impl Harmonic {
     /// Returns the number of negative eigenvalues of a block of the tangent.
-    fn negative(&self, mut block: BlockBanded) -> usize {
+    fn negative(&self, mut block: CoupledBanded) -> usize {
         block.constrain(&self.prescribed);
         block.factor().map_or(1, |factor| factor.negative_pivots())
     }

@@ -2,7 +2,6 @@
 
 use super::spectra_table::PAIRS;
 use super::{Eigenvalue, Spectra, Spectrum, StabilityError, StateWithModes};
-use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
 use crate::monitor::{Monitor, Part};
 use crate::rings::Transform;
@@ -57,7 +56,7 @@ impl<'a> LowestModes<'a> {
         if rings == 1 {
             return Err(StabilityError::OneRing);
         }
-        let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
+        let problem = plan.problem();
         Ok(Self {
             plan,
             directory,

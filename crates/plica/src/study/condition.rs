@@ -1,6 +1,5 @@
 //! Conditions at which a run stops, as `shape = invaginated` or `overhang > 0.1`.
 
-use super::{ContactRow, WallContactRow};
 use super::{Plan, Quantity, Row};
 use crate::measure::Shape;
 use std::fmt;
@@ -111,18 +110,7 @@ fn zero(plan: &Plan) -> Row {
     let muscles: Vec<&str> = muscles.map(|muscle| muscle.name.as_str()).collect();
     let mut row = Row::zero(&muscles, plan.end_names.each_ref().map(String::as_str));
     if plan.contact {
-        let zero = Some(0.0);
-        let wall = WallContactRow {
-            area: zero,
-            force: zero,
-            gap: zero,
-            from: zero,
-            to: zero,
-        };
-        row.contact = ContactRow {
-            energy: zero,
-            walls: [wall; 2],
-        };
+        row = row.with_contact();
     }
     if plan.has_pressures() {
         row.with_pressures()

@@ -82,7 +82,7 @@ impl Study {
     /// [`StudyError::Crosses`] if the state to start from passes through itself and the plan has contact.
     pub fn new(plan: &Plan) -> Result<Self, StudyError> {
         check_memory(plan)?;
-        let problem = problem(plan);
+        let problem = plan.problem();
         if let (Some(contact), Some(start)) = (&problem.contact, &plan.start)
             && let Some(face) = contact.crossing(&transferred(plan, &problem, start))
         {
@@ -137,6 +137,11 @@ impl Study {
     /// Returns the plan.
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// Returns the problem of the solver.
+    pub fn problem(&self) -> &TubeProblem {
+        &self.problem
     }
 
     /// Returns the discretised tube.
@@ -382,17 +387,6 @@ impl Study {
                 limit.as_ref(),
             )))
         });
-    }
-}
-
-/// Returns the problem of a plan, with contact if it has that.
-fn problem(plan: &Plan) -> TubeProblem {
-    let rings = plan.mesh.rings(plan.symmetry);
-    let problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, rings));
-    if plan.contact {
-        problem.with_contact()
-    } else {
-        problem
     }
 }
 

@@ -1,5 +1,7 @@
 //! The plan of a study: the checked, dimensionless content of a case.
 
+use crate::assembly::SplineTube;
+use crate::equilibrium::TubeProblem;
 use crate::saved_state::{Layout, SavedState, SavedStateError};
 use crate::solve::Settings;
 use crate::tube::{Load, Mesh, Pressure, Symmetry, Tube};
@@ -164,6 +166,17 @@ impl fmt::Display for StressUnit {
 }
 
 impl Plan {
+    /// Returns the problem of the solver: the tube on its mesh, with contact if the plan has that.
+    pub fn problem(&self) -> TubeProblem {
+        let rings = self.mesh.rings(self.symmetry);
+        let problem = TubeProblem::new(SplineTube::new(&self.tube, &self.mesh, rings));
+        if self.contact {
+            problem.with_contact()
+        } else {
+            problem
+        }
+    }
+
     /// Returns the names of ends that are not named otherwise.
     pub fn usual_end_names() -> [String; 2] {
         ["colon", "ileum"].map(String::from)

@@ -128,6 +128,7 @@ impl State {
         let (load, u) = (&accepted.load, &accepted.u);
         let mut point = WorkPoint::of(plan, tube, (load, u), &forces);
         let none = || Work::none(load.muscles.len());
+        let contact = problem.contact_report(load, u);
         let work = previous.map_or_else(none, |previous| previous.work_to(&mut point, tube));
         let state = Self {
             number: at.number,
@@ -145,10 +146,10 @@ impl State {
             linear_solves: step.effort.linear_solves,
             inner_iterations: step.effort.inner_iterations,
             seconds,
-            measures: Measures::of(tube, load, u),
+            measures: measures(problem, load, u, contact.as_ref()),
             dimensions: Dimensions::of(tube, u),
             reactions: Reaction::of(tube, load, u, &forces.residual),
-            contact: problem.contact_report(u),
+            contact,
             work,
             min_det_fe: forces.smallest_jacobian,
             stability,
@@ -161,6 +162,24 @@ impl State {
         };
         (state, point)
     }
+}
+
+/// Measures a state. Between the points of a measured wall, its chords can cross where it touches itself; with contact
+/// the exact curves decide, and the gap is that of the points in contact.
+fn measures(
+    problem: &TubeProblem,
+    load: &Load,
+    u: &[f64],
+    contact: Option<&ContactReport>,
+) -> Measures {
+    let mut measures = Measures::of(&problem.tube, load, u);
+    if let (true, Some(report), Some(exact)) = (measures.gap == 0.0, contact, &problem.contact)
+        && exact.crossing(u).is_none()
+    {
+        let gaps = report.faces.iter().flatten().map(|face| face.gap);
+        measures.gap = gaps.fold(exact.barrier().range, f64::min);
+    }
+    measures
 }
 
 /// Returns the muscles of a plan under a load.

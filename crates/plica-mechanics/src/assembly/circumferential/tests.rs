@@ -308,7 +308,7 @@ fn the_low_harmonic_tangent_resists_every_displacement_on_few_elements() {
                 of_squares.iter().all(|prescribed| *prescribed)
             });
             assert_eq!(squares, degree == 1);
-            let lowest = &lowest_eigenpairs(&coupled, &exact, &prescribed, 1).unwrap()[0];
+            let lowest = &lowest_eigenpairs(&coupled.into(), &exact, &prescribed, 1).unwrap()[0];
             assert!(lowest.value > 0.002, "{degree} {along}: {}", lowest.value);
         }
     }

@@ -1,5 +1,6 @@
 //! Statements about a whole path and its stages, computed from the rows of its states.
 
+mod contact;
 mod extremes;
 mod loads;
 mod place;
@@ -8,6 +9,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+pub use contact::{Contact, FirstTouch, SmallestStretch};
 pub use extremes::{Extreme, Jump};
 pub use loads::NamedLoad;
 pub use place::{Interval, Place};
@@ -41,6 +43,8 @@ pub struct Findings {
     pub deepest: Option<Overhang>,
     /// States in which a wall touches itself; none without contact.
     pub touching: Vec<Interval>,
+    /// What happens on walls that may touch; none in a run without contact.
+    pub contact: Option<Contact>,
     /// States in which a wall crosses itself, which is not physical.
     pub crossing: Vec<Interval>,
     /// States in which the lumen is closed, which is not physical without contact.
@@ -182,6 +186,7 @@ impl Findings {
             invaginated: path.intervals(|row| row.shape == Shape::Invaginated),
             deepest: deepest(&path),
             touching: path.intervals(|row| row.contact.touches()),
+            contact: contact::contact(&path),
             crossing: path.intervals(Row::crosses_itself),
             closed: path.intervals(Row::has_closed),
             out_of_equilibrium: path.intervals(|row| !row.in_equilibrium),

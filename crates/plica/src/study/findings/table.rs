@@ -2,9 +2,11 @@
 
 use super::loads::{describe_range, number};
 use super::place::{Interval, list};
-use super::{Findings, Overhang, Return, StageEnd, states_in};
+use super::{Contact, Findings, Overhang, Return, SmallestStretch, StageEnd, states_in};
+use crate::contact::{BIOT, CREASE};
 use crate::equilibrium::UnstableMode;
 use crate::measure::{Shape, Side};
+use crate::study::RESOLVED_TURN_DEG;
 
 /// A name and a sentence.
 pub type Line = (String, String);
@@ -131,9 +133,11 @@ impl Findings {
             ("wall overhangs".into(), or_none(&self.overhanging)),
             ("invaginates".into(), invaginates),
         ];
-        if !self.touching.is_empty() {
-            lines.push(("wall touches itself".into(), list(&self.touching)));
-        }
+        lines.extend(
+            self.contact
+                .iter()
+                .flat_map(|found| self.contact_lines(found)),
+        );
         if let Some(largest) = &self.asymmetry {
             let [amplitude, start] = [largest.amplitude, largest.at_start].map(|x| self.length(x));
             let mode = UnstableMode::Circumferential(largest.mode).describe();
@@ -147,6 +151,38 @@ impl Findings {
                 format!("grows {from}, in {mode}, at {}", largest.at)
             };
             lines.push(("asymmetry".into(), most));
+        }
+        lines
+    }
+
+    /// Describes where walls touch themselves, and where their surface is so compressed that it creases.
+    fn contact_lines(&self, found: &Contact) -> Vec<Line> {
+        let first = found.first.iter();
+        let first: Vec<String> = first
+            .map(|first| format!("the {} first at {}", first.wall, first.at))
+            .collect();
+        let touches = match first.is_empty() {
+            true => "in no state".to_owned(),
+            false => format!(
+                "{}; {} (energy of contact at most {:.1e} W)",
+                list(&self.touching),
+                first.join(", "),
+                found.largest_energy_share
+            ),
+        };
+        let mut lines = vec![("wall touches itself".to_owned(), touches)];
+        if !found.crease.is_empty() {
+            let SmallestStretch { wall, stretch, at } = &found.smallest_stretch;
+            let mut line = format!(
+                "{} with s = λ₁² λ₂ < {CREASE}, where a crease has less energy than a flat surface",
+                list(&found.crease)
+            );
+            if !found.biot.is_empty() {
+                let states = list(&found.biot);
+                line += &format!("; {states} below {BIOT:.4}, where a flat surface is unstable");
+            }
+            line += &format!("; least {stretch:.3} at the {wall} at {at}");
+            lines.push(("surface creases".into(), line));
         }
         lines
     }
@@ -175,17 +211,32 @@ impl Findings {
 
     /// Describes states that are not physical.
     fn caution_lines(&self) -> Vec<Line> {
-        let reasons = [
-            ("wall crosses itself", &self.crossing),
-            ("lumen is closed", &self.closed),
-        ];
-        let found = reasons.into_iter().filter(|(_, states)| !states.is_empty());
-        let line = |(name, states): (&str, &Vec<Interval>)| {
-            let states = list(states);
-            let line = format!("{states}: not physical, as there is no contact");
-            (name.to_owned(), line)
+        // Contact rules a crossing out, but nothing keeps a wall from the axis.
+        let (crossing, closed) = match self.contact {
+            None => ["not physical, as there is no contact"; 2].into(),
+            Some(_) => (
+                "contact rules this out; please report it",
+                "not physical, as contact keeps walls apart but not off the axis",
+            ),
         };
-        found.map(line).collect()
+        let mut reasons = vec![
+            ("wall crosses itself", &self.crossing, crossing.to_owned()),
+            ("lumen is closed", &self.closed, closed.to_owned()),
+        ];
+        if let Some(contact) = &self.contact {
+            let turn = contact.largest_turn_deg;
+            let line = format!(
+                "a wall turns by up to {turn:.0}° within one element, more than {RESOLVED_TURN_DEG:.0}°: refine the mesh \
+                 there (mesh.refine)"
+            );
+            reasons.push(("crease finer than mesh", &contact.unresolved, line));
+        }
+        let found = reasons
+            .into_iter()
+            .filter(|(_, states, _)| !states.is_empty());
+        found
+            .map(|(name, states, line)| (name.to_owned(), format!("{}: {line}", list(states))))
+            .collect()
     }
 
     /// Describes unstable states, and states whose stability is not known.

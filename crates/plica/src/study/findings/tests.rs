@@ -437,3 +437,66 @@ fn the_asymmetry_of_the_first_state_is_no_result() {
         "{grown}"
     );
 }
+
+#[test]
+fn contact_is_reported_since_when_and_with_its_surface() {
+    let steps = [
+        (0.8, 5.0, 0.0),
+        (0.41, 15.0, 0.0),
+        (0.29, 21.0, 0.3),
+        (0.3, 19.0, 0.2),
+    ];
+    let steps = steps.map(|(stretch, turn, area)| {
+        change(move |row| {
+            row.length_ratio += 0.1;
+            row.contact.energy_share = Some(area / 100.0);
+            let outer = &mut row.contact.walls[1];
+            outer.surface_stretch = Some(stretch);
+            outer.element_turn_deg = Some(turn);
+            outer.area = Some(area);
+            row.contact.walls[0].surface_stretch = Some(1.0);
+        })
+    });
+    let mut rows = path(&[("relax", steps.into())]);
+    rows[0] = rows[0].clone().with_contact();
+    rows[0]
+        .contact
+        .walls
+        .iter_mut()
+        .for_each(|wall| wall.surface_stretch = Some(1.0));
+    for row in &mut rows {
+        *row = row.clone().with_contact();
+    }
+    let found = findings(&rows);
+    let contact = found.contact.as_ref().unwrap();
+    assert_eq!(contact.first.len(), 1);
+    assert_eq!(
+        (contact.first[0].wall.as_str(), contact.first[0].at.state),
+        ("outer wall", 3)
+    );
+    let states = |intervals: &[Interval]| -> Vec<[usize; 2]> {
+        let ends = |i: &Interval| [i.first.state, i.last.state];
+        intervals.iter().map(ends).collect()
+    };
+    assert_eq!(states(&contact.crease), [[2, 4]]);
+    assert_eq!(states(&contact.biot), [[3, 3]]);
+    assert_eq!(states(&contact.unresolved), [[3, 3]]);
+    assert_eq!(contact.smallest_stretch.at.state, 3);
+    let touches = line(&found, "wall touches itself");
+    assert!(
+        touches.contains("the outer wall first at") && touches.contains("3.0e-3 W"),
+        "{touches}"
+    );
+    let creases = line(&found, "surface creases");
+    assert!(
+        creases.contains("least 0.290 at the outer wall"),
+        "{creases}"
+    );
+    let unresolved = line(&found, "crease finer than mesh");
+    assert!(unresolved.contains("by up to 21°"), "{unresolved}");
+    // Contact rules a crossing out.
+    rows[4].gap = 0.0;
+    let crosses = line(&findings(&rows), "wall crosses itself");
+    assert!(!crosses.contains("no contact"), "{crosses}");
+    assert_eq!(findings(&path(&[])).contact, None);
+}

@@ -1,0 +1,93 @@
+//! A symmetric block matrix that consists of a band and blocks outside it.
+
+use super::{BlockBanded, Factor, FarBlocks, Singular, SparseFactor};
+
+/// A symmetric block matrix: a band, and blocks outside it, if there are any.
+#[derive(Clone, Debug)]
+pub struct CoupledBanded {
+    /// The band.
+    pub band: BlockBanded,
+    /// The blocks outside.
+    pub far: FarBlocks,
+}
+
+/// The factorisation of a [`CoupledBanded`] matrix: that of the band where there are no blocks outside it.
+#[derive(Clone, Debug)]
+pub enum CoupledFactor {
+    /// The band alone.
+    Banded(Factor),
+    /// With blocks outside the band.
+    Sparse(SparseFactor),
+}
+
+impl From<BlockBanded> for CoupledBanded {
+    fn from(band: BlockBanded) -> Self {
+        let far = FarBlocks::new(band.size(), band.band());
+        Self { band, far }
+    }
+}
+
+impl CoupledBanded {
+    /// Returns the number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.band.unknowns()
+    }
+
+    /// Adds to an entry on or below the diagonal and, as the matrix is symmetric, to its mirror image.
+    pub fn add_at(&mut self, row: usize, column: usize, value: f64) {
+        let m = self.band.size();
+        let (i, j) = (row / m, column / m);
+        if i - j > self.band.band() {
+            self.far.add_at(row, column, value);
+        } else {
+            self.band.add_at(j, i - j, row % m, column % m, value);
+        }
+    }
+
+    /// Adds `factor` times a matrix with the same band.
+    pub fn add_scaled(&mut self, factor: f64, other: &BlockBanded) {
+        self.band.add_scaled(factor, other);
+    }
+
+    /// Adds `factor` · A x to `y`.
+    pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        self.band.multiply_add(factor, x, y);
+        self.far.multiply_add(factor, x, y);
+    }
+
+    /// Replaces rows and columns of prescribed unknowns by those of the unit matrix.
+    pub fn constrain(&mut self, prescribed: &[bool]) {
+        self.band.constrain(prescribed);
+        self.far.constrain(prescribed);
+    }
+
+    /// Factors the matrix.
+    ///
+    /// # Errors
+    ///
+    /// If a pivot is zero or NaN.
+    pub fn factor(self) -> Result<CoupledFactor, Singular> {
+        if self.far.is_empty() {
+            return self.band.factor().map(CoupledFactor::Banded);
+        }
+        SparseFactor::of(&self.band, &self.far).map(CoupledFactor::Sparse)
+    }
+}
+
+impl CoupledFactor {
+    /// Returns the number of negative pivots, which is that of the negative eigenvalues.
+    pub fn negative_pivots(&self) -> usize {
+        match self {
+            Self::Banded(factor) => factor.negative_pivots(),
+            Self::Sparse(factor) => factor.negative_pivots(),
+        }
+    }
+
+    /// Solves A x = b in place.
+    pub fn solve(&self, b: &mut [f64]) {
+        match self {
+            Self::Banded(factor) => factor.solve(b),
+            Self::Sparse(factor) => factor.solve(b),
+        }
+    }
+}

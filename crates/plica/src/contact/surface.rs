@@ -1,0 +1,104 @@
+//! Stretch and turning of a face: signs that it creases, and that the mesh resolves the crease.
+
+use super::SelfContact;
+use super::bezier::{Bezier, Point, dot};
+use crate::assembly::{Point as MaterialPoint, SplineTube};
+use crate::tube::Load;
+
+/// Surface stretch s = λ₁² λ₂ below which a crease of a flat neo-Hookean surface has less energy than the flat surface
+/// (Hong, Zhao and Suo 2009: in plane strain from the stretch 0.646 down, 0.646² = 0.417).
+pub const CREASE: f64 = 0.417;
+
+/// Surface stretch below which a flat incompressible neo-Hookean surface is unstable: x³ + x² + 3x − 1 = 0 (Biot 1963).
+pub const BIOT: f64 = 0.295_597_742_522_084_8;
+
+/// Points of an element at which a face is looked at, its ends included.
+const POINTS: usize = 9;
+
+/// Stretch and turning of a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceSurface {
+    /// Smallest s = λ₁² λ₂ of the elastic stretches along and around the face, λ₁ the smaller one.
+    pub stretch: f64,
+    /// Axial position at rest of the smallest s, in D.
+    pub stretch_at: f64,
+    /// Largest angle by which the face turns along one element, in radians. A wall that bends with a radius ρ turns by
+    /// h/ρ along an element of deformed length h, whatever its size: splines of any degree lose the shape of a crease
+    /// where that is no longer small.
+    pub turn: f64,
+    /// Axial position at rest of the middle of that element, in D.
+    pub turn_at: f64,
+}
+
+impl SelfContact {
+    /// Returns stretch and turning of each face, outer and inner, of a state of a tube of one ring without twist.
+    pub fn surfaces(&self, tube: &SplineTube, load: &Load, u: &[f64]) -> [FaceSurface; 2] {
+        [0, 1].map(|i| {
+            let curve = &self.faces[i].0;
+            let mut surface = FaceSurface {
+                stretch: f64::INFINITY,
+                stretch_at: 0.0,
+                turn: 0.0,
+                turn_at: 0.0,
+            };
+            for (e, of_element) in curve.curves(u).iter().enumerate() {
+                let (from, to) = tube.axial.element(e);
+                let turn = turn(of_element);
+                if turn > surface.turn {
+                    (surface.turn, surface.turn_at) = (turn, f64::midpoint(from, to));
+                }
+                for j in 0..POINTS {
+                    let z = from + (to - from) * j as f64 / (POINTS - 1) as f64;
+                    let at = MaterialPoint {
+                        z,
+                        radius: curve.radius,
+                        angle: 0.0,
+                    };
+                    let s = stretch(tube, load, u, at);
+                    if s < surface.stretch {
+                        (surface.stretch, surface.stretch_at) = (s, z);
+                    }
+                }
+            }
+            surface
+        })
+    }
+}
+
+/// Returns λ₁² λ₂ of the elastic stretches along and around, which are principal without twist.
+fn stretch(tube: &SplineTube, load: &Load, u: &[f64], at: MaterialPoint) -> f64 {
+    let elastic = tube.sample(load, u, at).elastic.0;
+    let column = |j: usize| {
+        (0..3)
+            .map(|i| elastic[i][j] * elastic[i][j])
+            .sum::<f64>()
+            .sqrt()
+    };
+    let (along, around) = (column(0), column(2));
+    along * around * along.min(around)
+}
+
+/// Returns the sum of the angles between successive tangents of a curve.
+fn turn(curve: &Bezier) -> f64 {
+    let slope = |j: usize| curve.at(j as f64 / (POINTS - 1) as f64).slope;
+    let angle = |a: Point, b: Point| (a[0] * b[1] - a[1] * b[0]).atan2(dot(a, b)).abs();
+    (1..POINTS).map(|j| angle(slope(j - 1), slope(j))).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_threshold_of_biot_is_the_root_of_his_cubic() {
+        assert!((((BIOT + 1.0) * BIOT + 3.0) * BIOT - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_parabola_turns_by_the_angle_between_its_ends() {
+        for height in [0.1, 1.0, 10.0] {
+            let curve = Bezier::new([[0.0, 0.0], [1.0, height], [2.0, 0.0]]);
+            assert!((turn(&curve) - 2.0 * f64::atan(height)).abs() < 1e-12);
+        }
+    }
+}
