@@ -100,7 +100,7 @@ fn a_fold_that_touches_itself_is_carried_onto_a_finer_graded_mesh_and_range() {
     assert_eq!(contact.crossing(&state.u), None);
     let of = |report: ContactReport| report.faces[0].expect("the outer wall touches itself");
     let (fine, wide) = (
-        of(problem.contact_report(&state.u).unwrap()),
+        of(problem.contact_report(load, &state.u).unwrap()),
         of(coarse.contact.unwrap()),
     );
     assert!(fine.gap > 0.0 && fine.gap < wide.gap, "{}", fine.gap);
