@@ -87,7 +87,7 @@ fn critical_fraction(
     harmonic: usize,
     [mut from, mut to]: [f64; 2],
 ) -> f64 {
-    let harmonics = Harmonics::new(&problem, harmonic);
+    let harmonics = Harmonics::new(problem, harmonic);
     let lowest = |t: f64| {
         let state = under(problem, &problem.tube.tube.rest().towards(load, t), 1);
         let tested = harmonics.test(&state.load, &state.u).unwrap()[harmonic];

@@ -206,7 +206,7 @@ pub fn stability(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
         let mut curves = vec![vec![]; 5];
         follow(recorder, &plan, |_, problem, state| {
             let length = problem.tube.tube.length_ratio(&state.load);
-            let harmonics = Harmonics::new(&problem, 4);
+            let harmonics = Harmonics::new(problem, 4);
             let tested = harmonics.test(&state.load, &state.u)?;
             for (curve, tested) in curves.iter_mut().zip(tested) {
                 curve.push((length, tested.lowest));
@@ -389,7 +389,7 @@ pub fn relaxation_alone(recorder: &mut Recorder<'_>) -> Result<(), VerificationE
         if length < 1.05 {
             return Ok(());
         }
-        let tested = Harmonics::new(&problem, 4).test(&state.load, &state.u)?;
+        let tested = Harmonics::new(problem, 4).test(&state.load, &state.u)?;
         let current: Vec<(f64, f64)> = tested
             .iter()
             .map(|tested| (length, tested.lowest))

@@ -159,7 +159,7 @@ pub fn critical_fraction(
     harmonic: usize,
     [mut from, mut to]: [f64; 2],
 ) -> Result<f64, VerificationError> {
-    let harmonics = Harmonics::new(&problem, harmonic);
+    let harmonics = Harmonics::new(problem, harmonic);
     let lowest = |t: f64| -> Result<f64, VerificationError> {
         let state = solve_from_rest(problem, &problem.tube.tube.rest().towards(load, t), 1)?;
         Ok(harmonics

@@ -138,7 +138,6 @@ fn a_pseudo_time_step_moves_what_is_prescribed_in_parts() {
             damping: 1.0,
             tolerance: 1e-9,
             max_steps: 5000,
-            ..PseudoTime::default()
         };
         let settings = Settings {
             scheme: Scheme::PseudoTime(scheme),
