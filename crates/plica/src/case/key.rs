@@ -28,6 +28,8 @@ pub(super) enum Kind {
     Number,
     /// `[from, to]`
     Zone,
+    /// `[x, y, z]`
+    Position,
     /// `[[x, s], …]`
     Points,
     /// A table with these keys.

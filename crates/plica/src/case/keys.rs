@@ -47,6 +47,9 @@ table! {
         /// bifurcation. They are present from rest on, and add up. A shape lies between −1 and 1; the
         /// amplitude multiplies it.
         imperfections: Vec<Imperfection> = default("[]");
+        /// Rigid obstacles that the walls touch without friction: an instrument in the lumen, a stent, a bolus, a
+        /// neighbouring organ. In a tube with an m-fold symmetry an obstacle beside the axis is repeated m times.
+        obstacles: Vec<Obstacle> = default("[]");
         /// The settings of the nonlinear solver.
         solver: Solver = default("{}");
         /// The files that a run writes, besides its history.
@@ -255,6 +258,7 @@ table! {
 }
 
 const BEFORE_1: &str = "as in the stage before, or at the start; 1 at rest";
+const BEFORE: &str = "as in the stage before, or at the start";
 const BEFORE_0: &str = "as in the stage before, or at the start; 0 at rest";
 
 table! {
@@ -263,7 +267,7 @@ table! {
         name: Option<String> = described("stage-1, stage-2, …", "stage-1");
         /// The number of equal load steps. Each ends in a state of the history.
         steps: usize = default("20").from(1.0).to(100_000.0);
-        /// The targets at its end: of muscles, by their names, of the ends `colon` and `ileum`, and of
+        /// The targets at its end: of muscles and obstacles, by their names, of the ends `colon` and `ileum`, and of
         /// the surfaces `inner-wall` and `outer-wall`.
         drive: BTreeMap<String, Drive> = default("{}");
     }
@@ -288,6 +292,10 @@ table! {
         pressure: Option<f64> = described(BEFORE_0, "0.0").unit(STRESS);
         /// Target of a surface: a dead load, per area at rest and normal to the surface at rest.
         dead_load: Option<f64> = described(BEFORE_0, "0.0").unit(STRESS);
+        /// Target of an obstacle: its radius. Not of a plate.
+        radius: Option<f64> = described(BEFORE, "0.3").unit(LENGTH).above(0.0);
+        /// Target of an obstacle: its position.
+        position: Option<[f64; 3]> = described(BEFORE, "[0.0, 0.0, 1.5]").unit(LENGTH);
     }
 }
 
@@ -379,6 +387,74 @@ table! {
         /// The largest number of half-waves along the zone of the muscle, or along the tube. Not for an
         /// end.
         half_waves: Option<usize> = default("4").from(1.0).to(50.0);
+    }
+}
+
+table! {
+    Obstacle {
+        /// Its name in the stages and in the results, as for a muscle.
+        name: String = required("bolus");
+        /// The shape: `shape = { ball = { radius = 0.3, position = [0.0, 0.0, -0.5] } }`, for example. The obstacle does
+        /// not touch the tube at rest.
+        shape: ObstacleShape = required("{ rod = { radius = 0.2 } }");
+    }
+}
+
+/// The shape of an obstacle.
+#[derive(Clone, Debug)]
+pub(super) enum ObstacleShape {
+    Rod(Rod),
+    Sheath(Sheath),
+    Ball(Ball),
+    Plate(Plate),
+}
+
+choice! { ObstacleShape {
+    /// A solid cylinder along z.
+    "rod": Rod = described("", "{ radius = 0.2 }") => ObstacleShape::Rod,
+    /// A rigid body around an endless cylindrical hole along z.
+    "sheath": Sheath = described("", "{ radius = 0.6 }") => ObstacleShape::Sheath,
+    /// A ball.
+    "ball": Ball = described("", "{ radius = 0.3, position = [0.0, 0.0, -0.5] }") => ObstacleShape::Ball,
+    /// A half-space with a flat surface.
+    "plate": Plate = described("", "{ position = [0.6, 0.0, 0.0], normal = [-1.0, 0.0, 0.0] }") => ObstacleShape::Plate,
+} }
+
+table! {
+    Rod {
+        /// Its radius.
+        radius: f64 = required("0.2").unit(LENGTH).above(0.0);
+        /// The length of its cylinder, which ends in two hemispheres.
+        length: Option<f64> = described("endless", "1.0").unit(LENGTH).from(0.0);
+        /// The middle of its axis.
+        position: [f64; 3] = default("[0.0, 0.0, 0.0]").unit(LENGTH);
+    }
+}
+
+table! {
+    Sheath {
+        /// The radius of the hole.
+        radius: f64 = required("0.6").unit(LENGTH).above(0.0);
+        /// A point of its axis.
+        position: [f64; 3] = default("[0.0, 0.0, 0.0]").unit(LENGTH);
+    }
+}
+
+table! {
+    Ball {
+        /// Its radius.
+        radius: f64 = required("0.3").unit(LENGTH).above(0.0);
+        /// Its centre.
+        position: [f64; 3] = required("[0.0, 0.0, -0.5]").unit(LENGTH);
+    }
+}
+
+table! {
+    Plate {
+        /// A point of its surface.
+        position: [f64; 3] = required("[0.6, 0.0, 0.0]").unit(LENGTH);
+        /// A vector of any length that is normal to the surface and points out of the plate, toward the tube.
+        normal: [f64; 3] = required("[-1.0, 0.0, 0.0]");
     }
 }
 

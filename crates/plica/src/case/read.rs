@@ -436,6 +436,21 @@ impl Read for [f64; 2] {
     }
 }
 
+impl Read for [f64; 3] {
+    const KIND: Kind = Kind::Position;
+
+    fn read(problems: &mut Problems, key: &Key, path: &str, value: &Value) -> Option<Self> {
+        let list = value.get_ref().as_array();
+        let Some([x, y, z]) = list.and_then(|list| list.get(..3).filter(|_| list.len() == 3))
+        else {
+            return wrong_type(problems, key, path, value);
+        };
+        let [x, y] = finite(problems, path, [x, y])?;
+        let [_, z] = finite(problems, path, [z, z])?;
+        Some([x, y, z])
+    }
+}
+
 impl Read for Vec<[f64; 2]> {
     const KIND: Kind = Kind::Points;
 
@@ -499,6 +514,7 @@ fn wrong_type<T>(problems: &mut Problems, key: &Key, path: &str, value: &Value) 
         Kind::Integer => "must be a whole number",
         Kind::Number => "must be a number",
         Kind::Zone => "must be [from, to], two numbers",
+        Kind::Position => "must be [x, y, z], three numbers",
         Kind::Points => "must be a list of points [x, s]",
         Kind::List(_) => "must be a list of tables",
         Kind::Table(_) | Kind::Named(_) | Kind::Choice(..) => "must be a table",

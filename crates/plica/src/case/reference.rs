@@ -75,6 +75,7 @@ fn row(path: &str, key: &Key) -> String {
         Kind::Integer => "whole number".to_owned(),
         Kind::Number => "number".to_owned(),
         Kind::Zone => "`[from, to]`".to_owned(),
+        Kind::Position => "`[x, y, z]`".to_owned(),
         Kind::Points => "`[[x, s], …]`".to_owned(),
         Kind::List(_) => "list of tables".to_owned(),
         Kind::Table(_) | Kind::Named(_) | Kind::Choice([], _) => "table".to_owned(),

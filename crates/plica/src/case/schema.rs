@@ -60,14 +60,15 @@ pub(super) fn description(key: &Key) -> String {
 }
 
 fn value(key: &Key) -> Map<String, Value> {
-    let pair =
-        json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });
+    let numbers = |count: usize| json!({ "type": "array", "items": { "type": "number" }, "minItems": count, "maxItems": count });
+    let pair = numbers(2);
     let value = match key.kind {
         Kind::Text => json!({ "type": "string" }),
         Kind::Boolean => json!({ "type": "boolean" }),
         Kind::Integer => json!({ "type": "integer" }),
         Kind::Number => json!({ "type": "number" }),
         Kind::Zone => pair,
+        Kind::Position => numbers(3),
         Kind::Points => json!({ "type": "array", "items": pair, "minItems": 2 }),
         Kind::Table(keys) => return table(keys),
         Kind::List(keys) => json!({ "type": "array", "items": table(keys) }),

@@ -8,6 +8,7 @@ mod contact;
 mod imperfections;
 mod mesh;
 mod muscles;
+mod obstacles;
 mod solver;
 mod stages;
 mod start;
@@ -23,6 +24,7 @@ use crate::study::{Output, Plan, Units};
 pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut Problems) -> Plan {
     let mut tube = tube::tube(case, problems);
     let (mesh, symmetry) = mesh::mesh(case, &tube, problems);
+    tube.obstacles = obstacles::obstacles(case, problems);
     let start = start::start(case, &tube, &mesh, symmetry, open, problems);
     let begin = start
         .as_ref()
@@ -38,6 +40,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
     imperfections::check_wall(case, &tube, run, problems);
     stages::check_end_planes(&tube, &stages, problems);
     contact::check(case, symmetry, &stages, problems);
+    obstacles::check(case, &tube, run, (&begin, &stages), problems);
     let title = case.title.clone().unwrap_or_else(|| name.to_owned());
     let output = &case.output;
     Plan {

@@ -55,7 +55,7 @@ pub(super) fn end_names(case: &Case, problems: &mut Problems) -> [String; 2] {
 }
 
 /// Returns whether a text may be a part of the name of a column.
-fn is_name(name: &str) -> bool {
+pub(super) fn is_name(name: &str) -> bool {
     let allowed = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     !name.is_empty() && name.chars().count() <= 40 && name.chars().all(allowed)
 }

@@ -5,11 +5,12 @@ use super::super::keys::{Case, Drive};
 use super::super::problem::Problems;
 use super::super::spelling::{nearest, target};
 use super::muscles::{ENDS, WALLS};
+use super::obstacles::in_tube;
 use super::tube::youngs_modulus;
 use super::zone::{stress, tidy};
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
-use crate::tube::{EndDirection, Load, Part, Support, Tube};
+use crate::tube::{EndDirection, Load, ObstacleShape, Part, Support, Tube};
 use std::collections::HashMap;
 
 /// Names of state 0 in tables, which no stage may have.
@@ -120,6 +121,8 @@ enum Driven {
     End(usize),
     /// The inner wall or the outer wall.
     Wall(usize),
+    /// An obstacle, by its index in the tube, and whether it has a radius.
+    Obstacle(usize, bool),
 }
 
 impl Driven {
@@ -129,6 +132,14 @@ impl Driven {
         }
         if let Some(wall) = WALLS.iter().position(|&wall| wall == name) {
             return Some(Self::Wall(wall));
+        }
+        if let Some(i) = tube
+            .obstacles
+            .iter()
+            .position(|obstacle| obstacle.name == name)
+        {
+            let is_plate = matches!(tube.obstacles[i].shape, ObstacleShape::Plate { .. });
+            return Some(Self::Obstacle(i, !is_plate));
         }
         let m = *muscles.get(name)?;
         Some(Self::Muscle(m, tube.muscles[m].direction))
@@ -140,6 +151,8 @@ impl Driven {
             Self::Muscle(_, Direction::Longitudinal) => &["length_ratio"],
             Self::End(_) => &["displacement", "twist_degrees"],
             Self::Wall(_) => &["pressure", "dead_load"],
+            Self::Obstacle(_, true) => &["radius", "position"],
+            Self::Obstacle(_, false) => &["position"],
         }
     }
 
@@ -149,6 +162,8 @@ impl Driven {
             Self::Muscle(_, Direction::Longitudinal) => "a longitudinal muscle",
             Self::End(_) => "an end of the tube",
             Self::Wall(_) => "a surface of the tube",
+            Self::Obstacle(_, true) => "an obstacle",
+            Self::Obstacle(_, false) => "a plate",
         }
     }
 }
@@ -156,14 +171,19 @@ impl Driven {
 /// Reports a name that is neither a muscle, nor an end, nor a surface.
 fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
     let muscle = join("muscles", name);
-    if !problems.are_sound(&[&muscle]) {
+    if !problems.are_sound(&[&muscle, "obstacles"]) {
         return problems.replaced(path);
     }
     let names = || {
         let muscles = tube.muscles.iter().map(|muscle| muscle.name.as_str());
         // A muscle of such a name is reported by itself.
         let is_free = |name: &&str| !ENDS.contains(name) && !WALLS.contains(name);
-        muscles.filter(is_free).chain(ENDS).chain(WALLS)
+        let obstacles = tube.obstacles.iter().map(|obstacle| obstacle.name.as_str());
+        muscles
+            .filter(is_free)
+            .chain(obstacles)
+            .chain(ENDS)
+            .chain(WALLS)
     };
     let near = match problems.len() < MANY {
         true => nearest(name, names()),
@@ -181,7 +201,7 @@ fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
             format!("add [{muscle}], or drive {}{more}", some.join(", "))
         }
     };
-    problems.key(path, "there is no muscle of this name", help);
+    problems.key(path, "there is no muscle or obstacle of this name", help);
 }
 
 /// Applies the targets of one muscle, end or surface to the load.
@@ -216,8 +236,12 @@ fn apply(
         ("twist_degrees", drive.twist_degrees),
         ("pressure", drive.pressure),
         ("dead_load", drive.dead_load),
+        ("radius", drive.radius),
+        // Its value is applied below.
+        ("position", drive.position.map(|_| f64::NAN)),
     ];
-    if written.iter().all(|(_, value)| value.is_none()) && problems.are_sound(&[path]) {
+    let nothing = written.iter().all(|(_, value)| value.is_none()) && drive.position.is_none();
+    if nothing && problems.are_sound(&[path]) {
         let help = format!("add {}", targets.join(" or "));
         problems.key(path, "has no target", help);
     }
@@ -253,6 +277,13 @@ fn apply(
                     _ => end.twist = value.to_radians(),
                 }
                 check_held(&key, target, tube.ends[e], problems);
+            }
+            Driven::Obstacle(i, _) => {
+                let placement = &mut load.obstacles[i];
+                match (target, drive.position) {
+                    ("position", Some(position)) => placement.position = in_tube(position, case),
+                    _ => placement.radius = value / case.tube.diameter,
+                }
             }
             Driven::Wall(w) => {
                 let modulus = youngs_modulus(case);

@@ -9,7 +9,7 @@ use super::zone::{ROUNDING, length};
 use crate::activation::{Direction, Muscle};
 use crate::saved_state::{Layout, SavedState};
 use crate::study::Start;
-use crate::tube::{Load, Mesh, Symmetry, Tube};
+use crate::tube::{Load, Mesh, Obstacle, Symmetry, Tube};
 
 const KEY: &str = "start.state";
 
@@ -108,6 +108,12 @@ fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Load {
                 false => format!("add [{}]", join("muscles", name)),
             };
             problems.value(KEY, rule, help);
+        }
+    }
+    for (name, placement) in state.obstacles.iter().zip(&state.load.obstacles) {
+        let same = |obstacle: &Obstacle| obstacle.name == *name;
+        if let Some(i) = tube.obstacles.iter().position(same) {
+            load.obstacles[i] = *placement;
         }
     }
     load.ends = state.load.ends;

@@ -34,6 +34,23 @@ fn base(pattern: &str) -> String {
     if pattern.starts_with("mesh.refine[]") {
         text += "[[mesh.refine]]\nzone = [0.5, 1.0]\n";
     }
+    let is_of_obstacle = ["drive.<name>.radius", "drive.<name>.position"];
+    let is_of_obstacle = is_of_obstacle.iter().any(|end| pattern.ends_with(end));
+    if pattern.starts_with("obstacles[]") || is_of_obstacle {
+        let shape = match pattern {
+            _ if pattern.contains(".sheath") => "sheath = { radius = 0.7 }",
+            _ if pattern.contains(".ball") => {
+                "ball = { radius = 0.2, position = [0.0, 0.0, -0.5] }"
+            }
+            _ if pattern.contains(".plate") => {
+                "plate = { position = [0.7, 0.0, 0.0], normal = [-1.0, 0.0, 0.0] }"
+            }
+            _ => "rod = { radius = 0.2 }",
+        };
+        text = format!(
+            "symmetry = 'none'\n{text}[[obstacles]]\nname = 'bolus'\nshape = {{ {shape} }}\n"
+        );
+    }
     if pattern.starts_with("imperfections[]") {
         let shape = match pattern {
             "imperfections[].shape.mode" => "mode = 'mode'",
@@ -60,6 +77,7 @@ fn path(pattern: &str) -> String {
     let name = match last {
         "displacement" | "twist_degrees" => "colon",
         "pressure" | "dead_load" => "inner-wall",
+        "radius" | "position" => "bolus",
         _ => "circular",
     };
     pattern.replace("[]", "[1]").replace("<name>", name)

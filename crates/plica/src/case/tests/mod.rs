@@ -56,6 +56,19 @@ drive.colon.twist_degrees = 10
 drive.inner-wall.pressure = 0.5
 drive.outer-wall.dead_load = 0.25
 drive.next.diameter_ratio = 0.9
+drive.bolus = { position = [0.0, 0.0, 4.0], radius = 3.0 }
+[[obstacles]]
+name = "bolus"
+shape = { ball = { radius = 4.0, position = [0.0, 0.0, -8.0] } }
+[[obstacles]]
+name = "scope"
+shape = { rod = { radius = 2.0, length = 16.0, position = [0.5, 0.0, 90.0] } }
+[[obstacles]]
+name = "sleeve"
+shape = { sheath = { radius = 10.0, position = [0.0, 0.25, 0.0] } }
+[[obstacles]]
+name = "spine"
+shape = { plate = { position = [0.0, -16.0, 0.0], normal = [0.0, 3.0, 4.0] } }
 [[imperfections]]
 of = "colon-end"
 direction = "axial"
@@ -238,6 +251,20 @@ fn the_plan_is_dimensionless() {
     let [inner, outer] = second.load.pressures;
     assert_eq!((inner.follower, outer.dead), (0.5 / 64.0, 0.25 / 64.0));
     assert_eq!((inner.dead, outer.follower), (0.0, 0.0));
+    // Positions are (z, x, y).
+    let [bolus, scope, _, spine] = &plan.tube.obstacles[..] else {
+        panic!("{:?}", plan.tube.obstacles)
+    };
+    let placement = |radius, position| tube::Placement { radius, position };
+    assert_eq!(bolus.rest, placement(0.25, [-0.5, 0.0, 0.0]));
+    assert_eq!(
+        second.load.obstacles[0],
+        placement(3.0 / 16.0, [0.25, 0.0, 0.0])
+    );
+    assert_eq!(scope.rest, placement(0.125, [5.625, 0.03125, 0.0]));
+    assert_eq!(scope.shape, tube::ObstacleShape::Rod { half_length: 0.5 });
+    let normal = [0.8, 0.0, 0.6];
+    assert_eq!(spine.shape, tube::ObstacleShape::Plate { normal });
     let [end, muscle, geometry] = &plan.tube.imperfections[..] else {
         panic!("{:?}", plan.tube.imperfections)
     };

@@ -1,0 +1,197 @@
+//! The obstacles: their names and shapes, and their distance from the tube at rest.
+
+use super::super::keys::{self, Case};
+use super::super::problem::Problems;
+use super::muscles::{ENDS, WALLS, is_name};
+use super::zone::{length, tidy};
+use crate::study::Stage;
+use crate::tube::{Load, Mesh, Obstacle, ObstacleShape, Placement, Symmetry, Tube};
+use std::f64::consts::TAU;
+
+/// Points along and around a wall at rest at which its distance from an obstacle is measured.
+const POINTS: [usize; 2] = [121, 72];
+/// Largest motion of an obstacle in a load step, in its radii. A wall that is deeper inside is pushed out on the wrong side.
+const LARGEST_STEP: f64 = 0.5;
+
+/// Returns the obstacles, dimensionless.
+pub(super) fn obstacles(case: &Case, problems: &mut Problems) -> Vec<Obstacle> {
+    let mut obstacles: Vec<Obstacle> = vec![];
+    for (i, obstacle) in case.obstacles.iter().enumerate() {
+        let path = format!("obstacles[{}]", i + 1);
+        check_name(
+            &format!("{path}.name"),
+            &obstacle.name,
+            &obstacles,
+            case,
+            problems,
+        );
+        let (shape, radius, position) = match &obstacle.shape {
+            keys::ObstacleShape::Rod(rod) => {
+                let half = rod
+                    .length
+                    .map_or(f64::INFINITY, |x| 0.5 * x / case.tube.diameter);
+                (
+                    ObstacleShape::Rod { half_length: half },
+                    rod.radius,
+                    rod.position,
+                )
+            }
+            keys::ObstacleShape::Sheath(sheath) => {
+                (ObstacleShape::Sheath, sheath.radius, sheath.position)
+            }
+            keys::ObstacleShape::Ball(ball) => (ObstacleShape::Ball, ball.radius, ball.position),
+            keys::ObstacleShape::Plate(plate) => {
+                let [x, y, z] = plate.normal;
+                let size = x.hypot(y).hypot(z);
+                let key = format!("{path}.shape.plate.normal");
+                if size == 0.0 && problems.are_sound(&[&key]) {
+                    problems.value(&key, "must not be zero", "try [-1.0, 0.0, 0.0]");
+                }
+                let normal = [z, x, y].map(|x| if size > 0.0 { x / size } else { 0.0 });
+                (ObstacleShape::Plate { normal }, 0.0, plate.position)
+            }
+        };
+        obstacles.push(Obstacle {
+            name: obstacle.name.clone(),
+            shape,
+            rest: Placement {
+                radius: radius / case.tube.diameter,
+                position: in_tube(position, case),
+            },
+        });
+    }
+    obstacles
+}
+
+/// Returns a position of a case, [x, y, z], as (z, x, y) in D.
+pub(super) fn in_tube([x, y, z]: [f64; 3], case: &Case) -> [f64; 3] {
+    [z, x, y].map(|x| x / case.tube.diameter)
+}
+
+fn check_name(key: &str, name: &str, before: &[Obstacle], case: &Case, problems: &mut Problems) {
+    if !problems.is_as_written(key) {
+        return;
+    }
+    let is_taken = ENDS.contains(&name)
+        || WALLS.contains(&name)
+        || case.muscles.contains_key(name)
+        || before.iter().any(|obstacle| obstacle.name == name);
+    if !is_name(name) {
+        let rule = "must consist of letters, digits, - and _, at most 40 of them";
+        problems.value(key, rule, "");
+    } else if is_taken {
+        let rule = "a muscle, an end, a surface or another obstacle has this name";
+        problems.value(key, rule, "choose another name");
+    }
+}
+
+/// Checks that obstacles are clear of the tube at rest, keep the symmetry, and move slowly enough.
+pub(super) fn check(
+    case: &Case,
+    tube: &Tube,
+    (mesh, symmetry): (&Mesh, Symmetry),
+    (begin, stages): (&Load, &[Stage]),
+    problems: &mut Problems,
+) {
+    for (i, obstacle) in tube.obstacles.iter().enumerate() {
+        let path = format!("obstacles[{}]", i + 1);
+        if !problems.are_sound(&[&path, "tube", "mesh", "stages", "start", "symmetry"]) {
+            continue;
+        }
+        check_symmetry(i, obstacle, symmetry, (begin, stages), problems);
+        check_steps(i, obstacle, case, (begin, stages), problems);
+        if case.start.is_none() {
+            let gap = gap_at_rest(obstacle, tube);
+            let [elements, ..] = mesh.elements();
+            // The range of contact is at most a quarter of an element.
+            let needed = 0.25 * tube.length / elements as f64;
+            if gap < needed {
+                let rule = match gap > 0.0 {
+                    true => format!(
+                        "the obstacle is {} from the tube at rest, {} at least",
+                        length(case, gap),
+                        length(case, tidy(needed))
+                    ),
+                    false => "the obstacle overlaps the tube at rest".to_owned(),
+                };
+                let help = "begin farther away, and move it or change its radius in a stage";
+                problems.key(&format!("{path}.shape"), rule, help);
+            }
+        }
+    }
+}
+
+/// Checks that the placements of an obstacle keep an axisymmetric tube axisymmetric.
+fn check_symmetry(
+    i: usize,
+    obstacle: &Obstacle,
+    symmetry: Symmetry,
+    (begin, stages): (&Load, &[Stage]),
+    problems: &mut Problems,
+) {
+    if symmetry != Symmetry::Axisymmetric {
+        return;
+    }
+    let help = "use symmetry = \"none\" or a fold, or place the obstacle on the axis";
+    if !obstacle.is_axisymmetric(&begin.obstacles[i]) {
+        let rule = "an axisymmetric tube needs an obstacle that is symmetric about its axis";
+        return problems.key(&format!("obstacles[{}].shape", i + 1), rule, help);
+    }
+    for (s, stage) in stages.iter().enumerate() {
+        if !obstacle.is_axisymmetric(&stage.load.obstacles[i]) {
+            let key = format!("stages[{}].drive.{}.position", s + 1, obstacle.name);
+            let rule = "an axisymmetric tube needs obstacles that stay on its axis";
+            return problems.value(&key, rule, help);
+        }
+    }
+}
+
+/// Checks that an obstacle moves by at most half its radius in a step.
+fn check_steps(
+    i: usize,
+    obstacle: &Obstacle,
+    case: &Case,
+    (begin, stages): (&Load, &[Stage]),
+    problems: &mut Problems,
+) {
+    if matches!(obstacle.shape, ObstacleShape::Plate { .. }) {
+        return;
+    }
+    let mut before = begin.obstacles[i];
+    for (s, stage) in stages.iter().enumerate() {
+        let next = stage.load.obstacles[i];
+        let square: f64 = (0..3)
+            .map(|k| (next.position[k] - before.position[k]).powi(2))
+            .sum();
+        let moved = square.sqrt() + (next.radius - before.radius).abs();
+        let radius = next.radius.min(before.radius);
+        let steps = (moved / (LARGEST_STEP * radius)).ceil();
+        if steps > stage.steps as f64 && square > 0.0 {
+            let key = format!("stages[{}].steps", s + 1);
+            let rule = format!(
+                "{} moves by {} in a step, more than half its radius, {}",
+                obstacle.name,
+                length(case, tidy(moved / stage.steps as f64)),
+                length(case, radius)
+            );
+            return problems.key(&key, rule, format!("write steps = {steps}"));
+        }
+        before = next;
+    }
+}
+
+/// Returns the smallest distance of an obstacle from the walls at rest.
+fn gap_at_rest(obstacle: &Obstacle, tube: &Tube) -> f64 {
+    let mut least = f64::INFINITY;
+    for radius in [Tube::OUTER_RADIUS, tube.inner_radius()] {
+        for k in 0..POINTS[0] {
+            let z = tube.length * k as f64 / (POINTS[0] - 1) as f64;
+            for j in 0..POINTS[1] {
+                let (sin, cos) = (TAU * j as f64 / POINTS[1] as f64).sin_cos();
+                let point = [z, radius * cos, radius * sin];
+                least = least.min(obstacle.shape.distance(&obstacle.rest, point).gap);
+            }
+        }
+    }
+    least
+}
