@@ -170,7 +170,9 @@ fn label(quantity: Quantity, plan: &Plan) -> String {
         Quantity::IleumDisplacement => moved(1),
         Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
         Quantity::DeadLoad(wall) => format!("dead load/*E* {}", ["inside", "outside"][wall]),
-        Quantity::Muscle(_) => quantity.name(&plan.tube),
+        Quantity::Muscle(_) | Quantity::Radius(_) | Quantity::Position(..) => {
+            quantity.name(&plan.tube)
+        }
     }
 }
 

@@ -25,6 +25,10 @@ pub enum Quantity {
     Pressure(usize),
     /// Dead load on the inner (0) or the outer (1) wall, in E.
     DeadLoad(usize),
+    /// Radius of an obstacle, in D.
+    Radius(usize),
+    /// A component, (z, x, y), of the position of an obstacle, in D.
+    Position(usize, usize),
 }
 
 impl Quantity {
@@ -46,7 +50,12 @@ impl Quantity {
             Self::DeadLoad(0),
             Self::DeadLoad(1),
         ];
-        match most(&mut named.into_iter()) {
+        let obstacles = 0..tube.obstacles.len();
+        let of_obstacle = |i: usize| {
+            let position = (0..3).map(move |k| Self::Position(i, k));
+            std::iter::once(Self::Radius(i)).chain(position)
+        };
+        match most(&mut named.into_iter().chain(obstacles.flat_map(of_obstacle))) {
             Some((quantity, change)) if change > ROUNDING => quantity,
             _ => most(&mut (0..tube.muscles.len()).map(Self::Muscle))
                 .map_or(Self::LengthRatio, |(quantity, _)| quantity),
@@ -63,6 +72,8 @@ impl Quantity {
             Self::Muscle(m) => load.muscles[m],
             Self::Pressure(wall) => load.pressures[wall].follower,
             Self::DeadLoad(wall) => load.pressures[wall].dead,
+            Self::Radius(i) => load.obstacles[i].radius,
+            Self::Position(i, k) => load.obstacles[i].position[k],
         }
     }
 
@@ -76,6 +87,10 @@ impl Quantity {
             Self::Muscle(m) => format!("ratio of {}", tube.muscles[m].name),
             Self::Pressure(wall) => format!("pressure {}/E", WALLS[wall]),
             Self::DeadLoad(wall) => format!("dead load {}/E", WALLS[wall]),
+            Self::Radius(i) => format!("radius of {}/D", tube.obstacles[i].name),
+            Self::Position(i, k) => {
+                format!("{} of {}/D", ["z", "x", "y"][k], tube.obstacles[i].name)
+            }
         }
     }
 

@@ -112,6 +112,9 @@ fn zero(plan: &Plan) -> Row {
     if plan.contact {
         row = row.with_contact();
     }
+    let obstacles = plan.tube.obstacles.iter();
+    let obstacles: Vec<&str> = obstacles.map(|obstacle| obstacle.name.as_str()).collect();
+    let row = row.with_obstacles(&obstacles);
     if plan.has_pressures() {
         row.with_pressures()
     } else {

@@ -65,6 +65,16 @@ fn quantities(plan: &Plan, load: &Load) -> Vec<(String, f64, String)> {
         ));
         all.push((format!("{wall}.dead_load"), dead, scale.stress_name.clone()));
     }
+    for (obstacle, placement) in plan.tube.obstacles.iter().zip(&load.obstacles) {
+        let (name, unit) = (&obstacle.name, &scale.length_name);
+        let radius = scale.length * placement.radius;
+        all.push((format!("{name}.radius"), radius, unit.clone()));
+        // From (z, x, y).
+        for (axis, i) in ["x", "y", "z"].iter().zip([1, 2, 0]) {
+            let x = scale.length * placement.position[i];
+            all.push((format!("{axis} of {name}.position"), x, unit.clone()));
+        }
+    }
     all
 }
 

@@ -1,7 +1,7 @@
 //! A state as a row of `history.csv`.
 
 use super::table::{Quantity, Visitor};
-use super::{Scale, State};
+use super::{ObstacleRow, Scale, State};
 use crate::contact::{ContactReport, FaceContact, FaceSurface};
 use crate::equilibrium::Stability;
 use crate::measure::{Shape, Side};
@@ -47,6 +47,8 @@ pub struct Row {
     pub outer_wall_work: Option<f64>,
     /// Contact of the wall with itself; its columns exist only in runs with contact.
     pub contact: ContactRow,
+    /// The obstacles, in the order of the tube.
+    pub obstacles: Vec<ObstacleRow>,
     /// Strain energy W = ∫ w det Fp dV₀, over the grown volume.
     pub energy: f64,
     /// Strain energy ∫ w dV₀, over the ungrown volume, as some other programs report it.
@@ -55,7 +57,7 @@ pub struct Row {
     pub residual: f64,
     /// Work done against damping since the previous state.
     pub damping_work: f64,
-    /// Work done so far by muscles, pressures and ends, less the damping work so far and the gain of the energies of strain and contact.
+    /// Work done so far by muscles, pressures, ends and on obstacles, less the damping work so far and the gain of the energies of strain and contact.
     pub released_energy: f64,
     /// Method by which the state was found: rest, newton, relaxation or pseudo-time.
     pub method: Method,
@@ -270,6 +272,11 @@ impl Row {
                 .map_or_else(ContactRow::default, |contact| {
                     ContactRow::new(contact, state.energy, scale)
                 }),
+            obstacles: state
+                .obstacles
+                .iter()
+                .map(|obstacle| ObstacleRow::new(obstacle, scale))
+                .collect(),
             energy: energy * state.energy,
             energy_ungrown_volume: energy * state.energy_ungrown_volume,
             residual: state.relative_residual,
@@ -317,6 +324,9 @@ impl Row {
         for (i, end) in self.ends.iter_mut().enumerate() {
             end.work = total(previous.ends[i].work, work.ends[i]);
         }
+        for (i, obstacle) in self.obstacles.iter_mut().enumerate() {
+            obstacle.work = total(previous.obstacles[i].work, work.obstacles[i]);
+        }
         for (now, before, work) in [
             (
                 &mut self.inner_wall_work,
@@ -333,7 +343,11 @@ impl Row {
                 *now = total(before.unwrap_or(0.0), work);
             }
         }
-        let stored = |row: &Self| row.energy + row.contact.energy.unwrap_or(0.0);
+        let stored = |row: &Self| {
+            let obstacles = row.obstacles.iter();
+            let contact = obstacles.fold(0.0, |sum, obstacle| sum + obstacle.energy);
+            row.energy + row.contact.energy.unwrap_or(0.0) + contact
+        };
         let gained = stored(&self) - stored(previous);
         self.released_energy = previous.released_energy + (sum - self.damping_work - gained);
         self
@@ -422,6 +436,7 @@ impl Row {
             inner_wall_work: None,
             outer_wall_work: None,
             contact: ContactRow::default(),
+            obstacles: vec![],
             energy: 0.0,
             energy_ungrown_volume: 0.0,
             residual: 0.0,
@@ -451,6 +466,17 @@ impl Row {
             min_det_fe: 0.0,
             stability: Stability::Stable,
         }
+    }
+
+    /// Adds the columns of obstacles, with zeros, to a row without them.
+    #[must_use]
+    pub fn with_obstacles(mut self, names: &[&str]) -> Self {
+        let row = |name: &&str| ObstacleRow {
+            name: (*name).into(),
+            ..ObstacleRow::default()
+        };
+        self.obstacles = names.iter().map(row).collect();
+        self
     }
 
     /// Returns the name of the end on a side, or none.
@@ -511,6 +537,9 @@ impl Row {
             v.optional(&stretch, Ratio, &mut wall.surface_stretch);
             v.optional(&turn, Degrees, &mut wall.element_turn_deg);
         }
+        for obstacle in &mut self.obstacles {
+            obstacle.visit(v);
+        }
         v.cell("energy", Energy, &mut self.energy);
         let ungrown = &mut self.energy_ungrown_volume;
         v.cell("energy_ungrown_volume", Energy, ungrown);
@@ -519,6 +548,10 @@ impl Row {
         for muscle in &mut self.muscles {
             let name = format!("work_{}", muscle.name);
             v.cell(&name, Energy, &mut muscle.work);
+        }
+        for obstacle in &mut self.obstacles {
+            let name = format!("work_{}", obstacle.name);
+            v.cell(&name, Energy, &mut obstacle.work);
         }
         v.optional("work_inner-wall", Energy, &mut self.inner_wall_work);
         v.optional("work_outer-wall", Energy, &mut self.outer_wall_work);

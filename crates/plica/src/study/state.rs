@@ -3,11 +3,12 @@
 use super::work::WorkPoint;
 use super::{Plan, Work};
 use crate::activation::Muscle;
+use crate::assembly::ObstacleContact;
 use crate::contact::ContactReport;
 use crate::equilibrium::{Stability, TubeProblem};
 use crate::measure::{Dimensions, Measures, Reaction};
 use crate::solve::{Method, Step};
-use crate::tube::Load;
+use crate::tube::{Load, Obstacle, Placement};
 
 /// An accepted state of a study. Lengths in D, energies in E·D³, stresses in E.
 #[derive(Clone, Debug)]
@@ -55,6 +56,8 @@ pub struct State {
     pub reactions: [Reaction; 2],
     /// Contact of the walls with themselves; none in a study without contact.
     pub contact: Option<ContactReport>,
+    /// The obstacles, in the order of the tube.
+    pub obstacles: Vec<ObstacleState>,
     /// Work since the previous state.
     pub work: Work,
     /// Smallest det Fe at any quadrature point.
@@ -78,6 +81,17 @@ pub struct MuscleState {
     pub target: f64,
     /// Its growth stretch where it is furthest from one.
     pub stretch: f64,
+}
+
+/// An obstacle in a state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObstacleState {
+    /// Its name in the case.
+    pub name: String,
+    /// Its size and place.
+    pub placement: Placement,
+    /// Its contact with the walls.
+    pub contact: ObstacleContact,
 }
 
 /// A point of a stage at which a state is accepted.
@@ -127,7 +141,7 @@ impl State {
         };
         let (load, u) = (&accepted.load, &accepted.u);
         let mut point = WorkPoint::of(plan, tube, (load, u), &forces);
-        let none = || Work::none(load.muscles.len());
+        let none = || Work::none(load);
         let contact = problem.contact_report(load, u);
         let work = previous.map_or_else(none, |previous| previous.work_to(&mut point, tube));
         let state = Self {
@@ -150,6 +164,7 @@ impl State {
             dimensions: Dimensions::of(tube, u),
             reactions: Reaction::of(tube, load, u, &forces.residual),
             contact,
+            obstacles: obstacles(plan, load, point.contacts()),
             work,
             min_det_fe: forces.smallest_jacobian,
             stability,
@@ -180,6 +195,19 @@ fn measures(
         measures.gap = gaps.fold(exact.barrier().range, f64::min);
     }
     measures
+}
+
+/// Returns the obstacles of a plan under a load.
+fn obstacles(plan: &Plan, load: &Load, contacts: &[ObstacleContact]) -> Vec<ObstacleState> {
+    let obstacles = plan.tube.obstacles.iter().zip(&load.obstacles);
+    let state = |((obstacle, placement), contact): ((&Obstacle, &Placement), &ObstacleContact)| {
+        ObstacleState {
+            name: obstacle.name.clone(),
+            placement: *placement,
+            contact: contact.clone(),
+        }
+    };
+    obstacles.zip(contacts).map(state).collect()
 }
 
 /// Returns the muscles of a plan under a load.

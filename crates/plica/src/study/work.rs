@@ -2,13 +2,13 @@
 //!
 //! Along a path of equilibria
 //!
-//! dW = Σ ∂W/∂t dt + p_i dV_i − p_o dV_o + (the same of dead loads) + Σ R · du,
+//! dW = Σ ∂W/∂t dt + p_i dV_i − p_o dV_o + (the same of dead loads) + Σ R · du + Σ ∂Π/∂q dq,
 //!
 //! where t is the target of a muscle, at fixed displacements, and R is the residual at the prescribed displacements u of
-//! the ends. The trapezoidal rule between accepted states integrates each term with an error of second order in the step.
+//! the ends, and q are the radius and the position of an obstacle; W includes the energy of contact. The trapezoidal rule between accepted states integrates each term with an error of second order in the step.
 
 use super::Plan;
-use crate::assembly::{Forces, SplineTube};
+use crate::assembly::{Forces, ObstacleContact, SplineTube};
 use crate::tube::Load;
 
 /// Work of one step on the whole tube, in E·D³.
@@ -20,13 +20,16 @@ pub struct Work {
     pub walls: [f64; 2],
     /// By the supports of the ends at z = 0 and z = L.
     pub ends: [f64; 2],
+    /// On each obstacle, to move it and to change its radius, in the order of the tube.
+    pub obstacles: Vec<f64>,
 }
 
 impl Work {
-    /// Returns no work, of a number of muscles.
-    pub(super) fn none(muscles: usize) -> Self {
+    /// Returns no work under a load.
+    pub(super) fn none(load: &Load) -> Self {
         Self {
-            muscles: vec![0.0; muscles],
+            muscles: vec![0.0; load.muscles.len()],
+            obstacles: vec![0.0; load.obstacles.len()],
             ..Self::default()
         }
     }
@@ -43,6 +46,7 @@ pub(super) struct WorkPoint {
     unit_work: [[f64; 2]; 2],
     /// Displacement and residual at the prescribed unknowns of each end, of one sector.
     ends: [Vec<[f64; 2]>; 2],
+    contacts: Vec<ObstacleContact>,
     sectors: f64,
 }
 
@@ -67,10 +71,16 @@ impl WorkPoint {
                 false => [[0.0; 2]; 2],
             },
             ends: [end(0), end(u.len() - row)],
+            contacts: tube.obstacle_contacts(load, u),
             load: load.clone(),
             u: u.to_vec(),
             sectors: tube.sector.repeats(),
         }
+    }
+
+    /// Returns the contact with each obstacle.
+    pub fn contacts(&self) -> &[ObstacleContact] {
+        &self.contacts
     }
 
     /// Returns ∂W/∂t of a muscle.
@@ -106,7 +116,22 @@ impl WorkPoint {
             };
             self.sectors * pairs.map(work).sum::<f64>()
         };
+        let obstacle = |i: usize| {
+            let [from, to] = [self, next].map(|point| &point.contacts[i]);
+            let [before, after] = [self, next].map(|point| &point.load.obstacles[i]);
+            let by_radius = trapezoid(
+                [from.radius_force, to.radius_force],
+                after.radius - before.radius,
+            );
+            // The wall pushes the obstacle, and its support holds against that.
+            let by_position = |k: usize| {
+                let change = after.position[k] - before.position[k];
+                -trapezoid([from.reaction[k], to.reaction[k]], change)
+            };
+            by_radius + (0..3).map(by_position).sum::<f64>()
+        };
         Work {
+            obstacles: (0..self.contacts.len()).map(obstacle).collect(),
             muscles,
             walls: [0, 1].map(wall),
             ends: [0, 1].map(end),

@@ -82,6 +82,13 @@ pub fn loads(row: &Row, scale: &Scale, muscles_by_name: bool) -> Vec<NamedLoad> 
     ] {
         loads.push(load(name.into(), value.unwrap_or(0.0), stress));
     }
+    for obstacle in &row.obstacles {
+        let name = &obstacle.name;
+        loads.push(load(format!("radius of {name}"), obstacle.radius, length));
+        for (axis, x) in ["x", "y", "z"].iter().zip(obstacle.position) {
+            loads.push(load(format!("{axis} of {name}"), x, length));
+        }
+    }
     loads
 }
 
