@@ -8,6 +8,7 @@
 //! | `rings`, `columns` | pressure, growth, buckling; limits of thin walls and long tubes |
 //! | `locking` | nearly incompressible thick walls |
 //! | `manufactured` | orders of convergence on manufactured solutions |
+//! | `contact` | contact with obstacles |
 //! | `cross_checks` | the same result computed in two ways |
 //! | `main_case` | the main case of Okino et al. (2025) |
 //! | [`row`], `report` | rows, table and page |
@@ -16,6 +17,7 @@
 #![allow(non_snake_case)] // formulas keep the letters of their sources
 
 mod columns;
+mod contact;
 mod cross_checks;
 mod error;
 mod exact;
@@ -117,6 +119,21 @@ pub const CHECKS: &[Check] = &[
         columns::thin_shell,
     ),
     quick("column", "Euler buckling of long tubes", columns::column),
+    quick(
+        "contact",
+        "rings that contract onto a rod and grow into a sheath",
+        contact::rings,
+    ),
+    quick(
+        "contact-symmetries",
+        "contact of one ring and of the whole tube",
+        contact::symmetries,
+    ),
+    quick(
+        "plates",
+        "a thin ring between rigid plates",
+        contact::plates,
+    ),
     quick(
         "tangents",
         "tangents against differences of the residual",

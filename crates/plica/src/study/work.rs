@@ -128,7 +128,8 @@ impl WorkPoint {
                 let change = after.position[k] - before.position[k];
                 -trapezoid([from.reaction[k], to.reaction[k]], change)
             };
-            by_radius + (0..3).map(by_position).sum::<f64>()
+            let copies = to.copies as f64;
+            by_radius + copies * (0..3).map(by_position).sum::<f64>()
         };
         Work {
             obstacles: (0..self.contacts.len()).map(obstacle).collect(),

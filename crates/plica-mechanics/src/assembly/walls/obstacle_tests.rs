@@ -190,6 +190,18 @@ fn obstacles_are_the_same_for_every_sector() {
     let twice: Vec<f64> = u.chunks_exact(4).flat_map(|x| [x, x].concat()).collect();
     let (a, b) = (alone(&half, &u), alone(&whole, &twice));
     assert!((a.contact / b.contact - 1.0).abs() < 1e-13);
+    let reports = |tube: &SplineTube, u: &[f64]| tube.obstacle_contacts(&tube.tube.rest(), u);
+    let (a_reports, b_reports) = (reports(&half, &u), reports(&whole, &twice));
+    for (i, of_half) in a_reports.iter().enumerate() {
+        let of_whole = &b_reports[i];
+        let all = if i < 3 { 1.0 } else { 2.0 };
+        assert_eq!(of_half.copies as f64, all);
+        assert!((of_half.energy / (all * of_whole.energy) - 1.0).abs() < 1e-12);
+        for k in 0..3 {
+            let (x, y) = (of_half.reaction[k], of_whole.reaction[k]);
+            assert!((x - y).abs() < 1e-12 * of_half.force, "{i} {k}: {x} {y}");
+        }
+    }
     for (i, x) in a.residual.iter().enumerate() {
         let y = b.residual[8 * (i / 4) + i % 4];
         assert!((x - y).abs() < 1e-14, "{i}: {x} {y}");

@@ -15,7 +15,18 @@ use crate::tube::{Distance, Load, Obstacle, ObstacleShape, Placement, turned};
 pub struct PlacedObstacle {
     /// Its number in the tube.
     pub number: usize,
-    copies: Vec<(ObstacleShape, Placement)>,
+    copies: Vec<Copy>,
+    /// 1 for a sector that is the whole tube, else 0.
+    whole: f64,
+}
+
+/// One of the copies of an obstacle.
+#[derive(Clone, Debug)]
+struct Copy {
+    shape: ObstacleShape,
+    placement: Placement,
+    /// Sine and cosine of its angle from the first copy.
+    sin_cos: (f64, f64),
 }
 
 /// Contact of a tube with one obstacle.
@@ -25,8 +36,11 @@ pub struct ObstacleContact {
     pub energy: f64,
     /// Sum of the sizes of the contact forces, in E·D².
     pub force: f64,
-    /// Resultant of the contact forces on the obstacle, (z, x, y), in E·D².
+    /// Resultant of the contact forces on the obstacle, (z, x, y), in E·D²; on one of its copies, if the cyclic sectors
+    /// of the tube repeat it.
     pub reaction: [f64; 3],
+    /// Number of its copies. Energy, force and area are those of all.
+    pub copies: usize,
     /// ∂Π/∂radius, in E·D²: the force that the wall does not exert along a grown radius, summed over the surface.
     pub radius_force: f64,
     /// Area at rest of the wall within the range of contact, in D².
@@ -54,14 +68,20 @@ impl SplineTube {
                 false => self.sector.around / self.sector.rings,
             };
             let angle = std::f64::consts::TAU / repeats as f64;
-            let copy = |i: usize| match i {
-                0 => (obstacle.shape, *placement),
-                _ => {
-                    let sin_cos = (i as f64 * angle).sin_cos();
-                    (obstacle.shape.turned(sin_cos), placement.turned(sin_cos))
+            let copy = |i: usize| {
+                let sin_cos = (i as f64 * angle).sin_cos();
+                Copy {
+                    shape: obstacle.shape.turned(sin_cos),
+                    placement: placement.turned(sin_cos),
+                    sin_cos,
                 }
             };
             PlacedObstacle {
+                whole: if self.sector.around == self.sector.rings {
+                    1.0
+                } else {
+                    0.0
+                },
                 number,
                 copies: (0..repeats).map(copy).collect(),
             }
@@ -75,6 +95,7 @@ impl SplineTube {
             energy: 0.0,
             force: 0.0,
             reaction: [0.0; 3],
+            copies: 1,
             radius_force: 0.0,
             area: 0.0,
             gap: f64::INFINITY,
@@ -124,12 +145,12 @@ impl LoadedWall {
     ) -> Option<PointContact> {
         let mut found: Option<PointContact> = None;
         let lab = turned(position, (sin, cos));
-        for (shape, placement) in self.obstacles.iter().flat_map(|obstacle| &obstacle.copies) {
+        for copy in self.obstacles.iter().flat_map(|obstacle| &obstacle.copies) {
             let Distance {
                 gap,
                 normal,
                 curvature,
-            } = shape.distance(placement, lab);
+            } = copy.shape.distance(&copy.placement, lab);
             if gap >= self.barrier.range {
                 continue;
             }
@@ -165,8 +186,9 @@ impl PlacedObstacle {
         (z, area): (f64, f64),
         wall: &LoadedWall,
     ) {
-        for (shape, placement) in &self.copies {
-            let Distance { gap, normal, .. } = shape.distance(placement, position);
+        sum.copies = self.copies.len();
+        for copy in &self.copies {
+            let Distance { gap, normal, .. } = copy.shape.distance(&copy.placement, position);
             sum.gap = sum.gap.min(gap);
             if gap >= wall.barrier.range {
                 continue;
@@ -174,10 +196,18 @@ impl PlacedObstacle {
             let jet = wall.barrier.continued(gap);
             sum.energy += area * jet.value;
             sum.force -= area * jet.slope;
-            sum.radius_force += area * jet.slope * shape.radius_slope();
+            sum.radius_force += area * jet.slope * copy.shape.radius_slope();
             sum.area += area;
-            for i in 0..3 {
-                sum.reaction[i] += area * jet.slope * normal[i];
+            // Of the first copy. The forces of all sectors across a single obstacle on the axis cancel.
+            let (sin, cos) = copy.sin_cos;
+            let [along, x, y] = turned(normal, (-sin, cos));
+            let across = match sum.copies {
+                1 => self.whole,
+                _ => 1.0,
+            };
+            let share = area * jet.slope / sum.copies as f64;
+            for (sum, part) in sum.reaction.iter_mut().zip([along, across * x, across * y]) {
+                *sum += share * part;
             }
             let [from, to] = sum.from_to.unwrap_or([z, z]);
             sum.from_to = Some([from.min(z), to.max(z)]);
