@@ -142,7 +142,7 @@ fn the_tests_named_in_verification_exist() {
 #[test]
 fn the_columns_of_the_history_are_documented() {
     let row = Row::zero(&["M"], ["END", "END"]);
-    let row = row.with_pressures().with_contact();
+    let row = row.with_pressures().with_contact().with_obstacles(&["O"]);
     let mut columns = row.header();
     columns.dedup();
 

@@ -163,7 +163,8 @@ mod tests {
     use super::super::{Row, Scale, Stage, Study};
     use super::*;
     use crate::activation::{Direction, Muscle, Profile};
-    use crate::tube::{EndMotion, Pressure, Support, Symmetry};
+    use crate::tube::{EndMotion, Obstacle, ObstacleShape, Placement};
+    use crate::tube::{Pressure, Support, Symmetry};
 
     /// A tube with two muscles, pressures on both walls and a pushed and twisted end, all driven at a time.
     fn driven(steps: usize) -> Plan {
@@ -211,6 +212,30 @@ mod tests {
         plan
     }
 
+    /// The same tube, which a sheath squeezes while a ball moves into its lumen.
+    fn squeezed(steps: usize) -> Plan {
+        let mut plan = driven(steps);
+        let obstacle = |name: &str, shape, radius, z| Obstacle {
+            name: name.into(),
+            shape,
+            rest: Placement {
+                radius,
+                position: [z, 0.0, 0.0],
+            },
+        };
+        plan.tube.obstacles = vec![
+            obstacle("sheath", ObstacleShape::Sheath, 0.58, 0.0),
+            obstacle("ball", ObstacleShape::Ball, 0.4, -0.4),
+        ];
+        let [sheath, ball] = [0, 1].map(|i| plan.tube.obstacles[i].rest);
+        for (stage, [radius, z]) in plan.stages.iter_mut().zip([[0.52, -0.1], [0.48, 0.2]]) {
+            let sheath = Placement { radius, ..sheath };
+            let position = [z, 0.0, 0.0];
+            stage.load.obstacles = vec![sheath, Placement { position, ..ball }];
+        }
+        plan
+    }
+
     fn rows(plan: &Plan) -> Vec<Row> {
         let mut rows: Vec<Row> = vec![];
         for state in Study::new(plan).unwrap() {
@@ -240,6 +265,37 @@ mod tests {
         let [coarse, fine] = [4, 8].map(gap);
         println!("{coarse:e} {fine:e}");
         assert!(coarse < 2e-2 && fine < coarse / 3.5, "{coarse} {fine}");
+    }
+
+    #[test]
+    fn the_energy_balance_closes_with_obstacles_that_move() {
+        let gap = |steps: usize| {
+            let rows = rows(&squeezed(steps));
+            assert_eq!(rows.len(), 1 + 2 * steps);
+            let last = rows.last().unwrap();
+            let obstacles: Vec<f64> = last.obstacles.iter().map(|o| o.work).collect();
+            let muscles: f64 = last.muscles.iter().map(|m| m.work).sum();
+            let ends: f64 = last.ends.iter().map(|end| end.work).sum();
+            let walls = last.inner_wall_work.unwrap() + last.outer_wall_work.unwrap();
+            let parts = [muscles, ends, walls, obstacles[0], obstacles[1]];
+            let all: f64 = parts.iter().map(|x| x.abs()).sum();
+            assert!(parts.iter().all(|x| x.abs() > 0.01 * all), "{parts:?}");
+            for obstacle in &last.obstacles {
+                assert!(obstacle.gap > 0.0 && obstacle.force > 0.0, "{obstacle:?}");
+                assert!(
+                    0.0 < obstacle.from && obstacle.from < obstacle.to,
+                    "{obstacle:?}"
+                );
+            }
+            let contact: f64 = last.obstacles.iter().map(|o| o.energy).sum();
+            let sum: f64 = parts.iter().sum();
+            let gap = sum - (last.energy + contact - rows[0].energy);
+            assert!((gap - last.released_energy).abs() < 1e-12 * all);
+            (gap / all).abs()
+        };
+        let [coarse, fine] = [8, 16].map(gap);
+        println!("{coarse:e} {fine:e}");
+        assert!(coarse < 2e-2 && fine < coarse / 2.5, "{coarse} {fine}");
     }
 
     #[test]
@@ -283,7 +339,7 @@ mod tests {
 
     #[test]
     fn a_resumed_study_does_the_same_work_to_the_bit() {
-        let plan = driven(2);
+        let plan = squeezed(2);
         let mut study = Study::new(&plan).unwrap();
         let (mut works, mut continuations) = (vec![], vec![]);
         while let Some(state) = study.next() {
