@@ -9,6 +9,7 @@ mod export;
 mod faults;
 mod main_case;
 mod mode_imperfections;
+mod obstacles;
 #[cfg(unix)]
 mod removals;
 mod render;

@@ -150,4 +150,41 @@ mod tests {
         let scale = Scale::of(Some(&metres));
         assert!((scale.energy - 0.3125e6).abs() < 1e-6 && scale.energy_name == "uJ");
     }
+
+    #[test]
+    fn energies_and_forces_have_the_prefix_of_their_units() {
+        use crate::study::LengthUnit::{Centimetre, Metre, Micrometre, Millimetre};
+        use crate::study::StressUnit::{Kilopascal, Megapascal, Pascal};
+        for (length, stress, energy, force, joule, newton) in [
+            (Metre, Megapascal, 1e6, 1e6, "J", "N"),
+            (Centimetre, Megapascal, 1.0, 100.0, "J", "N"),
+            (Millimetre, Megapascal, 1.0, 1.0, "mJ", "N"),
+            (Millimetre, Pascal, 1.0, 1.0, "nJ", "uN"),
+            (Micrometre, Megapascal, 1.0, 1.0, "pJ", "uN"),
+            (Micrometre, Kilopascal, 1.0, 1.0, "fJ", "nN"),
+        ] {
+            let scale = Scale::of(Some(&Units {
+                length,
+                stress,
+                diameter: 1.0,
+                youngs_modulus: 1.0,
+            }));
+            let place = format!("{length} {stress}");
+            assert!(
+                (scale.energy / energy - 1.0).abs() < 1e-12,
+                "{place}: {}",
+                scale.energy
+            );
+            assert!(
+                (scale.force / force - 1.0).abs() < 1e-12,
+                "{place}: {}",
+                scale.force
+            );
+            assert_eq!(
+                (scale.energy_name.as_str(), scale.force_name.as_str()),
+                (joule, newton),
+                "{place}"
+            );
+        }
+    }
 }

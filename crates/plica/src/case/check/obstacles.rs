@@ -5,11 +5,13 @@ use super::super::problem::Problems;
 use super::muscles::{ENDS, WALLS, is_name};
 use super::zone::{length, tidy};
 use crate::study::Stage;
-use crate::tube::{Load, Mesh, Obstacle, ObstacleShape, Placement, Symmetry, Tube};
+use crate::tube::{Load, Mesh, Obstacle, ObstacleShape, Placement, Support, Symmetry, Tube};
 use std::f64::consts::TAU;
 
 /// Points along and around a wall at rest at which its distance from an obstacle is measured.
 const POINTS: [usize; 2] = [121, 72];
+/// Largest number of places along a stage at which an obstacle is compared with the edges of fixed ends.
+const LARGEST_COUNT: usize = 200;
 /// Largest motion of an obstacle in a load step, in its radii. A wall that is deeper inside is pushed out on the wrong side.
 const LARGEST_STEP: f64 = 0.5;
 
@@ -99,7 +101,9 @@ pub(super) fn check(
             continue;
         }
         check_symmetry(i, obstacle, symmetry, (begin, stages), problems);
+        check_ends(i, obstacle, tube, symmetry, (begin, stages), problems);
         check_steps(i, obstacle, case, (begin, stages), problems);
+        check_fixed_ends(i, obstacle, tube, (begin, stages), problems);
         if case.start.is_none() {
             let gap = gap_at_rest(obstacle, tube);
             let [elements, ..] = mesh.elements();
@@ -143,6 +147,77 @@ fn check_symmetry(
             let rule = "an axisymmetric tube needs obstacles that stay on its axis";
             return problems.value(&key, rule, help);
         }
+    }
+}
+
+/// Checks that the ends hold a tube which an obstacle pushes.
+fn check_ends(
+    i: usize,
+    obstacle: &Obstacle,
+    tube: &Tube,
+    symmetry: Symmetry,
+    (begin, stages): (&Load, &[Stage]),
+    problems: &mut Problems,
+) {
+    if !problems.are_sound(&["ends"]) {
+        return;
+    }
+    let key = format!("obstacles[{}].shape", i + 1);
+    let pushes_along = match obstacle.shape {
+        ObstacleShape::Rod { half_length } => half_length.is_finite(),
+        ObstacleShape::Sheath => false,
+        ObstacleShape::Ball => true,
+        ObstacleShape::Plate { normal } => normal[0] != 0.0,
+    };
+    let loads = std::iter::once(begin).chain(stages.iter().map(|stage| &stage.load));
+    let pushes_across = symmetry == Symmetry::None
+        && loads
+            .clone()
+            .any(|load| !obstacle.is_axisymmetric(&load.obstacles[i]));
+    if pushes_across && !tube.ends.contains(&Support::Fixed) {
+        let rule = "the obstacle can push the tube sideways, and no end holds it";
+        problems.key(&key, rule, "write \"fixed\" for an end in [ends]");
+    } else if pushes_along && tube.ends == [Support::Free; 2] {
+        let rule = "the obstacle can push the tube along its axis, and no end holds it";
+        let help = "write \"fixed\" or \"sliding\" for an end in [ends]";
+        problems.key(&key, rule, help);
+    }
+}
+
+/// Checks that an obstacle stays clear of the edges of fixed ends, which cannot give way.
+fn check_fixed_ends(
+    i: usize,
+    obstacle: &Obstacle,
+    tube: &Tube,
+    (begin, stages): (&Load, &[Stage]),
+    problems: &mut Problems,
+) {
+    let meets = |load: &Load| {
+        let edges = [0, 1]
+            .into_iter()
+            .filter(|end| tube.ends[*end] == Support::Fixed);
+        let mut points = edges.flat_map(|end| {
+            let z = tube.length * end as f64 + load.ends[end].displacement;
+            let radii = [Tube::OUTER_RADIUS, tube.inner_radius()];
+            radii.into_iter().flat_map(move |radius| {
+                (0..POINTS[1]).map(move |j| {
+                    let (sin, cos) = (TAU * j as f64 / POINTS[1] as f64).sin_cos();
+                    [z, radius * cos, radius * sin]
+                })
+            })
+        });
+        points.any(|point| obstacle.shape.distance(&load.obstacles[i], point).gap < 0.0)
+    };
+    let mut before = begin;
+    for (s, stage) in stages.iter().enumerate() {
+        let steps = stage.steps.min(LARGEST_COUNT);
+        if (1..=steps).any(|n| meets(&before.towards(&stage.load, n as f64 / steps as f64))) {
+            let key = format!("stages[{}]", s + 1);
+            let rule = format!("{} runs into the edge of a fixed end", obstacle.name);
+            let help = "write \"sliding\" or \"free\" for the end in [ends], or let the obstacle widen inside the tube";
+            return problems.key(&key, rule, help);
+        }
+        before = &stage.load;
     }
 }
 

@@ -204,6 +204,50 @@ const OF_RING: &[Rule] = &[
         &["'geometry'", "{ muscle = 'ring' }"],
         &["'ileum-end'"],
     ),
+    // A quarter of one of 302 equal elements: 0.00248.
+    rule(
+        "obstacles[1].shape",
+        "obstacles = [{ name = 'scope', shape = { @ } }]",
+        &[
+            "rod = { radius = 0.4375 }",
+            "sheath = { radius = 0.5025 }",
+            "ball = { radius = 0.4375, position = [0.0, 0.0, 1.5] }",
+            "plate = { position = [0.0, 0.0, -0.0025], normal = [0.0, 0.0, 1.0] }",
+        ],
+        &[
+            "rod = { radius = 0.4376 }",
+            "sheath = { radius = 0.5024 }",
+            "ball = { radius = 0.4376, position = [0.0, 0.0, 1.5] }",
+            "ball = { radius = 0.1, position = [0.1, 0.0, 1.5] }",
+            "plate = { position = [0.0, 0.0, -0.0024], normal = [0.0, 0.0, 1.0] }",
+            "plate = { position = [0.7, 0.0, 0.0], normal = [-1.0, 0.0, 0.0] }",
+        ],
+    ),
+    rule(
+        "obstacles[1].name",
+        "obstacles = [{ name = @, shape.rod.radius = 0.2 }]",
+        &["'scope'"],
+        &["'ring'", "'colon'", "'outer-wall'", "'a b'", "''"],
+    ),
+    rule(
+        "obstacles[1].shape",
+        "ends = { colon = @, ileum = 'free' }\nobstacles = [{ name = 'bolus', shape.ball = { radius = 0.2, position = [0.0, 0.0, -0.5] } }]",
+        &["'fixed'", "'sliding'"],
+        &["'free'"],
+    ),
+    rule(
+        "obstacles[1].shape",
+        "symmetry = 'none'\nends = { colon = @, ileum = 'sliding' }\n\
+            obstacles = [{ name = 'bone', shape.plate = { position = [0.7, 0.0, 0.0], normal = [-1.0, 0.0, 0.0] } }]",
+        &["'fixed'"],
+        &["'free'", "'sliding'"],
+    ),
+    rule(
+        "obstacles[1].shape.plate.normal",
+        "symmetry = 'none'\nobstacles = [{ name = 'bone', shape.plate = { position = [0.7, 0.0, 0.0], normal = @ } }]",
+        &["[-1e-3, 0.0, 0.0]"],
+        &["[0.0, 0.0, 0.0]"],
+    ),
 ];
 
 /// Rules of cases that begin with [`RING`].
@@ -268,6 +312,20 @@ const AFTER_RING: &[Rule] = &[
             direction = 'axial'\namplitude = 1e-3\nshape.wave.mode = 1\n[mesh]\n",
         &["'fixed'"],
         &["'sliding'"],
+    ),
+    rule(
+        "stages[2]",
+        "[[obstacles]]\nname = 'bolus'\nshape.ball = { radius = 0.2, position = [0.0, 0.0, -1.0] }\n\
+            [[stages]]\nsteps = 100\ndrive.bolus = { position = [0.0, 0.0, 1.5], radius = 0.47 }\n[ends]\ncolon = @",
+        &["'sliding'", "'free'"],
+        &["'fixed'"],
+    ),
+    rule(
+        "stages[2].steps",
+        "[[obstacles]]\nname = 'bolus'\nshape.ball = { radius = 0.2, position = [0.0, 0.0, -1.0] }\n\
+            [[stages]]\nsteps = @\ndrive.bolus.position = [0.0, 0.0, 1.5]",
+        &["25"],
+        &["24"],
     ),
     rule(
         "muscles.@",
