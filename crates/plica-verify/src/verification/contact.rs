@@ -111,7 +111,12 @@ impl Case {
         let (mut low, mut high) = (0.0, 0.3);
         for _ in 0..50 {
             let p = 0.5 * (low + high);
-            let r = solve(p)?.radii()[side];
+            // A wall under far too much pressure has no equilibrium.
+            let Ok(solution) = solve(p) else {
+                high = p;
+                continue;
+            };
+            let r = solution.radii()[side];
             let gap = if touches { gap_of(p, r) } else { 0.0 };
             // Positive while the pressure is too small.
             let overlap = match self.is_rod() {
@@ -191,7 +196,7 @@ pub fn rings(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
             let (ab, bc) = (2.0 * b - a, 2.0 * c - b);
             let extrapolated = (4.0 * bc - ab) / 3.0;
             recorder.relative(
-                1e-5,
+                1e-6,
                 format!("{name}, extrapolated to no gap"),
                 extrapolated,
                 (limit[i], source),

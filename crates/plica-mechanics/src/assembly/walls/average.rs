@@ -30,6 +30,7 @@ impl SplineTube {
                     for (point, rotations) in self.around.iter().zip(&rotations) {
                         let weight = batch.weight[qz].0[lane] * point.weight / k as f64;
                         let mut blocks = [[[0.0; 3]; 3]; 6];
+                        let mut is_loaded = false;
                         for element in 0..k {
                             let moved = self.surface_displacement(&rings, element, point);
                             let at = WallPoint {
@@ -40,6 +41,7 @@ impl SplineTube {
                             let Some(own) = self.wall_blocks(wall, &moved, &at, weight) else {
                                 continue;
                             };
+                            is_loaded = true;
                             for (sum, own) in
                                 blocks.as_flattened_mut().iter_mut().zip(own.as_flattened())
                             {
@@ -47,6 +49,9 @@ impl SplineTube {
                                     *sum += own;
                                 }
                             }
+                        }
+                        if !is_loaded {
+                            continue;
                         }
                         for r in 0..n {
                             for s in r..n {

@@ -29,6 +29,7 @@ impl SplineTube {
                     // The parts that multiply (N′, N) and (N, N) along the tube.
                     let mut mixed = vec![0.0; columns * columns];
                     let mut own = vec![0.0; columns * columns];
+                    let mut is_loaded = false;
                     for element in 0..self.sector.rings {
                         let moved = self.surface_displacement(&rings, element, point);
                         let at = WallPoint {
@@ -39,6 +40,7 @@ impl SplineTube {
                         let Some(blocks) = self.wall_blocks(&wall, &moved, &at, weight) else {
                             continue;
                         };
+                        is_loaded = true;
                         let [_, zs, zv, _, sv, vv] = blocks;
                         // `own` is added to its transpose.
                         let half = vv.map(|row| row.map(|x| 0.5 * x));
@@ -48,6 +50,9 @@ impl SplineTube {
                         add_form(value, &zv, value, &mut mixed);
                         add_form(slope, &sv, value, &mut own);
                         add_form(value, &half, value, &mut own);
+                    }
+                    if !is_loaded {
+                        continue;
                     }
                     for b in 0..n {
                         let (value_b, slope_b) = self.along((batch, lane), qz, b);
