@@ -57,7 +57,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
 fn results_of_all_cases_do_not_depend_on_the_number_of_threads() {
     for entry in fs::read_dir(root().join("cases")).unwrap().flatten() {
         let name = entry.file_name().into_string().unwrap();
-        if name.ends_with(".toml") {
+        // A case that starts from a state of another run needs that run.
+        if name.ends_with(".toml") && !case(&name).contains("start.state") {
             assert_same(&name, &case(&name));
         }
     }

@@ -3,11 +3,17 @@
 use super::super::SplineTube;
 use super::{WallPoint, WallTangent, rotated};
 use crate::rings::{Circulant, Rotation};
+use crate::tensor::with_vectors;
 
 impl SplineTube {
     /// Adds the contribution of the walls to the tangent, averaged over the rings (see
     /// [`offset_blocks`](super::super::circumferential::offset_blocks)).
     pub(in crate::assembly) fn add_average_walls(&self, at: &WallTangent, average: &mut Circulant) {
+        with_vectors!(simd => self.add_average_walls_in(at, average));
+    }
+
+    #[inline(always)]
+    fn add_average_walls_in(&self, at: &WallTangent, average: &mut Circulant) {
         let (n, k) = (self.degree() + 1, self.sector.rings);
         let rotations: Vec<Vec<Rotation>> = self
             .around

@@ -5,11 +5,23 @@ use super::super::blocks::Block;
 use super::super::low_harmonics::LowHarmonics;
 use super::WallPoint;
 use crate::matrix::BlockBanded;
+use crate::tensor::with_vectors;
 use crate::tube::Load;
 
 impl SplineTube {
     /// Adds the contribution of the walls to Eᵀ K E (see [`SplineTube::low_harmonic_tangent`]).
     pub(in crate::assembly) fn add_low_harmonic_walls(
+        &self,
+        low: &LowHarmonics,
+        load: &Load,
+        u: &[f64],
+        matrix: &mut BlockBanded,
+    ) {
+        with_vectors!(simd => self.add_low_harmonic_walls_in(low, load, u, matrix));
+    }
+
+    #[inline(always)]
+    fn add_low_harmonic_walls_in(
         &self,
         low: &LowHarmonics,
         load: &Load,
@@ -86,6 +98,7 @@ impl SplineTube {
 }
 
 /// Adds Gᵀ B H of two matrices of three rows.
+#[inline(always)]
 fn add_form(G: &[f64], B: &Block<f64>, H: &[f64], out: &mut [f64]) {
     let columns = G.len() / 3;
     for x in 0..columns {

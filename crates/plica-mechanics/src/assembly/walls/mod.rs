@@ -14,8 +14,8 @@
 //!
 //! A dead load acts on the wall at rest: its potential is ∓p ∫ N · u dA₀, for any ends.
 //!
-//! A wall is one surface, so plain loops are fast enough. V is computed relative to its value at
-//! rest, which avoids rounding.
+//! A wall is one surface, so plain loops are fast enough, compiled for processors with fused
+//! multiply-add. V is computed relative to its value at rest, which avoids rounding.
 
 mod average;
 mod low_harmonics;
@@ -36,6 +36,7 @@ use super::kinematics::{Vector, to_element_frame, to_ring_frame};
 use super::tables::{AxialBatch, CircumferentialPoint};
 use crate::matrix::BlockBanded;
 use crate::rings::Rotation;
+use crate::tensor::with_vectors;
 use crate::tube::{Load, Pressure, Tube};
 use obstacles::PlacedObstacle;
 use rayon::prelude::*;
@@ -179,6 +180,17 @@ impl SplineTube {
         rotations: &[Vec<Vec<Rotation>>],
         matrix: &mut BlockBanded,
     ) {
+        with_vectors!(simd => self.add_wall_tangent_in(load, u, rotations, matrix));
+    }
+
+    #[inline(always)]
+    fn add_wall_tangent_in(
+        &self,
+        load: &Load,
+        u: &[f64],
+        rotations: &[Vec<Vec<Rotation>>],
+        matrix: &mut BlockBanded,
+    ) {
         for wall in self.walls_with_tangent(load) {
             let index = |i: usize, ring: usize| (wall.point * 3 + i) * self.sector.rings + ring;
             for along @ (batch, lane) in self.elements_along() {
@@ -306,70 +318,80 @@ impl SplineTube {
         fields: [&[f64]; F],
         of: impl Fn([Surface; F], &WallPoint<'_>) -> ([f64; 2], Surface) + Sync,
     ) -> Vec<WallForces> {
+        let elements: Vec<Along<'_>> = self.elements_along().collect();
+        let part = |&along: &Along<'_>| with_vectors!(simd => self.integrate_around(wall, fields, &of, along));
+        elements.par_iter().map(part).collect()
+    }
+
+    /// Integrates over the elements around a wall at one axial position.
+    #[inline(always)]
+    fn integrate_around<const F: usize>(
+        &self,
+        wall: &LoadedWall,
+        fields: [&[f64]; F],
+        of: &(impl Fn([Surface; F], &WallPoint<'_>) -> ([f64; 2], Surface) + Sync),
+        along: Along<'_>,
+    ) -> WallForces {
         let (n, k, local_rings) = (
             self.degree() + 1,
             self.sector.rings,
             self.sector.local_rings(),
         );
-        let elements: Vec<Along<'_>> = self.elements_along().collect();
-        let part = |&along: &Along<'_>| {
-            let (batch, lane) = along;
-            let mut energies = [0.0; 2];
-            // Per element around, row and local ring.
-            let mut forces = vec![[0.0; 3]; k * n * local_rings];
-            for qz in 0..n {
-                let rings = fields.map(|field| self.rings_along(wall, field, along, qz));
-                for (element, forces) in forces.chunks_exact_mut(n * local_rings).enumerate() {
-                    // Per local ring: forces on the value and on the slope along.
-                    let mut ring_forces = vec![[[0.0; 3]; 2]; local_rings];
-                    for point in &self.around {
-                        let weight = batch.weight[qz].0[lane] * point.weight;
-                        let fields = std::array::from_fn(|f| {
-                            self.surface_displacement(&rings[f], element, point)
-                        });
-                        let at = WallPoint {
-                            element,
-                            z: batch.z[qz].0[lane],
-                            around: point,
-                        };
-                        let (densities, slopes) = of(fields, &at);
-                        for (energy, density) in energies.iter_mut().zip(densities) {
-                            *energy += weight * density;
-                        }
-                        let [zeta, s, value] = slopes.map(|v| v.map(|x| weight * x));
-                        for (ring, f) in point.ring_values.iter().zip(&mut ring_forces) {
-                            f[0] = to_ring_frame(ring, 1, s, to_ring_frame(ring, 0, value, f[0]));
-                            f[1] = to_ring_frame(ring, 0, zeta, f[1]);
-                        }
+        let (batch, lane) = along;
+        let mut energies = [0.0; 2];
+        // Per element around, row and local ring.
+        let mut forces = vec![[0.0; 3]; k * n * local_rings];
+        for qz in 0..n {
+            let rings = fields.map(|field| self.rings_along(wall, field, along, qz));
+            for (element, forces) in forces.chunks_exact_mut(n * local_rings).enumerate() {
+                // Per local ring: forces on the value and on the slope along.
+                let mut ring_forces = vec![[[0.0; 3]; 2]; local_rings];
+                for point in &self.around {
+                    let weight = batch.weight[qz].0[lane] * point.weight;
+                    let fields = std::array::from_fn(|f| {
+                        self.surface_displacement(&rings[f], element, point)
+                    });
+                    let at = WallPoint {
+                        element,
+                        z: batch.z[qz].0[lane],
+                        around: point,
+                    };
+                    let (densities, slopes) = of(fields, &at);
+                    for (energy, density) in energies.iter_mut().zip(densities) {
+                        *energy += weight * density;
                     }
-                    for (a, forces) in forces.chunks_exact_mut(local_rings).enumerate() {
-                        let (value, slope) = self.along(along, qz, a);
-                        for (force, [on_value, on_slope]) in forces.iter_mut().zip(&ring_forces) {
-                            for i in 0..3 {
-                                force[i] += value * on_value[i] + slope * on_slope[i];
-                            }
+                    let [zeta, s, value] = slopes.map(|v| v.map(|x| weight * x));
+                    for (ring, f) in point.ring_values.iter().zip(&mut ring_forces) {
+                        f[0] = to_ring_frame(ring, 1, s, to_ring_frame(ring, 0, value, f[0]));
+                        f[1] = to_ring_frame(ring, 0, zeta, f[1]);
+                    }
+                }
+                for (a, forces) in forces.chunks_exact_mut(local_rings).enumerate() {
+                    let (value, slope) = self.along(along, qz, a);
+                    for (force, [on_value, on_slope]) in forces.iter_mut().zip(&ring_forces) {
+                        for i in 0..3 {
+                            force[i] += value * on_value[i] + slope * on_slope[i];
                         }
                     }
                 }
             }
-            // Ring by ring, so that every ring sums its elements in the same order.
-            let mut force = vec![0.0; n * 3 * k];
-            for (a, force) in force.chunks_exact_mut(3 * k).enumerate() {
-                for (at, force) in force.iter_mut().enumerate() {
-                    let (i, ring) = (at / k, at % k);
-                    for r in 0..local_rings {
-                        let element = (ring + k - r) % k;
-                        *force += forces[(element * n + a) * local_rings + r][i];
-                    }
+        }
+        // Ring by ring, so that every ring sums its elements in the same order.
+        let mut force = vec![0.0; n * 3 * k];
+        for (a, force) in force.chunks_exact_mut(3 * k).enumerate() {
+            for (at, force) in force.iter_mut().enumerate() {
+                let (i, ring) = (at / k, at % k);
+                for r in 0..local_rings {
+                    let element = (ring + k - r) % k;
+                    *force += forces[(element * n + a) * local_rings + r][i];
                 }
             }
-            WallForces {
-                energies,
-                squares: forces.as_flattened().iter().map(|x| x * x).sum(),
-                force,
-            }
-        };
-        elements.par_iter().map(part).collect()
+        }
+        WallForces {
+            energies,
+            squares: forces.as_flattened().iter().map(|x| x * x).sum(),
+            force,
+        }
     }
 
     /// Adds forces on a wall to the vector of all unknowns.
@@ -393,6 +415,7 @@ impl SplineTube {
 
     /// Returns the displacement of the rings of a wall, and its slope along, at a point along the
     /// tube.
+    #[inline(always)]
     fn rings_along(
         &self,
         wall: &LoadedWall,
@@ -416,6 +439,7 @@ impl SplineTube {
     }
 
     /// Returns the displacement at a point of an element around, and its slopes.
+    #[inline(always)]
     fn surface_displacement(
         &self,
         rings: &[[Vector<f64>; 2]],
@@ -434,6 +458,7 @@ impl SplineTube {
 
     /// Calls `add` with φ_α(a) φ_β(b) T_αβ, summed over the slopes α and β, for all rows a and b of
     /// an element.
+    #[inline(always)]
     fn add_along_tube(
         &self,
         along: Along<'_>,
@@ -498,6 +523,7 @@ impl LoadedWall {
 }
 
 /// Returns blocks rotated to two rings.
+#[inline(always)]
 fn rotated(blocks: &[Block<f64>; 6], row: &Rotation, column: &Rotation) -> [[Block<f64>; 3]; 3] {
     let mut rotated = [[[[0.0; 3]; 3]; 3]; 3];
     add_rotated(&mut rotated, blocks, row, column, false);
