@@ -240,7 +240,7 @@ pub fn symmetries(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> 
 pub fn plates(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     let thickness = 0.005;
     let middle = B - 0.5 * thickness;
-    let mut model = TubeModel::new(0.05, thickness, 0.3, [1, 96, 1]);
+    let mut model = TubeModel::new(0.05, thickness, 0.3, [1, 64, 1]);
     let plate = |x: f64| Placement {
         radius: 0.0,
         position: [0.0, x, 0.0],
@@ -253,7 +253,7 @@ pub fn plates(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
         rest: plate(0.502),
     });
     // A sector of half the ring: the plate stands for two.
-    let problem = with_range(&model.problem(48), 1e-3);
+    let problem = with_range(&model.problem(32), 1e-3);
     let bending = (1.0 / (1.0 - 0.3 * 0.3)) * thickness.powi(3) / 12.0;
     let unit = bending * model.tube.length / (middle * middle);
     let u = vec![0.0; problem.tube.unknowns()];
