@@ -293,7 +293,7 @@ pub fn plates(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
             (target, "target"),
         );
         recorder.relative(
-            2e-4,
+            5e-4,
             format!("half-height/R at F R²/EI = {target}"),
             at[1][1],
             (height, "elastica, thin limit"),

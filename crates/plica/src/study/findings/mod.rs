@@ -3,6 +3,7 @@
 mod contact;
 mod extremes;
 mod loads;
+mod obstacles;
 mod place;
 mod returned;
 mod table;
@@ -12,6 +13,7 @@ mod tests;
 pub use contact::{Contact, FirstTouch, SmallestStretch};
 pub use extremes::{Extreme, Jump};
 pub use loads::NamedLoad;
+pub use obstacles::ObstacleContacts;
 pub use place::{Interval, Place};
 pub use returned::Return;
 
@@ -45,6 +47,8 @@ pub struct Findings {
     pub touching: Vec<Interval>,
     /// What happens on walls that may touch; none in a run without contact.
     pub contact: Option<Contact>,
+    /// Contact with each obstacle, in the order of the case.
+    pub obstacles: Vec<ObstacleContacts>,
     /// States in which a wall crosses itself, which is not physical.
     pub crossing: Vec<Interval>,
     /// States in which the lumen is closed, which is not physical without contact.
@@ -68,6 +72,8 @@ pub struct Findings {
     pub length_unit: String,
     /// Unit of energies.
     pub energy_unit: String,
+    /// Unit of forces.
+    pub force_unit: String,
 }
 
 /// A stage and its last state.
@@ -187,6 +193,7 @@ impl Findings {
             deepest: deepest(&path),
             touching: path.intervals(|row| row.contact.touches()),
             contact: contact::contact(&path),
+            obstacles: obstacles::obstacles(&path),
             crossing: path.intervals(Row::crosses_itself),
             closed: path.intervals(Row::has_closed),
             out_of_equilibrium: path.intervals(|row| !row.in_equilibrium),
@@ -203,6 +210,7 @@ impl Findings {
             },
             length_unit: scale.length_name.clone(),
             energy_unit: scale.energy_name.clone(),
+            force_unit: scale.force_name.clone(),
         }
     }
 
@@ -211,11 +219,12 @@ impl Findings {
         self.extremes.iter().filter(|extreme| extreme.is_minimum)
     }
 
-    /// Returns the number of states that do not describe a real tube: a wall crosses itself, the lumen is closed, or the state
-    /// is not in equilibrium. A state is counted once.
+    /// Returns the number of states that do not describe a real tube: a wall crosses itself or overlaps an obstacle, the lumen
+    /// is closed, or the state is not in equilibrium. A state is counted once.
     pub fn unphysical_states(&self) -> usize {
         let reasons = [&self.crossing, &self.closed, &self.out_of_equilibrium];
-        let intervals = reasons.into_iter().flatten();
+        let overlapping = self.obstacles.iter().map(|obstacle| &obstacle.overlapping);
+        let intervals = reasons.into_iter().chain(overlapping).flatten();
         let states = intervals.flat_map(|interval| interval.first.state..=interval.last.state);
         states.collect::<BTreeSet<usize>>().len()
     }

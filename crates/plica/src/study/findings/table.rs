@@ -2,7 +2,9 @@
 
 use super::loads::{describe_range, number};
 use super::place::{Interval, list};
-use super::{Contact, Findings, Overhang, Return, SmallestStretch, StageEnd, states_in};
+use super::{
+    Contact, Findings, ObstacleContacts, Overhang, Return, SmallestStretch, StageEnd, states_in,
+};
 use crate::contact::{BIOT, CREASE};
 use crate::equilibrium::UnstableMode;
 use crate::measure::{Shape, Side};
@@ -138,6 +140,11 @@ impl Findings {
                 .iter()
                 .flat_map(|found| self.contact_lines(found)),
         );
+        lines.extend(
+            self.obstacles
+                .iter()
+                .flat_map(|found| self.obstacle_lines(found)),
+        );
         if let Some(largest) = &self.asymmetry {
             let [amplitude, start] = [largest.amplitude, largest.at_start].map(|x| self.length(x));
             let mode = UnstableMode::Circumferential(largest.mode).describe();
@@ -183,6 +190,26 @@ impl Findings {
             }
             line += &format!("; least {stretch:.3} at the {wall} at {at}");
             lines.push(("surface creases".into(), line));
+        }
+        lines
+    }
+
+    /// Describes when a wall touches an obstacle.
+    fn obstacle_lines(&self, found: &ObstacleContacts) -> Vec<Line> {
+        let touches = match &found.largest_force {
+            None => "in no state".to_owned(),
+            Some((force, at)) => format!(
+                "{}; with at most {} {} at {at}",
+                list(&found.touching),
+                number(*force, 3),
+                self.force_unit
+            ),
+        };
+        let mut lines = vec![(format!("touches {}", found.name), touches)];
+        if !found.overlapping.is_empty() {
+            let states = list(&found.overlapping);
+            let overlaps = format!("{states}, which is not physical");
+            lines.push((format!("overlaps {}", found.name), overlaps));
         }
         lines
     }

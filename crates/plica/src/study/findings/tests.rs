@@ -385,6 +385,41 @@ fn muscles_that_the_ratios_do_not_tell_apart_have_their_names() {
 }
 
 #[test]
+fn contact_with_an_obstacle_has_its_states_and_its_largest_force() {
+    let touch = |force: f64, gap: f64| {
+        change(move |row| {
+            let mut rows = row.clone().with_obstacles(&["scope", "bolus"]);
+            let area = if force > 0.0 { 0.2 } else { 0.0 };
+            (rows.obstacles[0].force, rows.obstacles[0].area) = (force, area);
+            (rows.obstacles[0].gap, rows.obstacles[1].gap) = (gap, 0.5);
+            *row = rows;
+        })
+    };
+    let contact = vec![
+        touch(0.0, 0.1),
+        touch(0.02, 1e-3),
+        touch(0.04, -1e-4),
+        touch(0.04, 1e-3),
+    ];
+    let mut rows = path(&[("press", contact)]);
+    rows[0] = rows[0].clone().with_obstacles(&["scope", "bolus"]);
+    for obstacle in &mut rows[0].obstacles {
+        obstacle.gap = 0.5;
+    }
+    let found = findings(&rows);
+    let touches = line(&found, "touches scope");
+    assert!(touches.starts_with("states 2 to 4"), "{touches}");
+    assert!(
+        touches.contains("at most 4.000e-2 E D^2 at state 3"),
+        "{touches}"
+    );
+    let overlaps = line(&found, "overlaps scope");
+    assert!(overlaps.starts_with("state 3"), "{overlaps}");
+    assert_eq!(line(&found, "touches bolus"), "in no state");
+    assert_eq!(found.unphysical_states(), 1);
+}
+
+#[test]
 fn unphysical_states_are_listed_and_counted_once() {
     let mut rows = path(&[("relax", relaxing(&[(1.1, 1.0), (1.2, 2.0), (1.3, 3.0)]))]);
     (rows[1].gap, rows[1].lumen) = (0.0, -0.1);
