@@ -1,4 +1,5 @@
-//! The law of contact: an energy per area that rises without bound as a gap closes.
+//! The law of contact: an energy per area that rises without bound as a gap closes. With obstacles it is continued by a
+//! parabola, which is bounded ([`Barrier::continued`]).
 
 use crate::spline::Basis;
 

@@ -156,12 +156,12 @@ impl SplineTube {
         }
     }
 
-    /// Returns the same tube with another barrier of contact with obstacles.
+    /// Returns the same tube with another barrier of contact, with obstacles and of the wall with itself.
     pub fn with_barrier(self, barrier: Barrier) -> Self {
         Self { barrier, ..self }
     }
 
-    /// Returns the barrier of contact with obstacles.
+    /// Returns the barrier of contact, with obstacles and of the wall with itself.
     pub fn barrier(&self) -> &Barrier {
         &self.barrier
     }

@@ -10,7 +10,7 @@
 //! | N, N' | basis functions and their slopes | [`Values`] |
 //!
 //! ```
-//! use plica::spline::Basis;
+//! use plica_mechanics::spline::Basis;
 //! let axial = Basis::open(3, &[0.0, 0.5, 1.0, 3.0]);
 //! assert_eq!(axial.functions(), 6); // 3 elements + degree
 //! let at = axial.evaluate(0.7);

@@ -41,7 +41,8 @@ pub struct ObstacleContact {
     pub reaction: [f64; 3],
     /// Number of its copies. Energy, force and area are those of all.
     pub copies: usize,
-    /// ∂Π/∂radius, in E·D²: the force that the wall does not exert along a grown radius, summed over the surface.
+    /// Derivative of the energy of contact by the radius, in E·D²: the work, per unit of radius, that it takes to change
+    /// the radius against the contact.
     pub radius_force: f64,
     /// Area at rest of the wall within the range of contact, in D².
     pub area: f64,
