@@ -229,7 +229,7 @@ fn check_states(findings: &Findings) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Unphysical(format!(
-        "--strict: {} of {} states cross themselves, have a closed lumen or are not in equilibrium, and the stability of {untested} \
+        "--strict: {} of {} states cross themselves, overlap an obstacle, have a closed lumen or are not in equilibrium, and the stability of {untested} \
         is not known; the table above lists them",
         findings.unphysical_states(),
         findings.work.states

@@ -52,9 +52,9 @@ fn a_tube_that_contracts_onto_a_rod_has_its_contact_in_the_history() {
     assert!(numbers("work_scope")[9] > 0.0);
     assert_eq!(numbers("work_scope")[..7], [0.0; 7]);
     assert_eq!(*numbers("radius_scope").last().unwrap(), 0.35);
-    // The inner radius is the rod's and a gap; the wall is thicker than at rest.
+    // The inner radius is the rod's and a gap.
     let outer = numbers("outer_radius_min");
-    assert!(outer[9] > 0.41 && outer[9] < 0.44, "{outer:?}");
+    assert!(outer[9] > 0.38 && outer[9] < 0.41, "{outer:?}");
     // Symmetric about the middle of the tube.
     assert!(
         numbers("reaction_z_scope")

@@ -38,6 +38,9 @@ fn the_tangent_of_every_case_is_the_derivative_of_its_residual() {
         let path = entry.unwrap().path();
         let name = path.display();
         let text = std::fs::read_to_string(&path).unwrap();
+        if text.contains("start.state") {
+            continue; // needs the state of another run
+        }
         let mut plan = plica::case::read(&text, "case").unwrap();
         // A small mesh keeps the test short.
         plan.mesh.axial = plan.mesh.axial.min(40);

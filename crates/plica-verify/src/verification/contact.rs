@@ -85,7 +85,7 @@ impl Case {
 
     /// Solves the one-dimensional wall with the surface in contact at a gap from the obstacle. The gap is zero, or that
     /// at which the barrier gives the contact pressure.
-    fn reference(&self, touches: bool) -> Result<Numbers, VerificationError> {
+    fn reference(&self, with_gap: bool) -> Result<Numbers, VerificationError> {
         let side = usize::from(!self.is_rod());
         let at_rest = [A, B][side];
         let solve = |p: f64| -> Result<Solution, VerificationError> {
@@ -117,7 +117,7 @@ impl Case {
                 continue;
             };
             let r = solution.radii()[side];
-            let gap = if touches { gap_of(p, r) } else { 0.0 };
+            let gap = if with_gap { gap_of(p, r) } else { 0.0 };
             // Positive while the pressure is too small.
             let overlap = match self.is_rod() {
                 true => self.radius + gap - r,
@@ -288,7 +288,7 @@ pub fn plates(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
         }
         recorder.relative(
             1e-6,
-            format!("F R²/EI, found by its height, {target}"),
+            format!("F R²/EI reached by moving the plate, {target}"),
             at[1][0],
             (target, "target"),
         );

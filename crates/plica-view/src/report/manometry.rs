@@ -1,4 +1,4 @@
-//! The forces of contact along the tube over the path, as a catheter in the tube would record them.
+//! The forces of contact of the walls with themselves along the tube, over the path.
 
 use super::labels::unit;
 use super::selection::Selection;

@@ -112,7 +112,7 @@ pub enum SavedStateError {
 }
 
 impl SavedState {
-    /// Checks that the state has a layout and a set of muscles.
+    /// Checks that the state has a layout, a set of muscles and a list of obstacles.
     ///
     /// # Errors
     /// [`SavedStateError::Other`] with the difference.
@@ -120,6 +120,7 @@ impl SavedState {
         &self,
         expected: &Layout,
         muscles: &[(String, Direction)],
+        obstacles: &[String],
     ) -> Result<(), SavedStateError> {
         let found = &self.layout;
         let compare = |what, found: String, expected: String| {
@@ -158,6 +159,11 @@ impl SavedState {
         compare("mesh", refine(found), refine(expected))?;
         compare("mesh", graded(found), graded(expected))?;
         compare("symmetry", rings(found), rings(expected))?;
+        compare(
+            "list of obstacles",
+            format!("{:?}", self.obstacles),
+            format!("{obstacles:?}"),
+        )?;
         compare(
             "set of muscles",
             format!("{:?}", self.muscles),

@@ -4,7 +4,7 @@ use super::Scale;
 use super::state::ObstacleState;
 use super::table::{Quantity, Visitor};
 
-/// The numbers of an obstacle in a row; zero where nothing touches it.
+/// The numbers of an obstacle in a row. Energy, force, reaction, area, from and to are zero where nothing touches it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObstacleRow {
     /// Its name in the case.

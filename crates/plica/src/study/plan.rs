@@ -212,7 +212,9 @@ impl Plan {
     pub fn accepts(&self, state: &SavedState) -> Result<(), SavedStateError> {
         let muscles = self.tube.muscles.iter();
         let muscles: Vec<_> = muscles.map(|m| (m.name.clone(), m.direction)).collect();
-        state.check_layout(&self.layout(), &muscles)
+        let obstacles = self.tube.obstacles.iter();
+        let obstacles: Vec<String> = obstacles.map(|obstacle| obstacle.name.clone()).collect();
+        state.check_layout(&self.layout(), &muscles, &obstacles)
     }
 
     /// Returns whether there is a pressure on a wall at the start or in any stage.

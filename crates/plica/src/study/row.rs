@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 /// The names that a case has for the inner and the outer wall; no muscle has them.
 pub(super) const WALLS: [&str; 2] = ["inner-wall", "outer-wall"];
 
-/// Angle by which a wall may turn within one element. On the main case the wall turns by 12° where the energy is right to
-/// 2.5e-5, by 23° at the next state, and by 32° where the energy is off by 7e-3.
+/// Angle by which a wall may turn within one element. In the main case the wall turns by 12° where uniform meshes agree to
+/// 2.5e-5, by 23° at the next state, and by 32° where they differ by 7e-3.
 pub const RESOLVED_TURN_DEG: f64 = 20.0;
 
 /// The numbers of an accepted state: a row of `history.csv`. Lengths in D, energies in E·D³ and pressures in E, unless

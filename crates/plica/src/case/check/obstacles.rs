@@ -8,8 +8,10 @@ use crate::study::Stage;
 use crate::tube::{Load, Mesh, Obstacle, ObstacleShape, Placement, Support, Symmetry, Tube};
 use std::f64::consts::TAU;
 
-/// Points along and around a wall at rest at which its distance from an obstacle is measured.
-const POINTS: [usize; 2] = [121, 72];
+/// Names that would give a column of the history the name of another.
+const RESERVED: [&str; 2] = ["at_min", "share"];
+/// Points around the edge of a fixed end at which its distance from an obstacle is measured.
+const POINTS: usize = 360;
 /// Largest number of places along a stage at which an obstacle is compared with the edges of fixed ends.
 const LARGEST_COUNT: usize = 200;
 /// Largest motion of an obstacle in a load step, in its radii. A wall that is deeper inside is pushed out on the wrong side.
@@ -75,6 +77,8 @@ fn check_name(key: &str, name: &str, before: &[Obstacle], case: &Case, problems:
         return;
     }
     let is_taken = ENDS.contains(&name)
+        || RESERVED.contains(&name)
+        || [&case.ends.colon_name, &case.ends.ileum_name].contains(&&name.to_owned())
         || WALLS.contains(&name)
         || case.muscles.contains_key(name)
         || before.iter().any(|obstacle| obstacle.name == name);
@@ -82,7 +86,7 @@ fn check_name(key: &str, name: &str, before: &[Obstacle], case: &Case, problems:
         let rule = "must consist of letters, digits, - and _, at most 40 of them";
         problems.value(key, rule, "");
     } else if is_taken {
-        let rule = "a muscle, an end, a surface or another obstacle has this name";
+        let rule = "a muscle, an end, a surface, a column or another obstacle has this name";
         problems.value(key, rule, "choose another name");
     }
 }
@@ -107,12 +111,14 @@ pub(super) fn check(
         if case.start.is_none() {
             let gap = gap_at_rest(obstacle, tube);
             let [elements, ..] = mesh.elements();
-            // The range of contact is at most a quarter of an element.
-            let needed = 0.25 * tube.length / elements as f64;
+            let breakpoints = mesh.breakpoints_along(tube.length);
+            let lengths = breakpoints.windows(2).map(|pair| pair[1] - pair[0]);
+            let range = mesh.contact_range * lengths.fold(f64::INFINITY, f64::min);
+            let needed = range.max(0.25 * tube.length / elements as f64);
             if gap < needed {
                 let rule = match gap > 0.0 {
                     true => format!(
-                        "the obstacle is {} from the tube at rest, {} at least",
+                        "the obstacle is {} from the tube at rest, which must be at least {}",
                         length(case, gap),
                         length(case, tidy(needed))
                     ),
@@ -133,6 +139,18 @@ fn check_symmetry(
     (begin, stages): (&Load, &[Stage]),
     problems: &mut Problems,
 ) {
+    if let Symmetry::Fold(_) = symmetry {
+        // Beside the axis it is repeated, on the axis it is not.
+        let on_axis = obstacle.is_axisymmetric(&begin.obstacles[i]);
+        for (s, stage) in stages.iter().enumerate() {
+            if obstacle.is_axisymmetric(&stage.load.obstacles[i]) != on_axis {
+                let key = format!("stages[{}].drive.{}.position", s + 1, obstacle.name);
+                let rule = "the symmetry repeats an obstacle beside the axis, but not one on it";
+                let help = "keep it on the axis, or beside it, in all stages";
+                return problems.value(&key, rule, help);
+            }
+        }
+    }
     if symmetry != Symmetry::Axisymmetric {
         return;
     }
@@ -200,8 +218,8 @@ fn check_fixed_ends(
             let z = tube.length * end as f64 + load.ends[end].displacement;
             let radii = [Tube::OUTER_RADIUS, tube.inner_radius()];
             radii.into_iter().flat_map(move |radius| {
-                (0..POINTS[1]).map(move |j| {
-                    let (sin, cos) = (TAU * j as f64 / POINTS[1] as f64).sin_cos();
+                (0..POINTS).map(move |j| {
+                    let (sin, cos) = (TAU * j as f64 / POINTS as f64).sin_cos();
                     [z, radius * cos, radius * sin]
                 })
             })
@@ -235,16 +253,21 @@ fn check_steps(
     let mut before = begin.obstacles[i];
     for (s, stage) in stages.iter().enumerate() {
         let next = stage.load.obstacles[i];
-        let square: f64 = (0..3)
-            .map(|k| (next.position[k] - before.position[k]).powi(2))
-            .sum();
+        // An endless cylinder does not change when it moves along z.
+        let first = match obstacle.shape {
+            ObstacleShape::Sheath => 1,
+            ObstacleShape::Rod { half_length } if half_length.is_infinite() => 1,
+            _ => 0,
+        };
+        let motion = (first..3).map(|k| next.position[k] - before.position[k]);
+        let square: f64 = motion.map(|x| x * x).sum();
         let moved = square.sqrt() + (next.radius - before.radius).abs();
         let radius = next.radius.min(before.radius);
         let steps = (moved / (LARGEST_STEP * radius)).ceil();
         if steps > stage.steps as f64 && square > 0.0 {
             let key = format!("stages[{}].steps", s + 1);
             let rule = format!(
-                "{} moves by {} in a step, more than half its radius, {}",
+                "{} moves by {} in a step, more than half its radius of {}",
                 obstacle.name,
                 length(case, tidy(moved / stage.steps as f64)),
                 length(case, radius)
@@ -255,18 +278,29 @@ fn check_steps(
     }
 }
 
-/// Returns the smallest distance of an obstacle from the walls at rest.
+/// Returns the smallest distance of an obstacle from the wall at rest; negative where they overlap.
 fn gap_at_rest(obstacle: &Obstacle, tube: &Tube) -> f64 {
-    let mut least = f64::INFINITY;
-    for radius in [Tube::OUTER_RADIUS, tube.inner_radius()] {
-        for k in 0..POINTS[0] {
-            let z = tube.length * k as f64 / (POINTS[0] - 1) as f64;
-            for j in 0..POINTS[1] {
-                let (sin, cos) = (TAU * j as f64 / POINTS[1] as f64).sin_cos();
-                let point = [z, radius * cos, radius * sin];
-                least = least.min(obstacle.shape.distance(&obstacle.rest, point).gap);
-            }
+    let Placement { radius, position } = obstacle.rest;
+    let [z, x, y] = position;
+    let across = x.hypot(y);
+    let radii = [tube.inner_radius(), Tube::OUTER_RADIUS];
+    // Distance of a point or a segment of the axis of an obstacle from the wall.
+    let from_wall = |half_length: f64| {
+        let beside = (radii[0] - across).max(across - radii[1]).max(0.0);
+        let beyond = (z - half_length - tube.length)
+            .max(-z - half_length)
+            .max(0.0);
+        beside.hypot(beyond) - radius
+    };
+    match obstacle.shape {
+        ObstacleShape::Ball => from_wall(0.0),
+        ObstacleShape::Rod { half_length } => from_wall(half_length),
+        ObstacleShape::Sheath => radius - across - radii[1],
+        ObstacleShape::Plate {
+            normal: [n_z, n_x, n_y],
+        } => {
+            let at = |end: f64| n_z * (end - z) - n_x * x - n_y * y - n_x.hypot(n_y) * radii[1];
+            at(0.0).min(at(tube.length))
         }
     }
-    least
 }

@@ -224,10 +224,33 @@ const OF_RING: &[Rule] = &[
         ],
     ),
     rule(
+        "obstacles[1].shape",
+        "mesh.contact_range = @\nobstacles = [{ name = 'scope', shape.rod.radius = 0.43 }]",
+        &["2.0"],
+        &["10.0"],
+    ),
+    rule(
+        "obstacles[1].shape",
+        "obstacles = [{ name = 'pea', shape.ball = { radius = 0.02, position = @ } }]\nsymmetry = 'none'",
+        &["[0.4, 0.0, 1.51]", "[0.0, 0.53, 1.51]"],
+        &[
+            "[0.425, 0.0, 1.51]",
+            "[0.0, 0.47, 1.51]",
+            "[0.0, 0.515, 1.51]",
+        ],
+    ),
+    rule(
         "obstacles[1].name",
         "obstacles = [{ name = @, shape.rod.radius = 0.2 }]",
         &["'scope'"],
-        &["'ring'", "'colon'", "'outer-wall'", "'a b'", "''"],
+        &[
+            "'ring'",
+            "'colon'",
+            "'outer-wall'",
+            "'at_min'",
+            "'a b'",
+            "''",
+        ],
     ),
     rule(
         "obstacles[1].shape",
@@ -316,7 +339,7 @@ const AFTER_RING: &[Rule] = &[
     rule(
         "stages[2]",
         "[[obstacles]]\nname = 'bolus'\nshape.ball = { radius = 0.2, position = [0.0, 0.0, -1.0] }\n\
-            [[stages]]\nsteps = 100\ndrive.bolus = { position = [0.0, 0.0, 1.5], radius = 0.47 }\n[ends]\ncolon = @",
+            [[stages]]\nsteps = 100\ndrive.bolus = { position = [0.0, 0.0, 1.5], radius = 1.0 }\n[ends]\ncolon = @",
         &["'sliding'", "'free'"],
         &["'fixed'"],
     ),

@@ -13,7 +13,7 @@ mod tests;
 pub use contact::{Contact, FirstTouch, SmallestStretch};
 pub use extremes::{Extreme, Jump};
 pub use loads::NamedLoad;
-pub use obstacles::ObstacleContacts;
+pub use obstacles::{LargestForce, ObstacleContacts};
 pub use place::{Interval, Place};
 pub use returned::Return;
 

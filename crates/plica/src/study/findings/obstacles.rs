@@ -11,10 +11,19 @@ pub struct ObstacleContacts {
     pub name: String,
     /// States in which a wall touches it.
     pub touching: Vec<Interval>,
-    /// The largest sum of the sizes of its contact forces, and its state; none if nothing touches it.
-    pub largest_force: Option<(f64, Place)>,
+    /// The state with the largest contact force; none if nothing touches it.
+    pub largest_force: Option<LargestForce>,
     /// States in which a wall overlaps it, which is not physical.
     pub overlapping: Vec<Interval>,
+}
+
+/// The largest contact force of a path.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LargestForce {
+    /// Sum of the sizes of the contact forces.
+    pub force: f64,
+    /// The state.
+    pub at: Place,
 }
 
 /// Returns the contact with each obstacle of a path.
@@ -32,7 +41,10 @@ pub(super) fn obstacles(path: &Path<'_>) -> Vec<ObstacleContacts> {
             touching: path.intervals(|row| row.obstacles[i].area > 0.0),
             largest_force: largest
                 .filter(|&row| force(row) > 0.0)
-                .map(|row| (force(row), path.place(row))),
+                .map(|row| LargestForce {
+                    force: force(row),
+                    at: path.place(row),
+                }),
             overlapping: path.intervals(|row| row.obstacles[i].gap <= 0.0),
         }
     };

@@ -3,7 +3,8 @@
 use super::loads::{describe_range, number};
 use super::place::{Interval, list};
 use super::{
-    Contact, Findings, ObstacleContacts, Overhang, Return, SmallestStretch, StageEnd, states_in,
+    Contact, Findings, LargestForce, ObstacleContacts, Overhang, Return, SmallestStretch, StageEnd,
+    states_in,
 };
 use crate::contact::{BIOT, CREASE};
 use crate::equilibrium::UnstableMode;
@@ -198,7 +199,7 @@ impl Findings {
     fn obstacle_lines(&self, found: &ObstacleContacts) -> Vec<Line> {
         let touches = match &found.largest_force {
             None => "in no state".to_owned(),
-            Some((force, at)) => format!(
+            Some(LargestForce { force, at }) => format!(
                 "{}; with at most {} {} at {at}",
                 list(&found.touching),
                 number(*force, 3),
