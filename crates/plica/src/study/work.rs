@@ -300,6 +300,57 @@ mod tests {
     }
 
     #[test]
+    fn a_plate_that_the_symmetry_repeats_has_the_work_of_two() {
+        let pressed = |symmetry, signs: &[f64]| {
+            let mut plan = plan(symmetry);
+            plan.tube.ends = [Support::Fixed; 2];
+            plan.mesh.axial = 9;
+            plan.output.stability_modes = 0;
+            plan.solver.tolerance = 1e-9;
+            let placement = |x: f64| Placement {
+                radius: 0.0,
+                position: [0.0, x, 0.0],
+            };
+            let plate = |sign: &f64| Obstacle {
+                name: format!("plate{sign}"),
+                shape: ObstacleShape::Plate {
+                    normal: [0.0, -sign, 0.0],
+                },
+                rest: placement(0.6 * sign),
+            };
+            plan.tube.obstacles = signs.iter().map(plate).collect();
+            let load = Load {
+                obstacles: signs.iter().map(|sign| placement(0.515 * sign)).collect(),
+                ..plan.tube.rest()
+            };
+            plan.stages = vec![Stage {
+                name: "press".into(),
+                load,
+                steps: 3,
+            }];
+            rows(&plan).pop().unwrap()
+        };
+        let half = pressed(Symmetry::Fold(2), &[1.0]);
+        let whole = pressed(Symmetry::None, &[1.0, -1.0]);
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
+        assert!(
+            half.energy > 1e-9 && near(half.energy, whole.energy),
+            "{half:?}\n{whole:?}"
+        );
+        let works: Vec<f64> = whole.obstacles.iter().map(|o| o.work).collect();
+        assert!(works[0] > 0.0 && near(works[0], works[1]), "{works:?}");
+        assert!(
+            near(half.obstacles[0].work, works[0] + works[1]),
+            "{works:?}"
+        );
+        let [x, _, _] = half.obstacles[0].reaction;
+        assert!(x > 0.0 && near(x, whole.obstacles[0].reaction[0]), "{x}");
+        assert!(near(-x, whole.obstacles[1].reaction[0]), "{x}");
+        let force = |row: &Row| row.obstacles.iter().map(|o| o.force).sum::<f64>();
+        assert!(near(force(&half), force(&whole)));
+    }
+
+    #[test]
     fn a_cyclic_sector_has_the_work_of_the_whole_tube() {
         use crate::solve::{Integrator, PseudoTime, Scheme};
         let mut plan = driven(1);
