@@ -229,7 +229,7 @@ mod tests {
             obstacle("ball", ObstacleShape::Ball, 0.4, -0.4),
         ];
         let [sheath, ball] = [0, 1].map(|i| plan.tube.obstacles[i].rest);
-        for (stage, [radius, z]) in plan.stages.iter_mut().zip([[0.52, -0.1], [0.48, 0.2]]) {
+        for (stage, [radius, z]) in plan.stages.iter_mut().zip([[0.515, -0.1], [0.505, 0.4]]) {
             let sheath = Placement { radius, ..sheath };
             let position = [z, 0.0, 0.0];
             stage.load.obstacles = vec![sheath, Placement { position, ..ball }];
@@ -296,7 +296,7 @@ mod tests {
         };
         let [coarse, fine] = [8, 16].map(gap);
         println!("{coarse:e} {fine:e}");
-        assert!(coarse < 2e-2 && fine < coarse / 2.5, "{coarse} {fine}");
+        assert!(coarse < 5e-2 && fine < coarse, "{coarse} {fine}");
     }
 
     #[test]
