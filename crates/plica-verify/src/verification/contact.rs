@@ -222,7 +222,7 @@ pub fn symmetries(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> 
     };
     let (energy, force) = (strain(&problem, &one)?, contact(&problem, &one).force);
     for rings in [12, 24] {
-        recorder.case(&format!("ring on a rod, {rings} of 24 control rings"))?;
+        recorder.case(format!("ring on a rod, {rings} of 24 control rings"))?;
         let (problem, state) = case.solve(&model, rings)?;
         recorder.relative(
             1e-8,
