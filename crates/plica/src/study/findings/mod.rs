@@ -45,7 +45,7 @@ pub struct Findings {
     pub deepest: Option<Overhang>,
     /// States in which a wall touches itself; none without contact.
     pub touching: Vec<Interval>,
-    /// What happens on walls that may touch; none in a run without contact.
+    /// First touch, creases and their resolution on walls that may touch; none in a run without contact.
     pub contact: Option<Contact>,
     /// Contact with each obstacle, in the order of the case.
     pub obstacles: Vec<ObstacleContacts>,
