@@ -13,6 +13,7 @@
 
 mod changes;
 mod condition;
+mod contact_row;
 mod error;
 pub mod findings;
 #[cfg(test)]
@@ -32,6 +33,8 @@ mod work;
 
 pub use changes::forbidden_changes;
 pub use condition::Condition;
+use contact_row::WALLS;
+pub use contact_row::{ContactRow, RESOLVED_TURN_DEG, WallContactRow};
 pub use error::StudyError;
 pub use findings::Findings;
 pub use forecast::{Forecast, check_memory, forecast};
@@ -40,8 +43,7 @@ pub use limit_point::LimitPoint;
 pub use lost::{Location, Lost, Phase};
 pub use obstacle_row::ObstacleRow;
 pub use plan::{LengthUnit, ModeShape, Output, Plan, Stage, Start, StressUnit, Units};
-use row::WALLS;
-pub use row::{ContactRow, EndRow, MuscleRow, RESOLVED_TURN_DEG, Row, WallContactRow};
+pub use row::{EndRow, MuscleRow, Row};
 pub use start::inverted_by_imperfections;
 pub use state::{MuscleState, ObstacleState, State};
 pub use table::{Cell, Quantity, RowReader};
