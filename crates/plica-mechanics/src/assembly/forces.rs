@@ -21,6 +21,8 @@ pub struct Forces {
     pub potential: f64,
     /// Energy of contact with obstacles, of the whole tube.
     pub contact: f64,
+    /// Potential of friction in a load step, of the whole tube; not part of Π.
+    pub friction: f64,
     /// R of the sector, in E·D²: the derivative of Π and of the energy of contact by u_cp, of the whole tube, over the number
     /// of repeats.
     pub residual: Vec<f64>,

@@ -79,7 +79,7 @@ impl LowHarmonics {
                 0.5,
                 1.0,
             )],
-            waves: [0, 1].map(|d| waves(tube, highest, d)),
+            waves: [0, 1].map(|d| waves(tube, highest, d, 0.5)),
         }
     }
 
@@ -88,6 +88,12 @@ impl LowHarmonics {
     /// harmonics up to k/2 of 12 rings, a slightly oval tube took eight times the iterations.
     pub fn highest_resolved(rings: usize) -> usize {
         rings / 4
+    }
+
+    /// Returns the displacement of the amplitudes (mode, component) at a place in each element around, from 0 to 1, like
+    /// `waves`.
+    pub(super) fn waves_at(&self, tube: &SplineTube, s: f64) -> Vec<f64> {
+        waves(tube, self.highest, 0, s)
     }
 
     /// Returns the number of modes, 2H + 1.
@@ -203,15 +209,15 @@ fn points_along(degree: usize, elements: usize) -> usize {
     (elements + degree).div_ceil(elements).max(2)
 }
 
-/// Returns the displacement of each mode (`d` = 0) or its slope around (1): rows (element,
-/// component), columns (mode, component).
-fn waves(tube: &SplineTube, highest: usize, d: usize) -> Vec<f64> {
+/// Returns the displacement of each mode (`d` = 0) or its slope around (1) at a place in each element around: rows
+/// (element, component), columns (mode, component).
+fn waves(tube: &SplineTube, highest: usize, d: usize, s: f64) -> Vec<f64> {
     let (sector, modes) = (&tube.sector, 2 * highest + 1);
     let repeats = sector.around / sector.rings;
     let mut out = vec![0.0; sector.rings * 3 * 3 * modes];
     for mode in 0..modes {
         let n = mode.div_ceil(2) * repeats;
-        let [crest, quarter] = sector.harmonic_at(n, 0.5);
+        let [crest, quarter] = sector.harmonic_at(n, s);
         for e in 0..sector.rings {
             // Measured from the first ring, not from the middle of the first element.
             let phi = n as f64 * (e as f64 * sector.angle() - sector.ring_angle(0));

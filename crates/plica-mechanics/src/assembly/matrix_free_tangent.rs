@@ -20,7 +20,7 @@ pub struct MatrixFreeTangent {
     stretch: Vec<Vec<(Lanes, Lanes)>>,
     /// By batch.
     tangent_data: Vec<PackedTangentData>,
-    walls: Option<WallTangent>,
+    pub(super) walls: Option<WallTangent>,
     /// Tangent of the volumetric part, if it has quadrature points of its own; `average` includes
     /// its average.
     volumetric: Option<Box<MatrixFreeTangent>>,

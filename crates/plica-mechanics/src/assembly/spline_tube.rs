@@ -3,6 +3,7 @@
 use super::barrier::Barrier;
 use super::boundary_conditions::{BoundaryConditions, permitted_by, rigid_motions_in_harmonic};
 use super::circumferential::PaddedRings;
+use super::coulomb::ELASTIC_SLIP;
 use super::imperfection::geometry;
 use super::stress_free::StressFreeStretch;
 use super::tables::{AxialBatch, CircumferentialPoint, Layer, bases, full_rules, reduced_rules};
@@ -42,6 +43,8 @@ pub struct SplineTube {
     pub(super) volumetric: Option<Box<SplineTube>>,
     /// Barrier of contact with obstacles.
     pub(super) barrier: Barrier,
+    /// Largest elastic slip of friction, in ranges of the barrier.
+    pub(super) elastic_slip: f64,
 }
 
 /// Stress-free shape of an imperfect wall.
@@ -86,6 +89,7 @@ impl SplineTube {
             around: CircumferentialPoint::all(&sector, &circle, &rule),
             padded_rings: PaddedRings::new(sector.rings),
             barrier: Barrier::of_mesh(&axial, mesh.contact_range),
+            elastic_slip: ELASTIC_SLIP,
             tube: tube.clone(),
             sector,
             circle,
@@ -159,6 +163,19 @@ impl SplineTube {
     /// Returns the same tube with another barrier of contact, with obstacles and of the wall with itself.
     pub fn with_barrier(self, barrier: Barrier) -> Self {
         Self { barrier, ..self }
+    }
+
+    /// Returns the same tube with another largest elastic slip of friction, in ranges of contact.
+    pub fn with_elastic_slip(self, elastic_slip: f64) -> Self {
+        Self {
+            elastic_slip,
+            ..self
+        }
+    }
+
+    /// Returns the largest elastic slip of friction, in D.
+    pub fn elastic_slip(&self) -> f64 {
+        self.elastic_slip * self.barrier.range
     }
 
     /// Returns the barrier of contact, with obstacles and of the wall with itself.

@@ -12,6 +12,8 @@ pub struct Obstacle {
     pub shape: ObstacleShape,
     /// Placement at rest.
     pub rest: Placement,
+    /// Coefficient of friction of the walls on it.
+    pub friction: f64,
 }
 
 /// The shape of an obstacle, apart from its placement.

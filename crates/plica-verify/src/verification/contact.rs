@@ -46,6 +46,7 @@ impl Case {
                 radius: self.radius,
                 position: [0.0; 3],
             },
+            friction: 0.0,
         });
         model
     }
@@ -251,6 +252,7 @@ pub fn plates(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
             normal: [0.0, -1.0, 0.0],
         },
         rest: plate(0.502),
+        friction: 0.0,
     });
     // A sector of half the ring: the plate stands for two.
     let problem = with_range(&model.problem(32), 1e-3);

@@ -21,6 +21,7 @@ mod contact;
 mod cross_checks;
 mod error;
 mod exact;
+mod friction;
 mod locking;
 mod main_case;
 mod manufactured;
@@ -128,6 +129,21 @@ pub const CHECKS: &[Check] = &[
         "contact-symmetries",
         "contact of one ring and of the whole tube",
         contact::symmetries,
+    ),
+    quick(
+        "friction",
+        "a tube in a sheath that is pushed to and fro",
+        friction::sliding,
+    ),
+    quick(
+        "pull-out",
+        "a tube that is pulled out of a sheath",
+        friction::pull_out,
+    ),
+    quick(
+        "friction-symmetries",
+        "friction of one ring and of the whole tube",
+        friction::symmetries,
     ),
     quick(
         "plates",

@@ -47,7 +47,7 @@ table! {
         /// bifurcation. They are present from rest on, and add up. A shape lies between −1 and 1; the
         /// amplitude multiplies it.
         imperfections: Vec<Imperfection> = default("[]");
-        /// Rigid obstacles that the walls touch without friction: an instrument in the lumen, a stent, a bolus, a
+        /// Rigid obstacles that the walls touch: an instrument in the lumen, a stent, a bolus, a
         /// neighbouring organ. In a tube with an m-fold symmetry an obstacle beside the axis is repeated m times.
         obstacles: Vec<Obstacle> = default("[]");
         /// The settings of the nonlinear solver.
@@ -397,6 +397,8 @@ table! {
         /// The shape: `shape = { ball = { radius = 0.3, position = [0.0, 0.0, -0.5] } }`, for example. The obstacle does
         /// not touch the tube at rest.
         shape: ObstacleShape = required("{ rod = { radius = 0.2 } }");
+        /// The coefficient of friction of the walls on it (Coulomb's law). The stability test leaves friction out.
+        friction: f64 = default("0.0").from(0.0).to(10.0);
     }
 }
 

@@ -2,7 +2,7 @@
 //! solver as preconditioner.
 
 use super::buffers::Buffers;
-use crate::assembly::{LowHarmonics, MatrixFreeTangent, RingDamping, SplineTube};
+use crate::assembly::{Friction, LowHarmonics, MatrixFreeTangent, RingDamping, SplineTube};
 use crate::matrix::{BlockBanded, Factor, Singular};
 use crate::monitor::Monitor;
 use crate::rings::{HarmonicSolver, LowHarmonicCorrection, Transform};
@@ -113,10 +113,18 @@ impl HarmonicTube {
         self.damping.multiply_add(factor, v, y);
     }
 
-    /// Returns the tangent stiffness at a state.
-    pub fn tangent(self: &Arc<Self>, load: &Load, u: &[f64]) -> HarmonicTangent {
+    /// Returns the tangent stiffness at a state, with friction if there is any.
+    pub fn tangent(
+        self: &Arc<Self>,
+        load: &Load,
+        u: &[f64],
+        friction: Option<&Friction>,
+    ) -> HarmonicTangent {
         let mut at = self.linearised.take().unwrap_or_default();
         self.tube.linearise(load, u, &mut at);
+        if let Some(friction) = friction {
+            self.tube.add_friction_to(friction, load, u, &mut at);
+        }
         let rings = u.chunks_exact(self.tube.sector.rings);
         let difference = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs()));
         let differs = rings.map(difference).fold(0.0, f64::max);
@@ -124,6 +132,10 @@ impl HarmonicTube {
         let coupled = low.as_ref().map(|low| {
             let mut coupled = self.low_matrix(low);
             self.tube.low_harmonic_tangent(low, load, u, &mut coupled);
+            if let Some(friction) = friction {
+                self.tube
+                    .add_low_harmonic_friction(low, friction, load, u, &mut coupled);
+            }
             coupled
         });
         HarmonicTangent {
@@ -436,7 +448,7 @@ mod tests {
             })
         };
         let solved = |on: &Arc<HarmonicTube>, u: &[f64]| {
-            let tangent = on.tangent(&load, u);
+            let tangent = on.tangent(&load, u, None);
             let coupled = tangent.state.low.as_ref().map(|low| low.highest);
             let mut b = wave(3.0);
             let solver = tangent.into_shifted(1.0).unwrap();

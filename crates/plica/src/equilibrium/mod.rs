@@ -1,6 +1,7 @@
 //! The tube as a solver problem: its tangent, its linear solver, its stability, and its transfer to another mesh.
 
 mod buffers;
+mod friction_step;
 mod harmonic_tangent;
 mod lowest_modes;
 mod problem;

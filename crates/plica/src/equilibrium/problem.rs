@@ -1,7 +1,8 @@
 //! A spline tube as a problem for the solver.
 
+use super::friction_step::FrictionStep;
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
-use crate::assembly::{Inverted, SplineTube};
+use crate::assembly::{Forces, Inverted, ObstacleContact, SplineTube};
 use crate::contact::{ContactReport, Face, SelfContact, place_of};
 use crate::matrix::{BlockBanded, CoupledBanded, CoupledFactor, Singular};
 use crate::monitor::Monitor;
@@ -19,6 +20,8 @@ pub struct TubeProblem {
     pub tube: Arc<SplineTube>,
     /// Contact of the wall with itself, if the problem has it.
     pub contact: Option<Arc<SelfContact>>,
+    /// Friction on obstacles in the load step that a path has begun; none without friction.
+    friction: Option<Arc<FrictionStep>>,
     rings: Rings,
     prescribed: Arc<[bool]>,
     /// Reference volume of the cyclic sector.
@@ -69,6 +72,7 @@ impl TubeProblem {
             volume: PI * (outer * outer - inner * inner) * tube.tube.length / tube.sector.repeats(),
             at_rest,
             contact: None,
+            friction: None,
             tube,
         }
     }
@@ -84,6 +88,53 @@ impl TubeProblem {
         let prescribed = self.prescribed.iter().enumerate();
         self.prescribed = prescribed.map(|(i, own)| *own || i % 3 == 2).collect();
         self
+    }
+
+    /// Returns whether the tube has friction.
+    pub fn has_friction(&self) -> bool {
+        self.tube.has_friction()
+    }
+
+    /// Returns the same problem without friction, whose tangent has an energy at any state.
+    #[must_use]
+    pub fn without_friction(&self) -> Self {
+        Self {
+            friction: None,
+            ..self.clone()
+        }
+    }
+
+    /// Evaluates energy and residual at a state, with pressures, obstacles, and friction in the step that a path has begun;
+    /// without contact of the wall with itself.
+    ///
+    /// # Errors
+    ///
+    /// If an element is inverted.
+    pub fn forces_on_tube(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
+        let mut forces = self.tube.forces(load, u)?;
+        if let Some(step) = &self.friction {
+            self.tube
+                .add_friction(step.friction(), load, u, &mut forces);
+        }
+        Ok(forces)
+    }
+
+    /// Returns the contact of a state with each obstacle, with friction in the step that a path has begun.
+    pub fn obstacle_contacts(&self, load: &Load, u: &[f64]) -> Vec<ObstacleContact> {
+        let mut contacts = self.tube.obstacle_contacts(load, u);
+        let Some(step) = &self.friction else {
+            return contacts;
+        };
+        let all = step.on_obstacles(&self.tube, load, u);
+        for (number, (contact, friction)) in contacts.iter_mut().zip(all).enumerate() {
+            if self.tube.tube.obstacles[number].friction > 0.0 {
+                for (sum, part) in contact.reaction.iter_mut().zip(friction.reaction) {
+                    *sum += part;
+                }
+                contact.friction = Some(friction);
+            }
+        }
+        contacts
     }
 
     /// Sums up the contact of a state; none of a problem without contact.
@@ -107,12 +158,31 @@ impl TubeProblem {
         z.iter().map(at).collect()
     }
 
-    /// Assembles the tangent of one ring, with contact, for a circumferential mode at a state without twist.
+    /// Assembles the tangent of one ring, with contact, for a circumferential mode at a state without twist. Friction, which
+    /// has no energy of its own, is left out.
     pub fn ring_tangent(&self, load: &Load, u: &[f64], mode: usize) -> CoupledBanded {
-        let mut tangent = CoupledBanded::from(match mode {
-            0 => self.tube.tangent(load, u),
-            n => self.tube.tangent_in_harmonic(load, u, n),
-        });
+        self.with_self_contact(
+            u,
+            mode,
+            match mode {
+                0 => self.tube.tangent(load, u),
+                n => self.tube.tangent_in_harmonic(load, u, n),
+            },
+        )
+    }
+
+    /// Assembles the tangent of one ring with contact and friction.
+    fn tangent_of_step(&self, load: &Load, u: &[f64]) -> CoupledBanded {
+        let mut tangent = self.tube.tangent(load, u);
+        if let Some(step) = &self.friction {
+            self.tube
+                .add_friction_tangent(step.friction(), load, u, &mut tangent);
+        }
+        self.with_self_contact(u, 0, tangent)
+    }
+
+    fn with_self_contact(&self, u: &[f64], mode: usize, tangent: BlockBanded) -> CoupledBanded {
+        let mut tangent = CoupledBanded::from(tangent);
         if let Some(contact) = &self.contact {
             contact.add_tangent(&contact.at(u), mode, |row, column, value| {
                 tangent.add_at(row, column, value);
@@ -140,8 +210,8 @@ impl Equilibrium for TubeProblem {
         from.towards(to, t)
     }
     fn forces(&self, load: &Load, u: &[f64]) -> Result<ResidualEvaluation, Inverted> {
-        let mut forces = self.tube.forces(load, u)?;
-        forces.potential += forces.contact;
+        let mut forces = self.forces_on_tube(load, u)?;
+        forces.potential += forces.contact + forces.friction;
         if let Some(contact) = &self.contact {
             let of_contact = contact.add_forces(&contact.at(u), &mut forces.residual);
             forces.potential += self.tube.sector.repeats() * of_contact.energy;
@@ -162,12 +232,32 @@ impl Equilibrium for TubeProblem {
     fn tangent(&self, load: &Load, u: &[f64]) -> TubeTangent {
         match &self.rings {
             Rings::One(damping) => TubeTangent::Direct(Direct::new(
-                self.ring_tangent(load, u, 0),
+                self.tangent_of_step(load, u),
                 damping.clone(),
                 self.prescribed.clone(),
             )),
-            Rings::Many(tube) => TubeTangent::Harmonic(tube.tangent(load, u)),
+            Rings::Many(tube) => {
+                let friction = self.friction.as_ref().map(|step| step.friction());
+                TubeTangent::Harmonic(tube.tangent(load, u, friction))
+            }
         }
+    }
+    fn begin_step(&mut self, load: &Load, u: &[f64], history: &[f64]) {
+        if self.has_friction() {
+            let step = FrictionStep::begin(&self.tube, load, u, history);
+            self.friction = Some(Arc::new(step));
+        }
+    }
+    fn update(&mut self, load: &Load, u: &[f64]) -> bool {
+        let Some(step) = &mut self.friction else {
+            return false;
+        };
+        Arc::make_mut(step).update(&self.tube, load, u);
+        true
+    }
+    fn history(&self, load: &Load, u: &[f64]) -> Vec<f64> {
+        let step = self.friction.as_ref();
+        step.map_or(vec![], |step| step.history(&self.tube, load, u))
     }
     fn longest_step(&self, u: &[f64], step: &[f64]) -> f64 {
         let contact = self.contact.as_ref();

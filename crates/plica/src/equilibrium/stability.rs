@@ -7,7 +7,7 @@ use super::verdict::{Instability, Stability, UnstableMode};
 use super::{TubeProblem, harmonic_tangent::HarmonicSystem};
 use crate::assembly::SplineTube;
 use crate::monitor::Monitor;
-use crate::solve::{Equilibrium, Operator, Path, Search, lowest};
+use crate::solve::{Equilibrium, Operator, Path, Search, Solver, Tangent, lowest};
 use crate::tube::Load;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -32,7 +32,8 @@ const ITERATIONS: usize = 80;
 /// `modes` is zero, which skips the test, or if a twisted axisymmetric state has no negative eigenvalue in mode 0:
 /// higher modes, whose phase travels along a twisted tube, are not tested.
 ///
-/// Uses the solver that the path has at its state, and makes it if needed.
+/// Uses the solver that the path has at its state, and makes it if needed. Friction has no energy of its own, and is left
+/// out.
 pub fn test_stability(
     problem: &TubeProblem,
     path: &mut Path<impl Equilibrium<Load = Load, Tangent = TubeTangent>>,
@@ -50,7 +51,21 @@ pub fn test_stability(
     let of_ring: Vec<f64> = u.iter().step_by(k).copied().collect();
     let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
     if !round || (twisted && k > 1) {
-        let unstable = match (own, path.solver()) {
+        let without_friction = problem.has_friction().then(|| {
+            let tangent = problem.without_friction().tangent(&path.state().load, u);
+            tangent.into_shifted(0.0).ok()
+        });
+        let (own, solver) = match &without_friction {
+            None => (own, path.solver()),
+            Some(None) => (1, None),
+            Some(Some(solver)) => {
+                let own = solver
+                    .negative_pivots()
+                    .max(usize::from(solver.is_unstable()));
+                (own, Some(solver))
+            }
+        };
+        let unstable = match (own, solver) {
             (0, _) if modes == 0 => None,
             (0, Some(TubeSolver::Harmonic(system))) => lowest_is_negative(tube, system, monitor),
             (0, _) => None,
@@ -73,7 +88,9 @@ pub fn test_stability(
     // The harmonics of the cyclic sector are those of the run's own tangent.
     let repeats = tube.sector.around / k;
     let known = match path.solver() {
-        Some(TubeSolver::Harmonic(system)) => system.negative_in_harmonics(),
+        Some(TubeSolver::Harmonic(system)) if !problem.has_friction() => {
+            system.negative_in_harmonics()
+        }
         _ => None,
     };
     let known = known.unwrap_or(&[]).to_vec();
@@ -83,7 +100,7 @@ pub fn test_stability(
     let load = &path.state().load;
     let negative = |n: usize| {
         // With contact, the run's own tangent does not twist.
-        if k == 1 && n == 0 && problem.contact.is_none() {
+        if k == 1 && n == 0 && problem.contact.is_none() && !problem.has_friction() {
             return own;
         }
         if let (0, Some(&count)) = (n % repeats, known.get(n / repeats)) {

@@ -1,7 +1,7 @@
 //! Checkpoints: all that it takes to resume a run after a state.
 //!
 //! A checkpoint is a saved state with the state of the continuation: stage, completed fraction, previous point, pseudo-time
-//! velocity. It carries the record of the run up to its row, from which a damaged history is restored, and so that it is
+//! velocity, history of friction. It carries the record of the run up to its row, from which a damaged history is restored, and so that it is
 //! never used with another history.
 
 use super::Record;
@@ -30,6 +30,7 @@ const FILES: &str = "files";
 const PREVIOUS: &str = "previous";
 const TANGENT: &str = "previous_tangent";
 const VELOCITY: &str = "velocity";
+const FRICTION: &str = "friction";
 /// Number that stands for no value among the numbers of the path.
 const NONE: f64 = -1.0;
 
@@ -67,6 +68,9 @@ impl Checkpoint {
         if path.velocity.iter().any(|v| *v != 0.0) {
             arrays.insert(VELOCITY.into(), like_u(path.velocity));
         }
+        if !path.history.is_empty() {
+            arrays.insert(FRICTION.into(), row(path.history));
+        }
         state.arrays = arrays;
         state
     }
@@ -103,6 +107,7 @@ impl Checkpoint {
             Some(velocity) => long(VELOCITY, velocity)?,
             None => vec![0.0; state.u.len()],
         };
+        let history = take(FRICTION).unwrap_or_default();
         let mut needed = |name: &str| {
             let values = take(name).ok_or_else(|| wrong(name, missing))?;
             long(name, values)
@@ -122,6 +127,7 @@ impl Checkpoint {
                 halving_level: halving_level as usize,
                 previous,
                 velocity,
+                history,
             },
             record,
             state,
@@ -209,6 +215,11 @@ mod tests {
                     tangent: like_u(-1.5),
                 }),
                 velocity: like_u(if previous { 0.0 } else { 0.25 }),
+                history: if previous {
+                    vec![0.5, 1e-9, 7.0]
+                } else {
+                    vec![]
+                },
             },
             record: Record::default(),
             state,

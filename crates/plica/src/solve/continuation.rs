@@ -40,16 +40,19 @@ pub struct ContinuationState {
     pub previous: Option<PreviousPoint>,
     /// Velocity u̇ of pseudo-time.
     pub velocity: Vec<f64>,
+    /// History of the accepted state: [`Equilibrium::history`](super::Equilibrium::history).
+    pub history: Vec<f64>,
 }
 
 impl ContinuationState {
     /// Returns the continuation state at the start of a segment.
-    pub(super) fn at_start(velocity: Vec<f64>) -> Self {
+    pub(super) fn at_start(velocity: Vec<f64>, history: Vec<f64>) -> Self {
         Self {
             reached: 0.0,
             halving_level: 0,
             previous: None,
             velocity,
+            history,
         }
     }
 }

@@ -8,6 +8,10 @@ pub const EQUILIBRIUM: f64 = 1e-6;
 
 /// An energy W(u, load) to be made stationary in u. Its methods are pure functions of (u, load).
 ///
+/// The energy may change from step to step of a [`Path`](super::Path), as with friction, whose forces depend on the way.
+/// A step then begins with [`begin_step`](Self::begin_step), and is solved repeatedly, with
+/// [`update`](Self::update) before each repetition, until the energy is that of its own solution.
+///
 /// Supports prescribe single unknowns. They may also constrain linear combinations of unknowns, such
 /// as rigid-body motions; residuals, damping forces and the steps of a [`super::Solver`] are then
 /// orthogonal to these, so the methods of this module need not consider them.
@@ -40,9 +44,21 @@ pub trait Equilibrium {
     fn longest_step(&self, _u: &[f64], _step: &[f64]) -> f64 {
         1.0
     }
+    /// Begins a step from an accepted state with its [`history`](Self::history), which is empty at the first state.
+    fn begin_step(&mut self, _load: &Self::Load, _u: &[f64], _history: &[f64]) {}
+    /// Changes the energy of the step to the one that depends on a state `u` as the forces there do. Returns false if the
+    /// energy does not depend on any state.
+    fn update(&mut self, _load: &Self::Load, _u: &[f64]) -> bool {
+        false
+    }
+    /// Returns everything that the energies of later steps take from the path up to a state `u` that ends the step, beside
+    /// (u, load).
+    fn history(&self, _load: &Self::Load, _u: &[f64]) -> Vec<f64> {
+        vec![]
+    }
 }
 
-/// A reference to a problem is a problem.
+/// A reference to a problem is a problem whose energy does not change.
 impl<P: Equilibrium> Equilibrium for &P {
     type Load = P::Load;
     type EvaluationError = P::EvaluationError;

@@ -56,6 +56,8 @@ pub enum Cause {
     InaccurateSolves,
     /// The largest admitted number of linear solves was reached.
     SolveLimit,
+    /// The forces of friction did not become those of the solution.
+    Friction,
 }
 
 impl std::fmt::Display for Cause {
@@ -64,6 +66,7 @@ impl std::fmt::Display for Cause {
             Self::NoDescent => "no step lowered the energy",
             Self::InaccurateSolves => "the linear solver misses the required accuracy",
             Self::SolveLimit => "not in equilibrium",
+            Self::Friction => "friction does not become that of the solution",
         })
     }
 }

@@ -49,6 +49,7 @@ mod pseudo_time;
 #[cfg(test)]
 mod reflected;
 mod relaxation;
+mod repeated;
 mod settings;
 mod state;
 mod step_controller;

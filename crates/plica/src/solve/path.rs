@@ -7,6 +7,7 @@ use super::limit_point::limit_point;
 use super::newton::newton;
 use super::pseudo_time::pseudo_time;
 use super::relaxation::relaxation;
+use super::repeated::repeated;
 use super::settings::{PseudoTime, Scheme, Settings};
 use super::state::{Effort, Method, Solution, State};
 use super::step_controller::StepController;
@@ -15,6 +16,9 @@ use crate::monitor::Monitor;
 
 /// Step of the central difference that gives ∂R/∂t, as a fraction of a segment.
 const DIFFERENCE: f64 = 1e-5;
+
+/// Repetitions of a step in pseudo-time whose energy depends on its solution, if that is not brought to equilibrium.
+const REPETITIONS: usize = 2;
 
 /// Accuracy of the linear solve for du/dt.
 const PREDICTION: f64 = 1e-4;
@@ -93,13 +97,25 @@ impl<P: Equilibrium> Path<P> {
     ///
     /// If the energy is not defined there.
     pub fn begin(
-        problem: P,
+        mut problem: P,
         load: P::Load,
         u: Vec<f64>,
         settings: Settings,
     ) -> Result<Self, P::EvaluationError> {
+        problem.begin_step(&load, &u, &[]);
+        Self::begin_with(problem, load, u, vec![], settings)
+    }
+
+    /// Begins at a state with its history, from which the step of the problem begins.
+    fn begin_with(
+        problem: P,
+        load: P::Load,
+        u: Vec<f64>,
+        history: Vec<f64>,
+        settings: Settings,
+    ) -> Result<Self, P::EvaluationError> {
         let forces = problem.forces(&load, &u)?;
-        let continuation = ContinuationState::at_start(vec![0.0; u.len()]);
+        let continuation = ContinuationState::at_start(vec![0.0; u.len()], history);
         let (state, solver) = accepted(&problem, load.clone(), u, &forces);
         Ok(Self {
             problem,
@@ -119,24 +135,30 @@ impl<P: Equilibrium> Path<P> {
     ///
     /// If the energy is not defined there.
     pub fn resume(
-        problem: P,
+        mut problem: P,
         [from, to]: [P::Load; 2],
         load: P::Load,
         u: Vec<f64>,
         continuation: ContinuationState,
         settings: Settings,
     ) -> Result<Self, P::EvaluationError> {
+        problem.begin_step(&load, &u, &continuation.history);
         Ok(Self {
             from,
             to,
             continuation,
-            ..Self::begin(problem, load, u, settings)?
+            ..Self::begin_with(problem, load, u, vec![], settings)?
         })
     }
 
     /// Returns what [`Path::resume`] needs beside the last accepted state.
     pub fn continuation_state(&self) -> ContinuationState {
         self.continuation.clone()
+    }
+
+    /// Returns the problem, with the step that begins at the last accepted state.
+    pub fn problem(&self) -> &P {
+        &self.problem
     }
 
     /// Returns the last accepted state.
@@ -157,8 +179,13 @@ impl<P: Equilibrium> Path<P> {
     /// Begins a segment from the load of the last accepted state to another.
     pub fn begin_segment(&mut self, to: P::Load) {
         (self.from, self.to, self.tangent) = (self.state.load.clone(), to, None);
-        let velocity = std::mem::take(&mut self.continuation.velocity);
-        self.continuation = ContinuationState::at_start(velocity);
+        let ContinuationState {
+            velocity, history, ..
+        } = std::mem::replace(
+            &mut self.continuation,
+            ContinuationState::at_start(vec![], vec![]),
+        );
+        self.continuation = ContinuationState::at_start(velocity, history);
     }
 
     /// Returns the position of the last accepted state on its segment, 0 to 1.
@@ -273,8 +300,14 @@ impl<P: Equilibrium> Path<P> {
         let start = start.ok_or(Failure::Blocked)?;
         self.solver = None;
         let (settings, effort) = (&self.settings, &mut step.effort);
-        let found = newton(&self.problem, &load, start, settings, effort, monitor)
-            .inspect_err(|failed| effort.linear_solves += failed.linear_solves())?;
+        let found = newton(&self.problem, &load, start, settings, effort, monitor);
+        let problem = &mut self.problem;
+        let found = found.and_then(|found| {
+            repeated(problem, &load, found, settings, |problem, u| {
+                newton(problem, &load, u, settings, effort, monitor)
+            })
+        });
+        let found = found.map_err(|failed| self.abandon(failed, &mut step.effort))?;
         let previous = tangent.map(|tangent| PreviousPoint {
             t: self.continuation.reached,
             u: self.state.u.clone(),
@@ -305,8 +338,14 @@ impl<P: Equilibrium> Path<P> {
         }
         self.solver = None;
         let (settings, effort) = (&self.settings, &mut step.effort);
-        let found = relaxation(&self.problem, &load, start, settings, effort, monitor)
-            .inspect_err(|failed| effort.linear_solves += failed.linear_solves())?;
+        let found = relaxation(&self.problem, &load, start, settings, effort, monitor);
+        let problem = &mut self.problem;
+        let found = found.and_then(|found| {
+            repeated(problem, &load, found, settings, |problem, u| {
+                relaxation(problem, &load, u, settings, effort, monitor)
+            })
+        });
+        let found = found.map_err(|failed| self.abandon(failed, &mut step.effort))?;
         self.accept(t, load, found, step);
         self.continuation.previous = None;
         step.method = Method::Relaxation;
@@ -325,18 +364,34 @@ impl<P: Equilibrium> Path<P> {
         step.method = Method::PseudoTime;
         self.solver = None;
         let load = self.load_at(t);
-        let (problem, settings, effort) = (&self.problem, &self.settings, &mut step.effort);
+        let (problem, settings, effort) = (&mut self.problem, &self.settings, &mut step.effort);
         let loads = [&self.state.load, &load];
         let start = (self.state.u.clone(), self.continuation.velocity.clone());
         let (mut found, mut velocity) =
-            pseudo_time(problem, loads, start, scheme, settings, effort, monitor)
+            pseudo_time(&*problem, loads, start, scheme, settings, effort, monitor)
                 .map_err(|failed| (Method::PseudoTime, failed))?;
         step.damping_work += found.damping_work;
         found.damping_work = 0.0;
         if scheme.equilibrate {
             velocity.fill(0.0);
-            found = relaxation(problem, &load, found.u, settings, effort, monitor)
+            found = relaxation(&*problem, &load, found.u, settings, effort, monitor)
                 .map_err(|failed| (Method::Relaxation, failed))?;
+            found = repeated(problem, &load, found, settings, |problem, u| {
+                relaxation(problem, &load, u, settings, effort, monitor)
+            })
+            .map_err(|failed| (Method::Relaxation, failed))?;
+        } else {
+            // A state that is not in equilibrium: its friction is that of the state before the last repetition.
+            for _ in 0..REPETITIONS {
+                if !problem.update(&load, &found.u) {
+                    break;
+                }
+                let (start, loads) = ((found.u, velocity), [&load, &load]);
+                let again = pseudo_time(&*problem, loads, start, scheme, settings, effort, monitor);
+                (found, velocity) = again.map_err(|failed| (Method::PseudoTime, failed))?;
+                step.damping_work += found.damping_work;
+                found.damping_work = 0.0;
+            }
         }
         self.continuation.velocity = velocity;
         self.accept(t, load, found, step);
@@ -348,9 +403,24 @@ impl<P: Equilibrium> Path<P> {
         self.problem.between(&self.from, &self.to, t)
     }
 
+    /// Counts the solves of a failed attempt, and begins the step again.
+    fn abandon(
+        &mut self,
+        failed: Failure<P::EvaluationError>,
+        effort: &mut Effort,
+    ) -> Failure<P::EvaluationError> {
+        effort.linear_solves += failed.linear_solves();
+        let State { load, u, .. } = &self.state;
+        self.problem.begin_step(load, u, &self.continuation.history);
+        failed
+    }
+
     fn accept(&mut self, t: f64, load: P::Load, found: Solution, step: &mut Step) {
         step.effort.linear_solves += 1;
         step.damping_work += found.damping_work;
+        self.continuation.history = self.problem.history(&load, &found.u);
+        self.problem
+            .begin_step(&load, &found.u, &self.continuation.history);
         (self.state, self.solver) = accepted(&self.problem, load, found.u, &found.forces);
         (self.tangent, self.continuation.reached) = (None, t);
     }

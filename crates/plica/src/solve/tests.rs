@@ -256,7 +256,7 @@ fn a_resumed_path_begins_with_its_halving_level() {
     let resumed = |halving_level| {
         let continuation = ContinuationState {
             halving_level,
-            ..ContinuationState::at_start(vec![0.0])
+            ..ContinuationState::at_start(vec![0.0], vec![])
         };
         let (loads, settings) = ([0.0, 0.5], Settings::default());
         let path = Path::resume(&spring, loads, 0.0, vec![0.0], continuation, settings);

@@ -124,10 +124,10 @@ impl Study {
         if let Some(stage) = from.stage {
             study.completed_steps = completed_steps(plan.stages[stage].steps, path.reached());
         }
-        let forces = study.tube().forces(&path.state().load, &path.state().u);
-        let forces = forces.map_err(|error| StudyError::Resume(error.to_string()))?;
         let state = (&path.state().load, path.state().u.as_slice());
-        study.work_point = Some(WorkPoint::of(plan, study.tube(), state, &forces));
+        let forces = path.problem().forces_on_tube(state.0, state.1);
+        let forces = forces.map_err(|error| StudyError::Resume(error.to_string()))?;
+        study.work_point = Some(WorkPoint::of(plan, path.problem(), state, &forces));
         study.stage = from.stage;
         study.next_number = from.number + 1;
         study.path = Some(path);
@@ -351,7 +351,7 @@ impl Study {
         };
         let seconds = self.since.elapsed().as_secs_f64();
         let (state, work_point) = State::evaluate(
-            (&self.plan, &self.problem),
+            (&self.plan, path.problem()),
             self.work_point.as_ref(),
             &milestone,
             path.state(),

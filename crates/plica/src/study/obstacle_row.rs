@@ -17,7 +17,7 @@ pub struct ObstacleRow {
     pub energy: f64,
     /// Sum of the sizes of the contact forces.
     pub force: f64,
-    /// Resultant of the contact forces on the obstacle, [x, y, z].
+    /// Resultant of the contact forces and of friction on the obstacle, [x, y, z].
     pub reaction: [f64; 3],
     /// Area at rest of the walls within the range of contact.
     pub area: f64,
@@ -29,6 +29,10 @@ pub struct ObstacleRow {
     pub to: f64,
     /// Work that has been done on it so far to move it or to change its radius.
     pub work: f64,
+    /// Sum of the sizes of the friction forces; this and the next column exist only for an obstacle with friction.
+    pub friction_force: Option<f64>,
+    /// Energy that friction on it has dissipated so far.
+    pub friction_work: Option<f64>,
 }
 
 impl ObstacleRow {
@@ -55,6 +59,8 @@ impl ObstacleRow {
             from: length * from,
             to: length * to,
             work: 0.0,
+            friction_force: contact.friction.map(|on| scale.force * on.force),
+            friction_work: contact.friction.map(|on| scale.energy * on.dissipated),
         }
     }
 
@@ -75,5 +81,9 @@ impl ObstacleRow {
         v.cell(&format!("contact_gap_{name}"), Length, &mut self.gap);
         v.cell(&format!("contact_from_{name}"), Length, &mut self.from);
         v.cell(&format!("contact_to_{name}"), Length, &mut self.to);
+        let force = &mut self.friction_force;
+        v.optional(&format!("friction_force_{name}"), Force, force);
+        let work = &mut self.friction_work;
+        v.optional(&format!("friction_work_{name}"), Energy, work);
     }
 }

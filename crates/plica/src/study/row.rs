@@ -49,7 +49,7 @@ pub struct Row {
     pub residual: f64,
     /// Work done against damping since the previous state.
     pub damping_work: f64,
-    /// Work done so far by muscles, pressures, ends and on obstacles, less the damping work so far and the gain of the energies of strain and contact.
+    /// Work done so far by muscles, pressures, ends and on obstacles, less the work of damping and friction so far and the gain of the energies of strain and contact.
     pub released_energy: f64,
     /// Method by which the state was found: rest, newton, relaxation or pseudo-time.
     pub method: Method,
@@ -258,7 +258,13 @@ impl Row {
             row.energy + row.contact.energy.unwrap_or(0.0) + contact
         };
         let gained = stored(&self) - stored(previous);
-        self.released_energy = previous.released_energy + (sum - self.damping_work - gained);
+        let by_friction = |row: &Self| {
+            let obstacles = row.obstacles.iter();
+            obstacles.filter_map(|on| on.friction_work).sum::<f64>()
+        };
+        let friction = by_friction(&self) - by_friction(previous);
+        self.released_energy =
+            previous.released_energy + (sum - self.damping_work - gained - friction);
         self
     }
 

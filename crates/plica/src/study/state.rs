@@ -130,7 +130,7 @@ impl State {
     ) -> (Self, WorkPoint) {
         let tube = &problem.tube;
         // The solver has evaluated the energy of this state already.
-        let Ok(forces) = tube.forces(&accepted.load, &accepted.u) else {
+        let Ok(forces) = problem.forces_on_tube(&accepted.load, &accepted.u) else {
             unreachable!("an accepted state is not inverted")
         };
         let above_rounding = |energy: f64| {
@@ -140,7 +140,7 @@ impl State {
             if energy.abs() < rounding { 0.0 } else { energy }
         };
         let (load, u) = (&accepted.load, &accepted.u);
-        let mut point = WorkPoint::of(plan, tube, (load, u), &forces);
+        let mut point = WorkPoint::of(plan, problem, (load, u), &forces);
         let none = || Work::none(load);
         let contact = problem.contact_report(load, u);
         let work = previous.map_or_else(none, |previous| previous.work_to(&mut point, tube));

@@ -10,6 +10,7 @@
 
 use super::Plan;
 use crate::assembly::{Forces, ObstacleContact, SplineTube};
+use crate::equilibrium::TubeProblem;
 use crate::tube::Load;
 
 /// Work of one step on the whole tube, in E·D³.
@@ -57,7 +58,13 @@ const STRETCH_STEP: f64 = 1e-4;
 
 impl WorkPoint {
     /// Evaluates a state, whose forces are known.
-    pub fn of(plan: &Plan, tube: &SplineTube, (load, u): (&Load, &[f64]), forces: &Forces) -> Self {
+    pub fn of(
+        plan: &Plan,
+        problem: &TubeProblem,
+        (load, u): (&Load, &[f64]),
+        forces: &Forces,
+    ) -> Self {
+        let tube = &problem.tube;
         let k = tube.sector.rings;
         let at_ends = tube.prescribed_at_ends();
         let row = tube.row_size();
@@ -72,7 +79,7 @@ impl WorkPoint {
                 false => [[0.0; 2]; 2],
             },
             ends: [end(0), end(u.len() - row)],
-            contacts: tube.obstacle_contacts(load, u),
+            contacts: problem.obstacle_contacts(load, u),
             load: load.clone(),
             u: u.to_vec(),
             sectors: tube.sector.repeats(),
@@ -161,7 +168,7 @@ fn muscle_force(tube: &SplineTube, load: &Load, u: &[f64], m: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::fixture::plan;
-    use super::super::{Row, Scale, Stage, Study};
+    use super::super::{Row, Scale, Stage, State, Study};
     use super::*;
     use crate::activation::{Direction, Muscle, Profile};
     use crate::tube::{EndMotion, Obstacle, ObstacleShape, Placement};
@@ -223,6 +230,7 @@ mod tests {
                 radius,
                 position: [z, 0.0, 0.0],
             },
+            friction: 0.0,
         };
         plan.tube.obstacles = vec![
             obstacle("sheath", ObstacleShape::Sheath, 0.58, 0.0),
@@ -233,6 +241,15 @@ mod tests {
             let sheath = Placement { radius, ..sheath };
             let position = [z, 0.0, 0.0];
             stage.load.obstacles = vec![sheath, Placement { position, ..ball }];
+        }
+        plan
+    }
+
+    /// The same tube, with friction.
+    fn rubbed(steps: usize) -> Plan {
+        let mut plan = squeezed(steps);
+        for obstacle in &mut plan.tube.obstacles {
+            obstacle.friction = 0.2;
         }
         plan
     }
@@ -300,6 +317,31 @@ mod tests {
     }
 
     #[test]
+    fn the_energy_balance_closes_with_friction() {
+        let gap = |steps: usize| {
+            let rows = rows(&rubbed(steps));
+            assert_eq!(rows.len(), 1 + 2 * steps);
+            for pair in rows.windows(2) {
+                let [before, after] = [0, 1].map(|i| pair[i].obstacles[1].friction_work.unwrap());
+                assert!(before <= after && pair[1].residual <= 1e-6, "{:?}", pair[1]);
+            }
+            let last = rows.last().unwrap();
+            let lost: f64 = last.obstacles.iter().filter_map(|o| o.friction_work).sum();
+            let work = last.obstacles.iter().map(|o| o.work.abs()).sum::<f64>()
+                + last.muscles.iter().map(|m| m.work.abs()).sum::<f64>();
+            assert!(lost > 0.01 * work, "{lost} of {work}");
+            for obstacle in &last.obstacles {
+                let friction = obstacle.friction_force.unwrap();
+                assert!(friction <= 0.2 * obstacle.force * (1.0 + 1e-12));
+            }
+            (last.released_energy / work).abs()
+        };
+        let [coarse, fine] = [8, 16].map(gap);
+        println!("{coarse:e} {fine:e}");
+        assert!(coarse < 5e-2 && fine < coarse, "{coarse} {fine}");
+    }
+
+    #[test]
     fn a_plate_that_the_symmetry_repeats_has_the_work_of_two() {
         let pressed = |symmetry, signs: &[f64]| {
             let mut plan = plan(symmetry);
@@ -317,6 +359,7 @@ mod tests {
                     normal: [0.0, -sign, 0.0],
                 },
                 rest: placement(0.6 * sign),
+                friction: 0.0,
             };
             plan.tube.obstacles = signs.iter().map(plate).collect();
             let load = Load {
@@ -391,17 +434,19 @@ mod tests {
 
     #[test]
     fn a_resumed_study_does_the_same_work_to_the_bit() {
-        let plan = squeezed(2);
-        let mut study = Study::new(&plan).unwrap();
-        let (mut works, mut continuations) = (vec![], vec![]);
-        while let Some(state) = study.next() {
-            works.push(state.unwrap().work);
-            continuations.push(study.continuation().unwrap());
-        }
-        for number in [0, 1, 2, 3] {
-            let resumed = Study::resume(&plan, continuations[number].clone()).unwrap();
-            let rest: Vec<Work> = resumed.map(|state| state.unwrap().work).collect();
-            assert_eq!(rest, works[number + 1..], "after state {number}");
+        for plan in [squeezed(2), rubbed(2)] {
+            let mut study = Study::new(&plan).unwrap();
+            let (mut works, mut continuations) = (vec![], vec![]);
+            let of = |state: State| (state.work, state.obstacles, state.unknowns);
+            while let Some(state) = study.next() {
+                works.push(of(state.unwrap()));
+                continuations.push(study.continuation().unwrap());
+            }
+            for number in [0, 1, 2, 3] {
+                let resumed = Study::resume(&plan, continuations[number].clone()).unwrap();
+                let rest: Vec<_> = resumed.map(|state| of(state.unwrap())).collect();
+                assert!(rest == works[number + 1..], "after state {number}");
+            }
         }
     }
 

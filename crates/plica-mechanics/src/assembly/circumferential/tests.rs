@@ -219,6 +219,7 @@ fn low_harmonic_tangent_is_the_projected_tangent() {
             name: String::new(),
             shape,
             rest: Placement { radius, position },
+            friction: 0.0,
         };
         touching.tube.obstacles = vec![
             obstacle(ObstacleShape::Sheath, 0.7, [0.0; 3]),

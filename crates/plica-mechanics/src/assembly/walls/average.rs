@@ -33,7 +33,9 @@ impl SplineTube {
                 let mut blocks_apart = vec![[[0.0; 3]; 3]; n * n * n];
                 for qz in 0..n {
                     let rings = self.rings_along(wall, &at.u, along, qz);
-                    for (point, rotations) in self.around.iter().zip(&rotations) {
+                    for (number, (point, rotations)) in
+                        self.around.iter().zip(&rotations).enumerate()
+                    {
                         let weight = batch.weight[qz].0[lane] * point.weight / k as f64;
                         let mut blocks = [[[0.0; 3]; 3]; 6];
                         let mut is_loaded = false;
@@ -41,6 +43,7 @@ impl SplineTube {
                             let moved = self.surface_displacement(&rings, element, point);
                             let at = WallPoint {
                                 element,
+                                number: self.point_number(along, qz, [element, number]),
                                 z: batch.z[qz].0[lane],
                                 around: point,
                             };

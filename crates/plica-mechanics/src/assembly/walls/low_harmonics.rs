@@ -46,6 +46,7 @@ impl SplineTube {
                         let moved = self.surface_displacement(&rings, element, point);
                         let at = WallPoint {
                             element,
+                            number: 0,
                             z: batch.z[qz].0[lane],
                             around: point,
                         };
@@ -99,7 +100,7 @@ impl SplineTube {
 
 /// Adds Gᵀ B H of two matrices of three rows.
 #[inline(always)]
-fn add_form(G: &[f64], B: &Block<f64>, H: &[f64], out: &mut [f64]) {
+pub(super) fn add_form(G: &[f64], B: &Block<f64>, H: &[f64], out: &mut [f64]) {
     let columns = G.len() / 3;
     for x in 0..columns {
         let mut row = [0.0; 3];

@@ -1,4 +1,5 @@
-//! Pressure on the inner and the outer wall, and their contact with obstacles: energy, forces and tangent.
+//! Pressure on the inner and the outer wall, and their contact with obstacles and friction on them: energy, forces and
+//! tangent.
 //!
 //! A follower pressure p acts on the deformed wall, along its normal. Its work is p dV, with V the
 //! volume that the wall encloses; its potential is −p V on the inner wall and +p V on the outer
@@ -18,6 +19,9 @@
 //! multiply-add. V is computed relative to its value at rest, which avoids rounding.
 
 mod average;
+mod friction;
+#[cfg(test)]
+mod friction_tests;
 mod low_harmonics;
 #[cfg(test)]
 mod obstacle_tests;
@@ -26,6 +30,7 @@ mod obstacles;
 mod tests;
 mod volume;
 
+pub use friction::{Friction, ObstacleFriction, StepStart};
 pub use obstacles::ObstacleContact;
 
 use super::Forces;
@@ -37,8 +42,9 @@ use super::tables::{AxialBatch, CircumferentialPoint};
 use crate::matrix::BlockBanded;
 use crate::rings::Rotation;
 use crate::tensor::with_vectors;
-use crate::tube::{Load, Pressure, Tube};
-use obstacles::PlacedObstacle;
+use crate::tube::{Load, Pressure, Tube, turned};
+use friction::PlacedFriction;
+use obstacles::{PlacedObstacle, PointContact};
 use rayon::prelude::*;
 use volume::{Surface, product, sum, volume_blocks, volume_change, volume_slopes};
 
@@ -55,6 +61,7 @@ pub struct LoadedWall {
     dead: f64,
     obstacles: Vec<PlacedObstacle>,
     barrier: Barrier,
+    friction: Option<PlacedFriction>,
 }
 
 /// Contribution of the walls to a tangent: those under follower pressure or near obstacles, and the state.
@@ -79,6 +86,8 @@ struct WallForces {
 struct WallPoint<'a> {
     /// Element around the sector.
     element: usize,
+    /// Number among the quadrature points of the wall; of no meaning without friction.
+    number: usize,
     /// Axial position at rest.
     z: f64,
     around: &'a CircumferentialPoint,
@@ -92,34 +101,45 @@ impl SplineTube {
     pub(in crate::assembly) fn add_walls(&self, load: &Load, u: &[f64], forces: &mut Forces) {
         let mut squares = forces.residual_scale * forces.residual_scale;
         for wall in self.loaded_walls(load) {
-            let parts = self.integrate_over_wall(&wall, [u], |[moved], point| {
-                let position = sum(&wall.at_rest(point), &moved);
-                let volume = volume_slopes(&position);
-                let area = wall.area_at_rest(point);
-                let potential = wall.potential(&moved, point);
-                let mut slopes = volume.map(|v| v.map(|x| -wall.follower * x));
-                for i in 0..3 {
-                    slopes[2][i] -= wall.dead * area[i];
-                }
-                let mut contact = 0.0;
-                if let Some(at) = self.contact_with_obstacles(&wall, &position, point.element) {
-                    let area = wall.area(point);
-                    contact = area * at.energy;
-                    for i in 0..3 {
-                        slopes[2][i] += area * at.slope[i];
-                    }
-                }
-                ([potential, contact], slopes)
-            });
-            for part in &parts {
-                let [potential, contact] = part.energies;
+            for [potential, contact] in self.add_wall(&wall, u, &mut squares, forces) {
                 forces.potential += self.sector.repeats() * potential;
                 forces.contact += self.sector.repeats() * contact;
-                squares += part.squares;
             }
-            self.add_wall_forces(&wall, &parts, 1.0, &mut forces.residual);
-            forces.residual_scale = squares.sqrt();
         }
+    }
+
+    /// Adds the forces on a wall to those of a state, and its squares to those of the residual scale. Returns the energies
+    /// of pressure and contact of the sector, by element along.
+    fn add_wall(
+        &self,
+        wall: &LoadedWall,
+        u: &[f64],
+        squares: &mut f64,
+        forces: &mut Forces,
+    ) -> Vec<[f64; 2]> {
+        let parts = self.integrate_over_wall(wall, [u], |[moved], point| {
+            let position = sum(&wall.at_rest(point), &moved);
+            let volume = volume_slopes(&position);
+            let area = wall.area_at_rest(point);
+            let potential = wall.potential(&moved, point);
+            let mut slopes = volume.map(|v| v.map(|x| -wall.follower * x));
+            for i in 0..3 {
+                slopes[2][i] -= wall.dead * area[i];
+            }
+            let mut contact = 0.0;
+            if let Some(at) = self.contact_at(wall, &position, point) {
+                let area = wall.area(point);
+                contact = area * at.energy;
+                for i in 0..3 {
+                    slopes[2][i] += area * at.slope[i];
+                }
+            }
+            ([potential, contact], slopes)
+        });
+        *squares = parts.iter().fold(*squares, |sum, part| sum + part.squares);
+        self.add_wall_forces(wall, &parts, 1.0, &mut forces.residual);
+        forces.residual_scale = squares.sqrt();
+        parts.iter().map(|part| part.energies).collect()
     }
 
     /// Returns the work since rest, on the whole tube, of a unit follower pressure and of a unit
@@ -180,32 +200,44 @@ impl SplineTube {
         rotations: &[Vec<Vec<Rotation>>],
         matrix: &mut BlockBanded,
     ) {
-        with_vectors!(simd => self.add_wall_tangent_in(load, u, rotations, matrix));
+        self.add_tangent_of_walls(&self.walls_with_tangent(load), u, rotations, matrix);
     }
 
-    #[inline(always)]
-    fn add_wall_tangent_in(
+    fn add_tangent_of_walls(
         &self,
-        load: &Load,
+        walls: &[LoadedWall],
         u: &[f64],
         rotations: &[Vec<Vec<Rotation>>],
         matrix: &mut BlockBanded,
     ) {
-        for wall in self.walls_with_tangent(load) {
+        with_vectors!(simd => self.add_tangent_of_walls_in(walls, u, rotations, matrix));
+    }
+
+    #[inline(always)]
+    fn add_tangent_of_walls_in(
+        &self,
+        walls: &[LoadedWall],
+        u: &[f64],
+        rotations: &[Vec<Vec<Rotation>>],
+        matrix: &mut BlockBanded,
+    ) {
+        for wall in walls {
             let index = |i: usize, ring: usize| (wall.point * 3 + i) * self.sector.rings + ring;
             for along @ (batch, lane) in self.elements_along() {
                 for qz in 0..=self.degree() {
-                    let rings = self.rings_along(&wall, u, along, qz);
+                    let rings = self.rings_along(wall, u, along, qz);
                     for element in 0..self.sector.rings {
-                        for (point, rotations) in self.around.iter().zip(rotations) {
+                        let points = self.around.iter().zip(rotations).enumerate();
+                        for (number, (point, rotations)) in points {
                             let moved = self.surface_displacement(&rings, element, point);
                             let weight = batch.weight[qz].0[lane] * point.weight;
                             let at = WallPoint {
                                 element,
+                                number: self.point_number(along, qz, [element, number]),
                                 z: batch.z[qz].0[lane],
                                 around: point,
                             };
-                            let Some(blocks) = self.wall_blocks(&wall, &moved, &at, weight) else {
+                            let Some(blocks) = self.wall_blocks(wall, &moved, &at, weight) else {
                                 continue;
                             };
                             for set in rotations {
@@ -241,20 +273,16 @@ impl SplineTube {
         let obstacles = self.placed_obstacles(load);
         let walls = [
             LoadedWall {
-                point: 0,
-                radius: self.tube.inner_radius(),
                 follower: inner.follower,
                 dead: inner.dead,
                 obstacles: obstacles.clone(),
-                barrier: self.barrier,
+                ..self.bare_wall(0)
             },
             LoadedWall {
-                point: self.wall.functions() - 1,
-                radius: Tube::OUTER_RADIUS,
                 follower: -outer.follower,
                 dead: -outer.dead,
                 obstacles,
-                barrier: self.barrier,
+                ..self.bare_wall(1)
             },
         ];
         let is_loaded = |wall: &LoadedWall| {
@@ -263,23 +291,96 @@ impl SplineTube {
         walls.into_iter().filter(is_loaded).collect()
     }
 
+    /// Returns the inner (0) or the outer wall (1) without loads.
+    fn bare_wall(&self, number: usize) -> LoadedWall {
+        let (point, radius) = match number {
+            0 => (0, self.tube.inner_radius()),
+            _ => (self.wall.functions() - 1, Tube::OUTER_RADIUS),
+        };
+        LoadedWall {
+            point,
+            radius,
+            follower: 0.0,
+            dead: 0.0,
+            obstacles: vec![],
+            barrier: self.barrier,
+            friction: None,
+        }
+    }
+
     fn walls_with_tangent(&self, load: &Load) -> Vec<LoadedWall> {
         let mut walls = self.loaded_walls(load);
         walls.retain(|wall| wall.follower != 0.0 || !wall.obstacles.is_empty());
         walls
     }
 
-    /// Returns the contact with obstacles at a position in the frame of an element; none where no obstacle is near.
-    fn contact_with_obstacles(
+    /// Returns the contact with obstacles, or the friction, at a position in the frame of an element; none where no obstacle
+    /// is near.
+    fn contact_at(
         &self,
         wall: &LoadedWall,
         position: &Surface,
-        element: usize,
-    ) -> Option<obstacles::PointContact> {
+        point: &WallPoint<'_>,
+    ) -> Option<PointContact> {
+        if let Some(friction) = &wall.friction {
+            let turn = self.element_turn(point.element);
+            return friction.at(point.number, position[2], turn);
+        }
         if wall.obstacles.is_empty() {
             return None;
         }
-        wall.contact(position[2], self.element_turn(element))
+        wall.contact(position[2], self.element_turn(point.element))
+    }
+
+    /// Returns the number of quadrature points of a wall.
+    fn points_of_wall(&self) -> usize {
+        self.axial.elements() * (self.degree() + 1) * self.sector.rings * self.around.len()
+    }
+
+    /// Returns the number of a quadrature point: of an element along, point along, element and point around.
+    fn point_number(
+        &self,
+        (batch, lane): Along<'_>,
+        qz: usize,
+        [element, point]: [usize; 2],
+    ) -> usize {
+        let along = (batch.first + lane) * (self.degree() + 1) + qz;
+        (along * self.sector.rings + element) * self.around.len() + point
+    }
+
+    /// Visits the quadrature points of a wall in the order of their numbers, with the positions in the frame of the sector
+    /// that fields of displacements give, and the area at rest on the whole tube.
+    fn visit_wall<const F: usize>(
+        &self,
+        wall: &LoadedWall,
+        fields: [&[f64]; F],
+        mut visit: impl FnMut(&WallPoint<'_>, [Vector<f64>; F], f64),
+    ) {
+        let repeats = self.sector.repeats();
+        for along @ (batch, lane) in self.elements_along() {
+            for qz in 0..=self.degree() {
+                let (z, weight) = (batch.z[qz].0[lane], batch.weight[qz].0[lane]);
+                let rings = fields.map(|u| self.rings_along(wall, u, along, qz));
+                for element in 0..self.sector.rings {
+                    let turn = self.element_turn(element);
+                    for (point, around) in self.around.iter().enumerate() {
+                        let number = self.point_number(along, qz, [element, point]);
+                        let at = WallPoint {
+                            element,
+                            number,
+                            z,
+                            around,
+                        };
+                        let position = |f: usize| {
+                            let moved = self.surface_displacement(&rings[f], element, around);
+                            turned(sum(&wall.at_rest(&at), &moved)[2], turn)
+                        };
+                        let area = repeats * weight * around.weight * wall.area(&at);
+                        visit(&at, std::array::from_fn(position), area);
+                    }
+                }
+            }
+        }
     }
 
     /// Returns the second derivatives of the energies of a wall at a point of an element around, times a factor, in the
@@ -292,7 +393,7 @@ impl SplineTube {
         factor: f64,
     ) -> Option<[Block<f64>; 6]> {
         let position = sum(&wall.at_rest(point), moved);
-        let contact = self.contact_with_obstacles(wall, &position, point.element);
+        let contact = self.contact_at(wall, &position, point);
         if contact.is_none() && wall.follower == 0.0 {
             return None;
         }
@@ -346,13 +447,14 @@ impl SplineTube {
             for (element, forces) in forces.chunks_exact_mut(n * local_rings).enumerate() {
                 // Per local ring: forces on the value and on the slope along.
                 let mut ring_forces = vec![[[0.0; 3]; 2]; local_rings];
-                for point in &self.around {
+                for (number, point) in self.around.iter().enumerate() {
                     let weight = batch.weight[qz].0[lane] * point.weight;
                     let fields = std::array::from_fn(|f| {
                         self.surface_displacement(&rings[f], element, point)
                     });
                     let at = WallPoint {
                         element,
+                        number: self.point_number(along, qz, [element, number]),
                         z: batch.z[qz].0[lane],
                         around: point,
                     };

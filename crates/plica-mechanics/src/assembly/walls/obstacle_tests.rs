@@ -17,10 +17,11 @@ fn obstacle(shape: ObstacleShape, radius: f64, position: [f64; 3]) -> Obstacle {
         name: String::new(),
         shape,
         rest: Placement { radius, position },
+        friction: 0.0,
     }
 }
 
-fn axisymmetric_obstacles() -> Vec<Obstacle> {
+pub(super) fn axisymmetric_obstacles() -> Vec<Obstacle> {
     vec![
         obstacle(
             ObstacleShape::Rod { half_length: 0.2 },
@@ -32,7 +33,7 @@ fn axisymmetric_obstacles() -> Vec<Obstacle> {
     ]
 }
 
-fn all_obstacles() -> Vec<Obstacle> {
+pub(super) fn all_obstacles() -> Vec<Obstacle> {
     let plate = ObstacleShape::Plate {
         normal: [0.0, -0.8, -0.6],
     };
@@ -43,7 +44,12 @@ fn all_obstacles() -> Vec<Obstacle> {
 }
 
 /// Returns a tube of `rings` rings of ten, or of six, with obstacles.
-fn with(obstacles: Vec<Obstacle>, degree: usize, elements: [usize; 3], rings: usize) -> SplineTube {
+pub(super) fn with(
+    obstacles: Vec<Obstacle>,
+    degree: usize,
+    elements: [usize; 3],
+    rings: usize,
+) -> SplineTube {
     let TubeAndLoad { mut tube, .. } = tube_and_load(degree, elements, rings);
     tube.tube.obstacles = obstacles;
     tube.with_barrier(WIDE)

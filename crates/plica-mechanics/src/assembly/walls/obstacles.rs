@@ -6,8 +6,8 @@
 use super::super::SplineTube;
 use super::super::blocks::Block;
 use super::super::kinematics::Vector;
-use super::volume::sum;
-use super::{LoadedWall, WallPoint};
+use super::LoadedWall;
+use super::friction::ObstacleFriction;
 use crate::tube::{Distance, Load, Obstacle, ObstacleShape, Placement, turned};
 
 /// An obstacle in the places where the cyclic sectors of the tube repeat it.
@@ -22,9 +22,9 @@ pub struct PlacedObstacle {
 
 /// One of the copies of an obstacle.
 #[derive(Clone, Debug)]
-struct Copy {
-    shape: ObstacleShape,
-    placement: Placement,
+pub(super) struct Copy {
+    pub shape: ObstacleShape,
+    pub placement: Placement,
     /// Sine and cosine of its angle from the first copy.
     sin_cos: (f64, f64),
 }
@@ -36,8 +36,8 @@ pub struct ObstacleContact {
     pub energy: f64,
     /// Sum of the sizes of the contact forces, in E·D².
     pub force: f64,
-    /// Resultant of the contact forces on the obstacle, (z, x, y), in E·D²; on one of its copies, if the cyclic sectors
-    /// of the tube repeat it.
+    /// Resultant of the contact forces on the obstacle, and of friction where that is known, (z, x, y), in E·D²; on one of
+    /// its copies, if the cyclic sectors of the tube repeat it.
     pub reaction: [f64; 3],
     /// Number of its copies. Energy, force and area are those of all.
     pub copies: usize,
@@ -50,9 +50,12 @@ pub struct ObstacleContact {
     pub gap: f64,
     /// Axial positions at rest of the first and the last point in contact, in D; none without contact.
     pub from_to: Option<[f64; 2]>,
+    /// Friction, where the history of the state is known; see [`SplineTube::friction_on_obstacles`].
+    pub friction: Option<ObstacleFriction>,
 }
 
-/// Contact at one point of a wall: energy, its derivatives over the position, per area at rest.
+/// Contact at one point of a wall: energy, its derivatives over the position in the frame of its element, per area at rest.
+#[derive(Clone, Debug, Default)]
 pub struct PointContact {
     pub energy: f64,
     pub slope: Vector<f64>,
@@ -101,32 +104,19 @@ impl SplineTube {
             area: 0.0,
             gap: f64::INFINITY,
             from_to: None,
+            friction: None,
         };
         let mut contacts = vec![nothing; self.tube.obstacles.len()];
         if contacts.is_empty() {
             return contacts;
         }
-        let repeats = self.sector.repeats();
         for wall in self.loaded_walls(load) {
-            for along @ (batch, lane) in self.elements_along() {
-                for qz in 0..=self.degree() {
-                    let (z, weight) = (batch.z[qz].0[lane], batch.weight[qz].0[lane]);
-                    let rings = self.rings_along(&wall, u, along, qz);
-                    for element in 0..self.sector.rings {
-                        let turn = self.element_turn(element);
-                        for around in &self.around {
-                            let at = WallPoint { element, z, around };
-                            let moved = self.surface_displacement(&rings, element, around);
-                            let position = sum(&wall.at_rest(&at), &moved)[2];
-                            let area = repeats * weight * around.weight * wall.area(&at);
-                            for obstacle in &wall.obstacles {
-                                let sum = &mut contacts[obstacle.number];
-                                obstacle.add_to(sum, turned(position, turn), (z, area), &wall);
-                            }
-                        }
-                    }
+            self.visit_wall(&wall, [u], |point, [position], area| {
+                for obstacle in &wall.obstacles {
+                    let sum = &mut contacts[obstacle.number];
+                    obstacle.add_to(sum, position, (point.z, area), &wall);
                 }
-            }
+            });
         }
         contacts
     }
@@ -156,11 +146,7 @@ impl LoadedWall {
                 continue;
             }
             let jet = self.barrier.continued(gap);
-            let at = found.get_or_insert(PointContact {
-                energy: 0.0,
-                slope: [0.0; 3],
-                curvature: [[0.0; 3]; 3],
-            });
+            let at = found.get_or_insert_default();
             at.energy += jet.value;
             let back = |vector: [f64; 3]| turned(vector, (-sin, cos));
             let normal = back(normal);
@@ -178,7 +164,47 @@ impl LoadedWall {
     }
 }
 
+impl PointContact {
+    /// Adds an energy with its derivatives in the frame of the sector; the frame of the element has a turn in it.
+    pub(super) fn add(
+        &mut self,
+        energy: f64,
+        slope: Vector<f64>,
+        curvature: Block<f64>,
+        (sin, cos): (f64, f64),
+    ) {
+        let back = |vector: [f64; 3]| turned(vector, (-sin, cos));
+        // Rows, then columns.
+        let (slope, curvature) = (back(slope), transposed(curvature.map(back)).map(back));
+        self.energy += energy;
+        for i in 0..3 {
+            self.slope[i] += slope[i];
+            for j in 0..3 {
+                self.curvature[i][j] += curvature[i][j];
+            }
+        }
+    }
+}
+
 impl PlacedObstacle {
+    /// Returns its copies.
+    pub(super) fn copies(&self) -> impl Iterator<Item = &Copy> {
+        self.copies.iter()
+    }
+
+    /// Returns the share of the first copy in a force on a copy. The forces of all sectors across a single obstacle on the
+    /// axis cancel.
+    pub(super) fn on_first_copy(&self, copy: &Copy, force: Vector<f64>) -> Vector<f64> {
+        let (sin, cos) = copy.sin_cos;
+        let [along, x, y] = turned(force, (-sin, cos));
+        let across = match self.copies.len() {
+            1 => self.whole,
+            _ => 1.0,
+        };
+        let share = 1.0 / self.copies.len() as f64;
+        [along, across * x, across * y].map(|x| share * x)
+    }
+
     /// Adds the contact of a point with area `area` and the axial position `z` at rest.
     fn add_to(
         &self,

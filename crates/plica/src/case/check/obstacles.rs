@@ -62,6 +62,7 @@ pub(super) fn obstacles(case: &Case, problems: &mut Problems) -> Vec<Obstacle> {
                 radius: radius / case.tube.diameter,
                 position: in_tube(position, case),
             },
+            friction: obstacle.friction,
         });
     }
     obstacles
@@ -181,12 +182,13 @@ fn check_ends(
         return;
     }
     let key = format!("obstacles[{}].shape", i + 1);
-    let pushes_along = match obstacle.shape {
-        ObstacleShape::Rod { half_length } => half_length.is_finite(),
-        ObstacleShape::Sheath => false,
-        ObstacleShape::Ball => true,
-        ObstacleShape::Plate { normal } => normal[0] != 0.0,
-    };
+    let pushes_along = obstacle.friction > 0.0
+        || match obstacle.shape {
+            ObstacleShape::Rod { half_length } => half_length.is_finite(),
+            ObstacleShape::Sheath => false,
+            ObstacleShape::Ball => true,
+            ObstacleShape::Plate { normal } => normal[0] != 0.0,
+        };
     let loads = std::iter::once(begin).chain(stages.iter().map(|stage| &stage.load));
     let pushes_across = symmetry == Symmetry::None
         && loads

@@ -15,6 +15,9 @@ pub struct ObstacleContacts {
     pub largest_force: Option<LargestForce>,
     /// States in which a wall overlaps it, which is not physical.
     pub overlapping: Vec<Interval>,
+    /// Energy that friction on it has dissipated along the path; none without friction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction_work: Option<f64>,
 }
 
 /// The largest contact force of a path.
@@ -46,6 +49,10 @@ pub(super) fn obstacles(path: &Path<'_>) -> Vec<ObstacleContacts> {
                     at: path.place(row),
                 }),
             overlapping: path.intervals(|row| row.obstacles[i].gap <= 0.0),
+            friction_work: path
+                .rows
+                .last()
+                .and_then(|row| row.obstacles[i].friction_work),
         }
     };
     all.iter().enumerate().map(of).collect()

@@ -207,6 +207,11 @@ impl Findings {
             ),
         };
         let mut lines = vec![(format!("touches {}", found.name), touches)];
+        if let Some(work) = found.friction_work {
+            let work = format!("{} {} dissipated", number(work, 3), self.energy_unit);
+            let line = format!("{work}; the stability test leaves friction out");
+            lines.push((format!("friction on {}", found.name), line));
+        }
         if !found.overlapping.is_empty() {
             let states = list(&found.overlapping);
             let overlaps = format!("{states}, which is not physical");

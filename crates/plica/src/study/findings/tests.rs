@@ -413,6 +413,12 @@ fn contact_with_an_obstacle_has_its_states_and_its_largest_force() {
         touches.contains("at most 4.000e-2 E D^2 at state 3"),
         "{touches}"
     );
+    rows.last_mut().unwrap().obstacles[0].friction_work = Some(2e-3);
+    let friction = line(&findings(&rows), "friction on scope");
+    assert!(
+        friction.starts_with("2.000e-3 E D^3 dissipated"),
+        "{friction}"
+    );
     let overlaps = line(&found, "overlaps scope");
     assert!(overlaps.starts_with("state 3"), "{overlaps}");
     assert_eq!(line(&found, "touches bolus"), "in no state");

@@ -1,0 +1,51 @@
+//! Repetition of a step whose energy depends on its solution.
+
+use super::equilibrium::{EQUILIBRIUM, Equilibrium};
+use super::failure::{Cause, Failure};
+use super::settings::Settings;
+use super::state::Solution;
+
+/// Largest number of solutions of a step after the first.
+const REPETITIONS: usize = 20;
+
+/// Updates the energy of a step to that of a solution, and solves again by `again`, until the residual with the energy of
+/// the solution itself is within the tolerance, or 1e-6 if that is smaller. Returns the last solution.
+///
+/// # Errors
+///
+/// That of `again`, or [`Cause::Friction`] after 20 repetitions.
+pub(super) fn repeated<P: Equilibrium>(
+    problem: &mut P,
+    load: &P::Load,
+    mut found: Solution,
+    settings: &Settings,
+    mut again: impl FnMut(&P, Vec<f64>) -> Result<Solution, Failure<P::EvaluationError>>,
+) -> Result<Solution, Failure<P::EvaluationError>> {
+    let tolerance = settings.tolerance.max(EQUILIBRIUM);
+    for repetition in 0.. {
+        if !problem.update(load, &found.u) {
+            break;
+        }
+        found.forces = problem
+            .forces(load, &found.u)
+            .map_err(Failure::Evaluation)?;
+        let relative_residual = found.forces.relative_residual(problem.prescribed());
+        if relative_residual <= tolerance {
+            break;
+        }
+        if repetition == REPETITIONS {
+            return Err(Failure::NotConverged {
+                cause: Cause::Friction,
+                linear_solves: 0,
+                relative_residual,
+                worst_unknown: found.forces.worst_unknown(problem.prescribed()),
+            });
+        }
+        let next = again(problem, found.u)?;
+        found = Solution {
+            damping_work: found.damping_work + next.damping_work,
+            ..next
+        };
+    }
+    Ok(found)
+}
