@@ -111,7 +111,7 @@ impl Sheathed {
         let (load, u) = self.state();
         let forces = self.path.problem().forces_on_tube(load, u)?;
         let reactions = Reaction::of(&self.problem.tube, load, u, &forces.residual);
-        Ok(reactions[1].axial_force() - reactions[0].axial_force())
+        Ok(reactions[0].axial_force() - reactions[1].axial_force())
     }
 
     /// Returns the tension of the wall at a section, from the stresses.
@@ -190,7 +190,7 @@ pub fn sliding(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
         1e-3,
         "change of the tension, from stresses",
         change,
-        (-limit, "−∫ μ p dA, from gaps"),
+        (limit, "∫ μ p dA, from gaps"),
     );
     let begin = (tube.dissipated(), tube.limit());
     tube.go([0.48, 0.07, 0.0], 5)?;
@@ -228,7 +228,7 @@ pub fn pull_out(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
         let limit = tube.limit();
         tube.go([0.4975, 0.0, -pull], 5)?;
         let partial = tube.reaction().abs();
-        tube.go([0.4975, 0.0, -6.0 * pull], 5)?;
+        tube.go([0.4975, 0.0, -16.0 * pull], 5)?;
         Ok([
             limit,
             partial,
@@ -273,7 +273,7 @@ pub fn symmetries(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> 
         let model = TubeModel::new(0.3, 0.06, 0.4, [6, 24, 1]);
         let mut tube = Sheathed::new(model, 0.2, 0.1, rings)?;
         tube.go([0.49, 0.0, 0.0], 4)?;
-        tube.go([0.49, 0.001, 0.0], 1)?;
+        tube.go([0.49, 2e-4, 0.0], 1)?;
         let part = tube.reaction();
         tube.go([0.49, 0.02, 0.0], 2)?;
         Ok([part, tube.reaction(), tube.dissipated()])

@@ -1,4 +1,4 @@
-//! Contact of the wall of an axisymmetric tube with itself, without friction.
+//! Contact of the wall of an axisymmetric tube with itself, with or without friction.
 //!
 //! The outer face meets the outer face, the inner face the inner. Contact adds an energy to that of the tube,
 //!
@@ -19,6 +19,9 @@ mod bezier;
 mod boxes;
 mod curve;
 mod energy;
+mod friction;
+#[cfg(test)]
+mod friction_tests;
 mod nearest;
 mod pairs;
 mod pressure;
@@ -30,6 +33,7 @@ mod tests;
 
 pub use crate::assembly::Barrier;
 pub use curve::Face;
+pub use friction::{FaceFriction, SelfFriction};
 pub use pressure::{PressedPoint, PressureField, place_of};
 pub use report::{ContactReport, FaceContact};
 pub use surface::{BIOT, CREASE, FaceSurface};
@@ -43,6 +47,8 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug)]
 pub struct SelfContact {
     barrier: Barrier,
+    /// Coefficient of friction.
+    friction: f64,
     faces: Vec<(FaceCurve, FaceQuadrature)>,
     /// Sectors of the whole tube.
     repeats: f64,
@@ -84,6 +90,7 @@ impl SelfContact {
         };
         Self {
             barrier: *tube.barrier(),
+            friction: 0.0,
             faces: vec![face(Face::Outer), face(Face::Inner)],
             repeats,
         }
@@ -98,6 +105,17 @@ impl SelfContact {
     pub fn with_range(mut self, range: f64) -> Self {
         self.barrier.range = range;
         self
+    }
+
+    /// Returns the same contact with a coefficient of friction.
+    pub fn with_friction(mut self, friction: f64) -> Self {
+        self.friction = friction;
+        self
+    }
+
+    /// Returns whether the wall has friction on itself.
+    pub fn has_friction(&self) -> bool {
+        self.friction > 0.0
     }
 
     /// Finds the pairs of a state.

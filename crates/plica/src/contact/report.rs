@@ -1,6 +1,6 @@
 //! Contact of a state in numbers.
 
-use super::{ContactState, Face, FaceSurface, SelfContact};
+use super::{ContactState, Face, FaceFriction, FaceSurface, SelfContact};
 
 /// Contact of a state, on the whole tube.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +11,8 @@ pub struct ContactReport {
     pub faces: [Option<FaceContact>; 2],
     /// Stretch and turning of the outer and the inner face.
     pub surfaces: [FaceSurface; 2],
+    /// Friction of the outer face and of the inner face with itself; none without friction.
+    pub friction: Option<[FaceFriction; 2]>,
 }
 
 /// Contact of one face with itself.
@@ -38,6 +40,7 @@ impl SelfContact {
             energy: 0.0,
             faces: [None; 2],
             surfaces,
+            friction: None,
         };
         for ((curve, _), pairs) in self.faces.iter().zip(&at.0) {
             let mut sum: Option<FaceContact> = None;

@@ -3,7 +3,7 @@ use crate::study::fixture::short;
 use crate::tube::{Mesh, Tube};
 
 /// Returns a tube of 43 × 12 × 4 cubic control points, and a state whose outer face has a narrow hairpin.
-fn hairpin(gap: f64) -> (SplineTube, Vec<f64>) {
+pub(super) fn hairpin(gap: f64) -> (SplineTube, Vec<f64>) {
     let mesh = Mesh {
         axial: 43,
         around: 12,
@@ -40,7 +40,7 @@ fn hairpin(gap: f64) -> (SplineTube, Vec<f64>) {
 }
 
 /// Returns `u` with every unknown but the circumferential ones moved along a wave.
-fn moved(u: &[f64], step: f64) -> Vec<f64> {
+pub(super) fn moved(u: &[f64], step: f64) -> Vec<f64> {
     let wave = |i: usize| {
         if i % 3 == 2 {
             0.0
@@ -54,7 +54,7 @@ fn moved(u: &[f64], step: f64) -> Vec<f64> {
         .collect()
 }
 
-fn contact(tube: &SplineTube) -> SelfContact {
+pub(super) fn contact(tube: &SplineTube) -> SelfContact {
     SelfContact::new(tube).with_range(0.02)
 }
 

@@ -20,7 +20,7 @@ pub struct TubeProblem {
     pub tube: Arc<SplineTube>,
     /// Contact of the wall with itself, if the problem has it.
     pub contact: Option<Arc<SelfContact>>,
-    /// Friction on obstacles in the load step that a path has begun; none without friction.
+    /// Friction in the load step that a path has begun; none without friction.
     friction: Option<Arc<FrictionStep>>,
     rings: Rings,
     prescribed: Arc<[bool]>,
@@ -90,9 +90,20 @@ impl TubeProblem {
         self
     }
 
+    /// Returns the problem with friction of the wall with itself, if it has contact.
+    #[must_use]
+    pub fn with_friction(mut self, coefficient: f64) -> Self {
+        if let Some(contact) = self.contact.take() {
+            let contact = Arc::unwrap_or_clone(contact).with_friction(coefficient);
+            self.contact = Some(Arc::new(contact));
+        }
+        self
+    }
+
     /// Returns whether the tube has friction.
     pub fn has_friction(&self) -> bool {
-        self.tube.has_friction()
+        let contact = self.contact.as_ref();
+        self.tube.has_friction() || contact.is_some_and(|contact| contact.has_friction())
     }
 
     /// Returns the same problem without friction, whose tangent has an energy at any state.
@@ -113,8 +124,7 @@ impl TubeProblem {
     pub fn forces_on_tube(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
         let mut forces = self.tube.forces(load, u)?;
         if let Some(step) = &self.friction {
-            self.tube
-                .add_friction(step.friction(), load, u, &mut forces);
+            step.add_on_obstacles(&self.tube, load, u, &mut forces);
         }
         Ok(forces)
     }
@@ -145,7 +155,11 @@ impl TubeProblem {
             from + xi * (to - from)
         };
         let surfaces = contact.surfaces(&self.tube, load, u);
-        Some(contact.report(&contact.at(u), surfaces, position))
+        let mut report = contact.report(&contact.at(u), surfaces, position);
+        if let Some(step) = self.friction.as_ref().filter(|_| contact.has_friction()) {
+            report.friction = Some(step.on_faces(Some(contact), u));
+        }
+        Some(report)
     }
 
     /// Returns the pressure of contact, per current area in E, at axial positions at rest of a face; zero without contact.
@@ -174,11 +188,18 @@ impl TubeProblem {
     /// Assembles the tangent of one ring with contact and friction.
     fn tangent_of_step(&self, load: &Load, u: &[f64]) -> CoupledBanded {
         let mut tangent = self.tube.tangent(load, u);
-        if let Some(step) = &self.friction {
+        let step = self.friction.as_deref();
+        if let Some(friction) = step.and_then(FrictionStep::friction) {
             self.tube
-                .add_friction_tangent(step.friction(), load, u, &mut tangent);
+                .add_friction_tangent(friction, load, u, &mut tangent);
         }
-        self.with_self_contact(u, 0, tangent)
+        let mut tangent = self.with_self_contact(u, 0, tangent);
+        if let (Some(contact), Some(own)) = (&self.contact, step.and_then(FrictionStep::own)) {
+            contact.add_friction_tangent(own, u, |row, column, value| {
+                tangent.add_at(row, column, value);
+            });
+        }
+        tangent
     }
 
     fn with_self_contact(&self, u: &[f64], mode: usize, tangent: BlockBanded) -> CoupledBanded {
@@ -216,6 +237,11 @@ impl Equilibrium for TubeProblem {
             let of_contact = contact.add_forces(&contact.at(u), &mut forces.residual);
             forces.potential += self.tube.sector.repeats() * of_contact.energy;
             forces.residual_scale = forces.residual_scale.hypot(of_contact.squares.sqrt());
+            if let Some(own) = self.friction.as_ref().and_then(|step| step.own()) {
+                let of_friction = contact.add_friction(own, u, &mut forces.residual);
+                forces.potential += self.tube.sector.repeats() * of_friction.energy;
+                forces.residual_scale = forces.residual_scale.hypot(of_friction.squares.sqrt());
+            }
         }
         self.tube.project_out_constraints(&mut forces.residual);
         // The energy of one cyclic sector, whose derivative is the residual.
@@ -237,27 +263,27 @@ impl Equilibrium for TubeProblem {
                 self.prescribed.clone(),
             )),
             Rings::Many(tube) => {
-                let friction = self.friction.as_ref().map(|step| step.friction());
+                let friction = self.friction.as_ref().and_then(|step| step.friction());
                 TubeTangent::Harmonic(tube.tangent(load, u, friction))
             }
         }
     }
     fn begin_step(&mut self, load: &Load, u: &[f64], history: &[f64]) {
-        if self.has_friction() {
-            let step = FrictionStep::begin(&self.tube, load, u, history);
-            self.friction = Some(Arc::new(step));
-        }
+        let contact = self.contact.as_deref();
+        let step = FrictionStep::begin(&self.tube, contact, (load, u), history);
+        self.friction = step.map(Arc::new);
     }
     fn update(&mut self, load: &Load, u: &[f64]) -> bool {
         let Some(step) = &mut self.friction else {
             return false;
         };
-        Arc::make_mut(step).update(&self.tube, load, u);
+        Arc::make_mut(step).update(&self.tube, self.contact.as_deref(), (load, u));
         true
     }
     fn history(&self, load: &Load, u: &[f64]) -> Vec<f64> {
         let step = self.friction.as_ref();
-        step.map_or(vec![], |step| step.history(&self.tube, load, u))
+        let contact = self.contact.as_deref();
+        step.map_or(vec![], |step| step.history(&self.tube, contact, (load, u)))
     }
     fn longest_step(&self, u: &[f64], step: &[f64]) -> f64 {
         let contact = self.contact.as_ref();

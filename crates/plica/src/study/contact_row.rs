@@ -2,7 +2,7 @@
 
 use super::Scale;
 use super::table::{Quantity, Visitor};
-use crate::contact::{ContactReport, FaceContact, FaceSurface};
+use crate::contact::{ContactReport, FaceContact};
 
 /// The names that a case has for the inner and the outer wall; no muscle has them.
 pub(super) const WALLS: [&str; 2] = ["inner-wall", "outer-wall"];
@@ -39,12 +39,18 @@ pub struct WallContactRow {
     pub surface_stretch: Option<f64>,
     /// Largest angle by which the wall turns within one element: [`FaceSurface::turn`].
     pub element_turn_deg: Option<f64>,
+    /// Sum of the sizes of the friction forces between the two sides; this and the next column exist only with friction.
+    pub friction_force: Option<f64>,
+    /// Energy that friction of the wall with itself has dissipated so far.
+    pub friction_work: Option<f64>,
 }
 
 impl ContactRow {
     /// Converts the contact of a state of a strain energy, in E·D³, to the units of its case.
     pub(super) fn new(contact: &ContactReport, energy: f64, scale: &Scale) -> Self {
-        let wall = |(face, surface): (Option<FaceContact>, FaceSurface)| {
+        let wall = |i: usize| {
+            let (face, surface) = (contact.faces[i], contact.surfaces[i]);
+            let friction = contact.friction.map(|faces| faces[i]);
             let of = |value: fn(FaceContact) -> f64| Some(face.map_or(0.0, value));
             let (length, force) = (scale.length, scale.force);
             WallContactRow {
@@ -55,9 +61,10 @@ impl ContactRow {
                 to: of(|face| face.from_to[1]).map(|z| length * z),
                 surface_stretch: Some(surface.stretch),
                 element_turn_deg: Some(surface.turn.to_degrees()),
+                friction_force: friction.map(|on| scale.force * on.force),
+                friction_work: friction.map(|on| scale.energy * on.dissipated),
             }
         };
-        let [outer, inner] = [0, 1].map(|i| (contact.faces[i], contact.surfaces[i]));
         Self {
             energy: Some(scale.energy * contact.energy),
             energy_share: Some(if energy > 0.0 {
@@ -65,7 +72,8 @@ impl ContactRow {
             } else {
                 0.0
             }),
-            walls: [wall(inner), wall(outer)],
+            // Inner, outer.
+            walls: [wall(1), wall(0)],
         }
     }
 
@@ -104,6 +112,9 @@ impl ContactRow {
                 ["surface_stretch", "element_turn_deg"].map(|of| format!("{of}_{name}"));
             v.optional(&stretch, Ratio, &mut wall.surface_stretch);
             v.optional(&turn, Degrees, &mut wall.element_turn_deg);
+            let [force, work] = ["force", "work"].map(|of| format!("friction_{of}_{name}"));
+            v.optional(&force, Force, &mut wall.friction_force);
+            v.optional(&work, Energy, &mut wall.friction_work);
         }
     }
 

@@ -41,6 +41,7 @@ pub fn plan(symmetry: Symmetry) -> Plan {
         mesh: coarse(),
         symmetry,
         contact: false,
+        friction: 0.0,
         start: None,
         modes: vec![],
         stages: vec![],

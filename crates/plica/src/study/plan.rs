@@ -20,6 +20,8 @@ pub struct Plan {
     pub symmetry: Symmetry,
     /// True if the wall may touch itself but not pass through itself.
     pub contact: bool,
+    /// Coefficient of friction of the wall with itself; 0 without contact.
+    pub friction: f64,
     /// The saved state that the study starts from; none for a start at rest.
     pub start: Option<Start>,
     /// The buckling modes that give imperfections their shapes.
@@ -171,7 +173,7 @@ impl Plan {
         let rings = self.mesh.rings(self.symmetry);
         let problem = TubeProblem::new(SplineTube::new(&self.tube, &self.mesh, rings));
         if self.contact {
-            problem.with_contact()
+            problem.with_contact().with_friction(self.friction)
         } else {
             problem
         }

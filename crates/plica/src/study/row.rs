@@ -259,8 +259,9 @@ impl Row {
         };
         let gained = stored(&self) - stored(previous);
         let by_friction = |row: &Self| {
-            let obstacles = row.obstacles.iter();
-            obstacles.filter_map(|on| on.friction_work).sum::<f64>()
+            let on = row.obstacles.iter().filter_map(|on| on.friction_work);
+            let own = row.contact.walls.iter().filter_map(|own| own.friction_work);
+            on.chain(own).sum::<f64>()
         };
         let friction = by_friction(&self) - by_friction(previous);
         self.released_energy =

@@ -10,6 +10,10 @@ const CONTACT: &str = "contact";
 /// Checks that a tube with contact is axisymmetric without twist, and that its splines are smooth.
 pub(super) fn check(case: &Case, symmetry: Symmetry, stages: &[Stage], problems: &mut Problems) {
     if !case.contact {
+        if case.friction > 0.0 && problems.are_sound(&["friction"]) {
+            let help = "set `contact = true`; an obstacle has a `friction` of its own";
+            problems.value("friction", "must be 0 without contact of the wall", help);
+        }
         return;
     }
     if symmetry != Symmetry::Axisymmetric && problems.are_sound(&["symmetry"]) {

@@ -49,6 +49,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
         mesh,
         symmetry,
         contact: case.contact,
+        friction: case.friction,
         start,
         modes,
         stages,

@@ -41,6 +41,24 @@ const OF_RING: &[Rule] = &[
         &["0.00099999", "0.5"],
     ),
     rule(
+        "friction",
+        "contact = true\nfriction = @",
+        &["0.0", "10.0"],
+        &["-0.1", "10.1"],
+    ),
+    rule(
+        "friction",
+        "contact = false\nfriction = @",
+        &["0.0"],
+        &["0.1"],
+    ),
+    rule(
+        "obstacles[1].friction",
+        "obstacles = [{ name = 'hose', shape = { sheath = { radius = 0.6 } }, friction = @ }]",
+        &["0.0", "10.0"],
+        &["-0.1", "10.1"],
+    ),
+    rule(
         "mesh.control_points.axial",
         "mesh.control_points.axial = @",
         &["4"],
