@@ -38,6 +38,8 @@ mod damping_controller;
 mod equilibrium;
 mod failure;
 mod forcing;
+#[cfg(test)]
+mod friction_tests;
 mod iterate;
 mod limit_point;
 mod line_search;

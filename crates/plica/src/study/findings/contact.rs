@@ -22,6 +22,9 @@ pub struct Contact {
     pub unresolved: Vec<Interval>,
     /// The largest angle by which a wall turns within an element, in degrees.
     pub largest_turn_deg: f64,
+    /// Energy that friction of the walls with themselves has dissipated along the path; none without friction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction_work: Option<f64>,
 }
 
 /// The first state in which a wall touches itself.
@@ -88,5 +91,9 @@ pub(super) fn contact(path: &Path<'_>) -> Option<Contact> {
             .iter()
             .flat_map(|row| row.contact.walls.iter().map(turn))
             .fold(0.0, f64::max),
+        friction_work: rows.last().and_then(|row| {
+            let [inner, outer] = [0, 1].map(|wall| row.contact.walls[wall].friction_work);
+            Some(inner? + outer?)
+        }),
     })
 }

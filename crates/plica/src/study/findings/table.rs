@@ -179,6 +179,9 @@ impl Findings {
             ),
         };
         let mut lines = vec![("wall touches itself".to_owned(), touches)];
+        if let Some(work) = found.friction_work {
+            lines.push(("friction on itself".to_owned(), self.friction(work)));
+        }
         if !found.crease.is_empty() {
             let SmallestStretch { wall, stretch, at } = &found.smallest_stretch;
             let mut line = format!(
@@ -195,6 +198,12 @@ impl Findings {
         lines
     }
 
+    /// Describes the work of friction.
+    fn friction(&self, work: f64) -> String {
+        let (work, unit) = (number(work, 3), &self.energy_unit);
+        format!("{work} {unit} dissipated; the stability test leaves friction out")
+    }
+
     /// Describes when a wall touches an obstacle.
     fn obstacle_lines(&self, found: &ObstacleContacts) -> Vec<Line> {
         let touches = match &found.largest_force {
@@ -208,9 +217,8 @@ impl Findings {
         };
         let mut lines = vec![(format!("touches {}", found.name), touches)];
         if let Some(work) = found.friction_work {
-            let work = format!("{} {} dissipated", number(work, 3), self.energy_unit);
-            let line = format!("{work}; the stability test leaves friction out");
-            lines.push((format!("friction on {}", found.name), line));
+            let of = format!("friction on {}", found.name);
+            lines.push((of, self.friction(work)));
         }
         if !found.overlapping.is_empty() {
             let states = list(&found.overlapping);
