@@ -5,7 +5,7 @@ use super::friction::SelfFriction;
 use super::tests::{contact, hairpin, moved};
 
 /// Largest elastic slip: some pairs stick and some slide.
-const ELASTIC: f64 = 4e-3;
+const ELASTIC: f64 = 2e-4;
 
 /// Returns the friction of a step to a hairpin, with slips from a step before.
 fn stepped(contact: &SelfContact, u: &[f64]) -> SelfFriction {
