@@ -5,7 +5,7 @@
 //! never used with another history.
 
 use super::Record;
-use crate::saved_state::{Array, SavedState, SavedStateError};
+use crate::saved_state::{Array, FRICTION, SavedState, SavedStateError};
 use crate::solve::{ContinuationState, PreviousPoint};
 use crate::study::{Continuation, Plan, Row};
 use std::collections::BTreeMap;
@@ -30,7 +30,6 @@ const FILES: &str = "files";
 const PREVIOUS: &str = "previous";
 const TANGENT: &str = "previous_tangent";
 const VELOCITY: &str = "velocity";
-const FRICTION: &str = "friction";
 /// Number that stands for no value among the numbers of the path.
 const NONE: f64 = -1.0;
 

@@ -9,9 +9,9 @@ use super::{
 use crate::contact;
 use crate::measure::{Face, Meridians};
 use crate::monitor::Monitor;
-use crate::saved_state::SavedState;
+use crate::saved_state::{Array, FRICTION, SavedState};
 use crate::study::{Condition, Ending, Plan, Row, Scale, State, Study, StudyError};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 /// A study and the run directory that its states are written to.
 ///
@@ -338,6 +338,13 @@ impl<'a> Run<'a> {
     fn saved(&self, state: &State) -> SavedState {
         let muscles = self.plan.tube.muscles.iter();
         let obstacles = self.plan.tube.obstacles.iter();
+        let history = (!state.history.is_empty()).then(|| {
+            let array = Array {
+                shape: vec![state.history.len()],
+                values: state.history.clone(),
+            };
+            (FRICTION.to_owned(), array)
+        });
         SavedState {
             stage: state.stage.clone(),
             row: state.number,
@@ -347,7 +354,7 @@ impl<'a> Run<'a> {
             load: state.load.clone(),
             layout: self.plan.layout(),
             u: state.unknowns.clone(),
-            arrays: BTreeMap::new(),
+            arrays: history.into_iter().collect(),
         }
     }
 

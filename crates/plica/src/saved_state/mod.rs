@@ -40,6 +40,17 @@ pub struct SavedState {
     pub arrays: BTreeMap<String, Array>,
 }
 
+/// Name of the array of the history of friction.
+pub(crate) const FRICTION: &str = "friction";
+
+impl SavedState {
+    /// Returns the history of friction, from which a path continues; empty without friction.
+    pub fn history(&self) -> &[f64] {
+        let array = self.arrays.get(FRICTION);
+        array.map_or(&[], |array| &array.values)
+    }
+}
+
 /// An array of numbers, the last index fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Array {

@@ -46,7 +46,7 @@ pub struct ContinuationState {
 
 impl ContinuationState {
     /// Returns the continuation state at the start of a segment.
-    pub(super) fn at_start(velocity: Vec<f64>, history: Vec<f64>) -> Self {
+    pub fn at_start(velocity: Vec<f64>, history: Vec<f64>) -> Self {
         Self {
             reached: 0.0,
             halving_level: 0,

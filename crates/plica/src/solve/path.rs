@@ -161,6 +161,11 @@ impl<P: Equilibrium> Path<P> {
         &self.problem
     }
 
+    /// Returns the history of the last accepted state.
+    pub fn history(&self) -> &[f64] {
+        &self.continuation.history
+    }
+
     /// Returns the last accepted state.
     pub fn state(&self) -> &State<P::Load> {
         &self.state

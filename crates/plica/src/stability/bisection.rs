@@ -3,7 +3,7 @@
 use super::{Harmonics, Quantity, StabilityError, Transition};
 use crate::equilibrium::TubeProblem;
 use crate::monitor::Monitor;
-use crate::solve::{Method, Path, Settings, State};
+use crate::solve::{ContinuationState, Method, Path, Settings, State};
 use crate::tube::Load;
 
 /// Largest difference of two solutions that count as the same state, in D.
@@ -17,6 +17,8 @@ pub struct Point {
     pub along: f64,
     pub load: Load,
     pub u: Vec<f64>,
+    /// History of friction.
+    pub history: Vec<f64>,
     /// Number of negative eigenvalues of every circumferential mode.
     pub negative: Vec<usize>,
 }
@@ -97,7 +99,7 @@ impl Bisection<'_> {
             found.push(bracket(a, b, transition));
             return Ok(());
         }
-        let Some((state, _)) = self.advance(a, b, 0.5, monitor)? else {
+        let Some((state, history, _)) = self.advance(a, b, 0.5, monitor)? else {
             found.push(bracket(a, b, Transition::Unfollowed));
             return Ok(());
         };
@@ -106,6 +108,7 @@ impl Bisection<'_> {
             negative: self.harmonics.negative(&state.load, &state.u),
             load: state.load,
             u: state.u,
+            history,
         };
         self.narrow(a, &middle, halvings - 1, found, monitor)?;
         self.narrow(&middle, b, halvings - 1, found, monitor)
@@ -118,7 +121,7 @@ impl Bisection<'_> {
         b: &Point,
         monitor: &mut dyn Monitor,
     ) -> Result<Connection, StabilityError> {
-        let Some((end, method)) = self.advance(a, b, 1.0, monitor)? else {
+        let Some((end, _, method)) = self.advance(a, b, 1.0, monitor)? else {
             return Ok(Connection {
                 transition: Transition::Unfollowed,
                 reaches: false,
@@ -134,31 +137,33 @@ impl Bisection<'_> {
         })
     }
 
-    /// Returns the state at the fraction `t` of the load step between two states, and the method that found it; none
-    /// if no equilibrium was found.
+    /// Returns the state at the fraction `t` of the load step between two states, its history, and the method that found
+    /// it; none if no equilibrium was found.
     fn advance(
         &self,
         a: &Point,
         b: &Point,
         t: f64,
         monitor: &mut dyn Monitor,
-    ) -> Result<Option<(State<Load>, Method)>, StabilityError> {
-        let begun = Path::begin(
-            self.problem,
+    ) -> Result<Option<(State<Load>, Vec<f64>, Method)>, StabilityError> {
+        let begun = Path::resume(
+            self.problem.clone(),
+            [a.load.clone(), b.load.clone()],
             a.load.clone(),
             a.u.clone(),
+            ContinuationState::at_start(vec![0.0; a.u.len()], a.history.clone()),
             self.settings.clone(),
         );
         let Ok(mut path) = begun else {
             return Ok(None);
         };
-        path.begin_segment(b.load.clone());
         let step = match path.advance(t, monitor) {
             Ok(step) => step,
             Err(error) if error.is_cancelled() => return Err(StabilityError::Cancelled),
             Err(_) => return Ok(None),
         };
-        Ok(Some((path.state().clone(), step.method)))
+        let history = path.history().to_vec();
+        Ok(Some((path.state().clone(), history, step.method)))
     }
 }
 
@@ -217,6 +222,7 @@ mod tests {
                 along,
                 load: state.load.clone(),
                 u: state.u.clone(),
+                history: vec![],
                 negative: harmonics.negative(&state.load, &state.u),
             }
         };

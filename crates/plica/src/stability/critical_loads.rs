@@ -10,7 +10,7 @@ use crate::matrix::NoEigenpairs;
 use crate::monitor::{Monitor, Part};
 use crate::run_directory::RunDirectory;
 use crate::saved_state::SavedState;
-use crate::solve::{Path, Scheme, Settings};
+use crate::solve::{ContinuationState, Path, Scheme, Settings};
 use crate::study::Plan;
 use std::path::{self, PathBuf};
 
@@ -133,7 +133,16 @@ impl<'a> CriticalLoads<'a> {
             return Err(StabilityError::Twisted { row: state.row });
         }
         let (load, u) = (state.load.clone(), state.u.clone());
-        let relative_residual = match Path::begin(&self.problem, load, u, self.settings.clone()) {
+        let history = state.history().to_vec();
+        let path = Path::resume(
+            self.problem.clone(),
+            [load.clone(), load.clone()],
+            load,
+            u,
+            ContinuationState::at_start(vec![0.0; state.u.len()], history),
+            self.settings.clone(),
+        );
+        let relative_residual = match path {
             Ok(path) if path.state().in_equilibrium() || state.row == 0 => return Ok(state),
             Ok(path) => path.state().relative_residual,
             Err(_) => f64::INFINITY,
@@ -163,6 +172,7 @@ impl<'a> CriticalLoads<'a> {
             along,
             load: state.load.clone(),
             u: state.u.clone(),
+            history: state.history().to_vec(),
             negative: modes.iter().map(|mode| mode.negative).collect(),
         };
         let Some(last) = self.result.states.last() else {

@@ -230,7 +230,9 @@ fn read(plan: &Plan, problem: &TubeProblem, file: &Path) -> Result<SavedState, S
     };
     let state = SavedState::read(file).map_err(error)?;
     plan.accepts(&state).map_err(error)?;
-    let forces = problem.forces(&state.load, &state.u);
+    let mut step = problem.clone();
+    step.begin_step(&state.load, &state.u, state.history());
+    let forces = step.forces(&state.load, &state.u);
     let relative_residual =
         forces.map_or(f64::INFINITY, |f| f.relative_residual(problem.prescribed()));
     if relative_residual <= EQUILIBRIUM || (state.row == 0 && relative_residual.is_finite()) {

@@ -350,7 +350,7 @@ impl Study {
             stage_fraction: path.reached(),
         };
         let seconds = self.since.elapsed().as_secs_f64();
-        let (state, work_point) = State::evaluate(
+        let (mut state, work_point) = State::evaluate(
             (&self.plan, path.problem()),
             self.work_point.as_ref(),
             &milestone,
@@ -359,6 +359,7 @@ impl Study {
             stability,
             seconds,
         );
+        state.history = path.history().to_vec();
         self.work_point = Some(work_point);
         self.next_number += 1;
         self.since = Instant::now();

@@ -30,6 +30,8 @@ pub struct State {
     /// Displacements of the control points of the cyclic sector, in D; [`crate::saved_state::Layout::shape`] has
     /// the order of the indices.
     pub unknowns: Vec<f64>,
+    /// History of friction ([`crate::solve::Equilibrium::history`]); empty without friction.
+    pub history: Vec<f64>,
     /// Strain energy W = ∫ w det Fp dV₀ of the whole tube, over the grown volume.
     pub energy: f64,
     /// Strain energy ∫ w dV₀ of the whole tube, over the ungrown volume, as some other programs report it.
@@ -174,6 +176,7 @@ impl State {
             sectors: tube.sector.repeats(),
             load: accepted.load.clone(),
             unknowns: accepted.u.clone(),
+            history: vec![],
         };
         (state, point)
     }
