@@ -12,15 +12,11 @@
 //! For the λ and T of some state the forces have a potential, ∫ μλ f₀(|s|) dA₀. To solve, to take λ and T of the solution,
 //! and to solve again leads to the forces of Coulomb's law, which has no potential.
 
+use super::super::SplineTube;
 use super::super::coulomb::Slip;
 use super::super::kinematics::Vector;
-use super::super::low_harmonics::LowHarmonics;
-use super::super::{Forces, MatrixFreeTangent, SplineTube};
-use super::low_harmonics::add_form;
+use super::PointContact;
 use super::obstacles::{Copy, PlacedObstacle};
-use super::{LoadedWall, PointContact, WallPoint, WallTangent};
-use crate::matrix::BlockBanded;
-use crate::rings::Rotation;
 use crate::tube::{Load, turned};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -40,12 +36,12 @@ pub struct StepStart {
 #[derive(Clone, Debug)]
 pub struct Friction {
     /// Of the inner and the outer wall.
-    walls: [Arc<WallFriction>; 2],
+    pub(super) walls: [Arc<WallFriction>; 2],
 }
 
 /// Friction on one wall.
 #[derive(Debug)]
-struct WallFriction {
+pub(super) struct WallFriction {
     /// The first contact of each quadrature point, and the number of contacts.
     first: Vec<usize>,
     contacts: Vec<FrictionContact>,
@@ -70,8 +66,8 @@ struct FrictionContact {
 /// Friction on a wall with the positions of the copies of the obstacles.
 #[derive(Clone, Debug)]
 pub struct PlacedFriction {
-    friction: Arc<WallFriction>,
-    positions: Vec<Vector<f64>>,
+    pub(super) friction: Arc<WallFriction>,
+    pub(super) positions: Vec<Vector<f64>>,
 }
 
 /// Friction of a tube on one obstacle.
@@ -205,141 +201,6 @@ impl SplineTube {
         }
         found
     }
-
-    /// Adds potential and forces of friction to those of a state.
-    pub fn add_friction(&self, friction: &Friction, load: &Load, u: &[f64], forces: &mut Forces) {
-        let mut squares = forces.residual_scale * forces.residual_scale;
-        for wall in self.friction_walls(Some(friction), load) {
-            for [_, energy] in self.add_wall(&wall, u, &mut squares, forces) {
-                forces.friction += self.sector.repeats() * energy;
-            }
-        }
-    }
-
-    /// Adds friction to the assembled tangent of a state.
-    pub fn add_friction_tangent(
-        &self,
-        friction: &Friction,
-        load: &Load,
-        u: &[f64],
-        matrix: &mut BlockBanded,
-    ) {
-        let rotations: Vec<Vec<Vec<Rotation>>> = self
-            .around
-            .iter()
-            .map(|at| vec![at.ring_values.iter().map(Rotation::from).collect()])
-            .collect();
-        let walls = self.friction_walls(Some(friction), load);
-        self.add_tangent_of_walls(&walls, u, &rotations, matrix);
-    }
-
-    /// Adds friction to a matrix-free tangent at its state.
-    pub fn add_friction_to(
-        &self,
-        friction: &Friction,
-        load: &Load,
-        u: &[f64],
-        tangent: &mut MatrixFreeTangent,
-    ) {
-        let walls = WallTangent {
-            walls: self.friction_walls(Some(friction), load).into(),
-            u: u.to_vec(),
-        };
-        self.add_average_walls(&walls, &mut tangent.average);
-        match &mut tangent.walls {
-            Some(own) => own.walls.extend(walls.walls),
-            none => *none = Some(walls),
-        }
-    }
-
-    /// Adds friction to the tangent on low harmonics, at all quadrature points.
-    pub fn add_low_harmonic_friction(
-        &self,
-        low: &LowHarmonics,
-        friction: &Friction,
-        load: &Load,
-        u: &[f64],
-        matrix: &mut BlockBanded,
-    ) {
-        let columns = 3 * low.modes();
-        let waves: Vec<Vec<f64>> = self
-            .around
-            .iter()
-            .map(|at| low.waves_at(self, at.s))
-            .collect();
-        for (number, wall) in self.friction_walls(Some(friction), load).iter().enumerate() {
-            // 1, t, t² at the wall.
-            let through = [1.0, if number == 0 { -1.0 } else { 1.0 }, 1.0];
-            for along @ (batch, lane) in self.elements_along() {
-                for qz in 0..=self.degree() {
-                    let rings = self.rings_along(wall, u, along, qz);
-                    let mut own = vec![0.0; columns * columns];
-                    let mut is_loaded = false;
-                    for element in 0..self.sector.rings {
-                        for (a, around) in self.around.iter().enumerate() {
-                            let at = WallPoint {
-                                element,
-                                number: self.point_number(along, qz, [element, a]),
-                                z: batch.z[qz].0[lane],
-                                around,
-                            };
-                            let moved = self.surface_displacement(&rings, element, around);
-                            let weight = batch.weight[qz].0[lane] * around.weight;
-                            let Some(blocks) = self.wall_blocks(wall, &moved, &at, weight) else {
-                                continue;
-                            };
-                            is_loaded = true;
-                            let value = &waves[a][3 * element * columns..][..3 * columns];
-                            add_form(value, &blocks[5], value, &mut own);
-                        }
-                    }
-                    if !is_loaded {
-                        continue;
-                    }
-                    for b in 0..=self.degree() {
-                        for a in b..=self.degree() {
-                            let both = self.along(along, qz, a).0 * self.along(along, qz, b).0;
-                            for (x, row) in own.chunks_exact(columns).enumerate() {
-                                for (y, entry) in row.iter().enumerate() {
-                                    for (c, f) in through.iter().enumerate() {
-                                        for (d, g) in through.iter().enumerate() {
-                                            matrix.add_at(
-                                                batch.first + lane + b,
-                                                a - b,
-                                                c * columns + x,
-                                                d * columns + y,
-                                                f * g * both * entry,
-                                            );
-                                        }
-                                    }
-                                }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    /// Returns the inner and the outer wall with friction alone.
-    pub(super) fn friction_walls(
-        &self,
-        friction: Option<&Friction>,
-        load: &Load,
-    ) -> [LoadedWall; 2] {
-        let placed = self.placed_obstacles(load);
-        let positions: Vec<Vector<f64>> = copies(&placed)
-            .iter()
-            .map(|(_, copy)| copy.placement.position)
-            .collect();
-        [0, 1].map(|number| LoadedWall {
-            friction: friction.map(|friction| PlacedFriction {
-                friction: friction.walls[number].clone(),
-                positions: positions.clone(),
-            }),
-            ..self.bare_wall(number)
-        })
-    }
 }
 
 impl PlacedFriction {
@@ -388,7 +249,7 @@ impl PlacedFriction {
 }
 
 /// Returns the copies of all obstacles.
-fn copies(obstacles: &[PlacedObstacle]) -> Vec<(&PlacedObstacle, &Copy)> {
+pub(super) fn copies(obstacles: &[PlacedObstacle]) -> Vec<(&PlacedObstacle, &Copy)> {
     let of = |obstacle| PlacedObstacle::copies(obstacle).map(move |copy| (obstacle, copy));
     obstacles.iter().flat_map(of).collect()
 }

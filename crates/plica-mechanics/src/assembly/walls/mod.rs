@@ -20,6 +20,7 @@
 
 mod average;
 mod friction;
+mod friction_forces;
 #[cfg(test)]
 mod friction_tests;
 mod low_harmonics;
