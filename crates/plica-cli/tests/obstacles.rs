@@ -66,7 +66,8 @@ fn a_tube_that_contracts_onto_a_rod_has_its_contact_in_the_history() {
 #[test]
 fn a_run_with_obstacles_is_resumed_to_the_same_bytes() {
     let directory = scratch("obstacles-resumed");
-    fs::write(directory.join("case.toml"), CASE).unwrap();
+    let case = CASE.replace("{ radius = 0.3 } }", "{ radius = 0.3 } }\nfriction = 0.2");
+    fs::write(directory.join("case.toml"), &case).unwrap();
     succeed(&directory, &["run", "case.toml", "--out", "whole"]);
     let until = [
         "run",
@@ -83,8 +84,16 @@ fn a_run_with_obstacles_is_resumed_to_the_same_bytes() {
         crate::common::without_times(&text)
     };
     assert_eq!(history("whole"), history("cut"));
+    let friction = Table::history(&directory.join("whole")).numbers("friction_work_scope");
+    assert!(
+        friction[6] > 0.0 && friction[9] > friction[6],
+        "{friction:?}"
+    );
+    // The stability test follows the path with the friction of its states, and leaves it out of its verdicts.
+    let stability = succeed(&directory, &["stability", "whole"]);
+    assert!(stability.contains("tested"), "{stability}");
     // Another obstacle is another tube.
-    let other = CASE.replace("radius = 0.3 }", "radius = 0.29 }");
+    let other = case.replace("radius = 0.3 }", "radius = 0.29 }");
     fs::write(directory.join("other.toml"), other).unwrap();
     let refusal = fail(
         &directory,

@@ -39,7 +39,7 @@ table! {
         contact: bool = default("false");
         /// The coefficient of friction of the wall with itself (Coulomb's law), with `contact = true`. The stability test
         /// leaves friction out.
-        friction: f64 = default("0.0").from(0.0).to(10.0);
+        friction: f64 = default("0.0").from(0.0).to(2.0);
         /// A saved state to begin from, instead of the tube at rest. The state may have another mesh, and
         /// a higher symmetry: it is interpolated and brought to equilibrium first.
         start: Option<Start> = described("at rest", "{ state = \"states/state-0015.safetensors\" }");
@@ -401,7 +401,7 @@ table! {
         /// not touch the tube at rest.
         shape: ObstacleShape = required("{ rod = { radius = 0.2 } }");
         /// The coefficient of friction of the walls on it (Coulomb's law). The stability test leaves friction out.
-        friction: f64 = default("0.0").from(0.0).to(10.0);
+        friction: f64 = default("0.0").from(0.0).to(2.0);
     }
 }
 

@@ -8,12 +8,15 @@ use super::state::Solution;
 /// Largest number of solutions of a step after the first.
 const REPETITIONS: usize = 20;
 
+/// Repetition from which each must reduce the residual, and factor by which.
+const REDUCTION: (usize, f64) = (4, 0.8);
+
 /// Updates the energy of a step to that of a solution, and solves again by `again`, until the residual with the energy of
 /// the solution itself is within the tolerance, or 1e-6 if that is smaller. Returns the last solution.
 ///
 /// # Errors
 ///
-/// That of `again`, or [`Cause::Friction`] after 20 repetitions.
+/// That of `again`, or [`Cause::Friction`] after 20 repetitions, or if they do not reduce the residual.
 pub(super) fn repeated<P: Equilibrium>(
     problem: &mut P,
     load: &P::Load,
@@ -22,6 +25,7 @@ pub(super) fn repeated<P: Equilibrium>(
     mut again: impl FnMut(&P, Vec<f64>) -> Result<Solution, Failure<P::EvaluationError>>,
 ) -> Result<Solution, Failure<P::EvaluationError>> {
     let tolerance = settings.tolerance.max(EQUILIBRIUM);
+    let mut before = f64::INFINITY;
     for repetition in 0.. {
         if !problem.update(load, &found.u) {
             break;
@@ -33,7 +37,9 @@ pub(super) fn repeated<P: Equilibrium>(
         if relative_residual <= tolerance {
             break;
         }
-        if repetition == REPETITIONS {
+        let stagnates = repetition >= REDUCTION.0 && relative_residual > REDUCTION.1 * before;
+        before = relative_residual;
+        if repetition == REPETITIONS || stagnates {
             return Err(Failure::NotConverged {
                 cause: Cause::Friction,
                 linear_solves: 0,

@@ -20,6 +20,7 @@ pub fn forbidden_changes(old: &Plan, new: &Plan, progress: Option<(usize, f64)>)
     require(old.mesh == new.mesh, "the mesh".into());
     require(old.symmetry == new.symmetry, "the symmetry".into());
     require(old.contact == new.contact, "the contact".into());
+    require(old.friction == new.friction, "the friction".into());
     require(old.units == new.units, "the units".into());
     require(
         old.end_names == new.end_names,
@@ -92,6 +93,7 @@ mod tests {
         assert!(change(|plan| plan.stages.truncate(2)).is_empty());
         assert_eq!(change(|plan| plan.tube.length = 2.0), ["the tube"]);
         assert_eq!(change(|plan| plan.mesh.axial = 9), ["the mesh"]);
+        assert_eq!(change(|plan| plan.friction = 0.1), ["the friction"]);
         assert_eq!(
             change(|plan| plan.symmetry = Symmetry::Fold(2)),
             ["the symmetry"]

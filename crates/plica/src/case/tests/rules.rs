@@ -43,8 +43,8 @@ const OF_RING: &[Rule] = &[
     rule(
         "friction",
         "contact = true\nfriction = @",
-        &["0.0", "10.0"],
-        &["-0.1", "10.1"],
+        &["0.0", "2.0"],
+        &["-0.1", "2.1"],
     ),
     rule(
         "friction",
@@ -55,8 +55,8 @@ const OF_RING: &[Rule] = &[
     rule(
         "obstacles[1].friction",
         "obstacles = [{ name = 'hose', shape = { sheath = { radius = 0.6 } }, friction = @ }]",
-        &["0.0", "10.0"],
-        &["-0.1", "10.1"],
+        &["0.0", "2.0"],
+        &["-0.1", "2.1"],
     ),
     rule(
         "mesh.control_points.axial",
