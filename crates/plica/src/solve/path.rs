@@ -308,7 +308,7 @@ impl<P: Equilibrium> Path<P> {
         let found = newton(&self.problem, &load, start, settings, effort, monitor);
         let problem = &mut self.problem;
         let found = found.and_then(|found| {
-            repeated(problem, &load, found, settings, |problem, u| {
+            repeated(problem, &load, found, settings, |problem, u, settings| {
                 newton(problem, &load, u, settings, effort, monitor)
             })
         });
@@ -346,7 +346,7 @@ impl<P: Equilibrium> Path<P> {
         let found = relaxation(&self.problem, &load, start, settings, effort, monitor);
         let problem = &mut self.problem;
         let found = found.and_then(|found| {
-            repeated(problem, &load, found, settings, |problem, u| {
+            repeated(problem, &load, found, settings, |problem, u, settings| {
                 relaxation(problem, &load, u, settings, effort, monitor)
             })
         });
@@ -381,7 +381,7 @@ impl<P: Equilibrium> Path<P> {
             velocity.fill(0.0);
             found = relaxation(&*problem, &load, found.u, settings, effort, monitor)
                 .map_err(|failed| (Method::Relaxation, failed))?;
-            found = repeated(problem, &load, found, settings, |problem, u| {
+            found = repeated(problem, &load, found, settings, |problem, u, settings| {
                 relaxation(problem, &load, u, settings, effort, monitor)
             })
             .map_err(|failed| (Method::Relaxation, failed))?;

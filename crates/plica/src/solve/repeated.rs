@@ -8,6 +8,9 @@ use super::state::Solution;
 /// Largest number of solutions of a step after the first.
 const REPETITIONS: usize = 20;
 
+/// Tolerance of the solutions but the first, relative to the residual with the energy of the solution before.
+const INEXACT: f64 = 0.02;
+
 /// Repetition from which each must reduce the residual, and factor by which.
 const REDUCTION: (usize, f64) = (4, 0.8);
 
@@ -22,7 +25,7 @@ pub(super) fn repeated<P: Equilibrium>(
     load: &P::Load,
     mut found: Solution,
     settings: &Settings,
-    mut again: impl FnMut(&P, Vec<f64>) -> Result<Solution, Failure<P::EvaluationError>>,
+    mut again: impl FnMut(&P, Vec<f64>, &Settings) -> Result<Solution, Failure<P::EvaluationError>>,
 ) -> Result<Solution, Failure<P::EvaluationError>> {
     let tolerance = settings.tolerance.max(EQUILIBRIUM);
     let mut before = f64::INFINITY;
@@ -47,7 +50,11 @@ pub(super) fn repeated<P: Equilibrium>(
                 worst_unknown: found.forces.worst_unknown(problem.prescribed()),
             });
         }
-        let next = again(problem, found.u)?;
+        let settings = Settings {
+            tolerance: settings.tolerance.max(INEXACT * relative_residual),
+            ..settings.clone()
+        };
+        let next = again(problem, found.u, &settings)?;
         found = Solution {
             damping_work: found.damping_work + next.damping_work,
             ..next
