@@ -67,6 +67,9 @@ pub(super) struct Manifest {
     /// Number of states in which a crease may be finer than the mesh; none without contact.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub states_unresolved: Option<usize>,
+    /// True in a run with friction, which the stability test leaves out; none without friction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stability_without_friction: Option<bool>,
     /// Profiles and saved states that are missing or damaged at the end of the run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_files: Vec<String>,
@@ -109,6 +112,7 @@ impl Manifest {
             states_closed: 0,
             states_touching: plan.contact.then_some(0),
             states_unresolved: plan.contact.then_some(0),
+            stability_without_friction: plan.has_friction().then_some(true),
             missing_files: vec![],
             stability: None,
             closed: false,

@@ -73,6 +73,7 @@ impl<'a> CriticalLoads<'a> {
                 tolerance,
                 states: vec![],
                 changes: vec![],
+                leaves_out_friction: plan.has_friction(),
             },
             problem,
             harmonics,

@@ -138,6 +138,7 @@ impl<'a> LowestModes<'a> {
             states: found.clone().map(|one| one.spectrum.clone()).collect(),
             shown: None,
             modes: found.flat_map(|one| one.files.clone()).collect(),
+            leaves_out_friction: self.plan.has_friction(),
         }
     }
 }

@@ -107,6 +107,9 @@ impl PathStability {
         line(&mut page, "first loss", &first);
         let tested = format!("{states} states ({numbers}), circumferential modes 0 to {highest}");
         line(&mut page, "tested", &tested);
+        if self.leaves_out_friction {
+            line(&mut page, "left out", "friction");
+        }
         page
     }
 

@@ -51,6 +51,9 @@ impl Spectra {
             );
         }
         let _ = writeln!(page, "  {:<22} states {}", "tested", self.coverage().list());
+        if self.leaves_out_friction {
+            let _ = writeln!(page, "  {:<22} friction", "left out");
+        }
         page
     }
 

@@ -179,6 +179,12 @@ impl Plan {
         }
     }
 
+    /// Returns whether the wall has friction on itself or on an obstacle.
+    pub fn has_friction(&self) -> bool {
+        let obstacles = self.tube.obstacles.iter();
+        self.friction > 0.0 || obstacles.into_iter().any(|on| on.friction > 0.0)
+    }
+
     /// Returns the names of ends that are not named otherwise.
     pub fn usual_end_names() -> [String; 2] {
         ["colon", "ileum"].map(String::from)
