@@ -29,6 +29,14 @@ pub enum Failure<E: std::error::Error> {
         /// Free unknown with the largest residual.
         worst_unknown: usize,
     },
+    /// The forces that a step takes from a state, as those of friction, did not become those of the solution.
+    #[error("friction does not become that of the solution (residual {relative_residual:.1e})")]
+    Friction {
+        /// Relative residual reached.
+        relative_residual: f64,
+        /// Free unknown with the largest residual.
+        worst_unknown: usize,
+    },
     /// The largest admitted number of pseudo-time steps did not bring the tube to rest.
     #[error("still moving by {displacement:.1e} D per pseudo-time step after {steps} steps")]
     StillMoving {
@@ -56,8 +64,6 @@ pub enum Cause {
     InaccurateSolves,
     /// The largest admitted number of linear solves was reached.
     SolveLimit,
-    /// The forces of friction did not become those of the solution.
-    Friction,
 }
 
 impl std::fmt::Display for Cause {
@@ -66,7 +72,6 @@ impl std::fmt::Display for Cause {
             Self::NoDescent => "no step lowered the energy",
             Self::InaccurateSolves => "the linear solver misses the required accuracy",
             Self::SolveLimit => "not in equilibrium",
-            Self::Friction => "friction does not become that of the solution",
         })
     }
 }
@@ -84,9 +89,9 @@ impl<E: std::error::Error> Failure<E> {
     /// Returns the unknown at which the failure shows most, if there is one.
     pub fn worst_unknown(&self) -> Option<usize> {
         match self {
-            Self::NotConverged { worst_unknown, .. } | Self::StillMoving { worst_unknown, .. } => {
-                Some(*worst_unknown)
-            }
+            Self::NotConverged { worst_unknown, .. }
+            | Self::Friction { worst_unknown, .. }
+            | Self::StillMoving { worst_unknown, .. } => Some(*worst_unknown),
             _ => None,
         }
     }

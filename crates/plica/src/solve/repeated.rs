@@ -1,7 +1,7 @@
 //! Repetition of a step whose energy depends on its solution.
 
 use super::equilibrium::{EQUILIBRIUM, Equilibrium};
-use super::failure::{Cause, Failure};
+use super::failure::Failure;
 use super::settings::Settings;
 use super::state::Solution;
 
@@ -19,7 +19,7 @@ const REDUCTION: (usize, f64) = (4, 0.8);
 ///
 /// # Errors
 ///
-/// That of `again`, or [`Cause::Friction`] after 20 repetitions, or if they do not reduce the residual.
+/// That of `again`, or [`Failure::Friction`] after 20 repetitions, or if they do not reduce the residual.
 pub(super) fn repeated<P: Equilibrium>(
     problem: &mut P,
     load: &P::Load,
@@ -43,9 +43,7 @@ pub(super) fn repeated<P: Equilibrium>(
         let stagnates = repetition >= REDUCTION.0 && relative_residual > REDUCTION.1 * before;
         before = relative_residual;
         if repetition == REPETITIONS || stagnates {
-            return Err(Failure::NotConverged {
-                cause: Cause::Friction,
-                linear_solves: 0,
+            return Err(Failure::Friction {
                 relative_residual,
                 worst_unknown: found.forces.worst_unknown(problem.prescribed()),
             });

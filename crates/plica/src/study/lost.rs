@@ -208,6 +208,9 @@ fn advice(phase: &Phase, error: &PathError<Inverted>) -> &'static str {
             cause: Cause::InaccurateSolves,
             ..
         }) => "Try more steps in this stage, or fewer or more even elements (mesh.refine)",
+        Some(Failure::Friction { .. }) => {
+            "Try a smaller coefficient of friction, or more steps in this stage"
+        }
         Some(Failure::Evaluation(_)) => {
             "Try more steps in this stage, more solver.max_step_halvings, or a finer mesh there (mesh.refine)"
         }
