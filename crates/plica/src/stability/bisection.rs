@@ -39,6 +39,14 @@ pub struct Bisection<'a> {
     pub tolerance: f64,
 }
 
+/// A state that was found between two others.
+struct Found {
+    state: State<Load>,
+    /// History of friction.
+    history: Vec<f64>,
+    method: Method,
+}
+
 /// Result of following the path from one state to the load of another.
 struct Connection {
     transition: Transition,
@@ -99,7 +107,7 @@ impl Bisection<'_> {
             found.push(bracket(a, b, transition));
             return Ok(());
         }
-        let Some((state, history, _)) = self.advance(a, b, 0.5, monitor)? else {
+        let Some(Found { state, history, .. }) = self.advance(a, b, 0.5, monitor)? else {
             found.push(bracket(a, b, Transition::Unfollowed));
             return Ok(());
         };
@@ -121,15 +129,15 @@ impl Bisection<'_> {
         b: &Point,
         monitor: &mut dyn Monitor,
     ) -> Result<Connection, StabilityError> {
-        let Some((end, _, method)) = self.advance(a, b, 1.0, monitor)? else {
+        let Some(end) = self.advance(a, b, 1.0, monitor)? else {
             return Ok(Connection {
                 transition: Transition::Unfollowed,
                 reaches: false,
             });
         };
-        let apart = end.u.iter().zip(&b.u).map(|(x, y)| (x - y).abs());
+        let apart = end.state.u.iter().zip(&b.u).map(|(x, y)| (x - y).abs());
         Ok(Connection {
-            transition: match method {
+            transition: match end.method {
                 Method::Relaxation => Transition::Snap,
                 _ => Transition::Smooth,
             },
@@ -137,15 +145,14 @@ impl Bisection<'_> {
         })
     }
 
-    /// Returns the state at the fraction `t` of the load step between two states, its history, and the method that found
-    /// it; none if no equilibrium was found.
+    /// Returns the state at the fraction `t` of the load step between two states; none if no equilibrium was found.
     fn advance(
         &self,
         a: &Point,
         b: &Point,
         t: f64,
         monitor: &mut dyn Monitor,
-    ) -> Result<Option<(State<Load>, Vec<f64>, Method)>, StabilityError> {
+    ) -> Result<Option<Found>, StabilityError> {
         let begun = Path::resume(
             self.problem.clone(),
             [a.load.clone(), b.load.clone()],
@@ -162,8 +169,11 @@ impl Bisection<'_> {
             Err(error) if error.is_cancelled() => return Err(StabilityError::Cancelled),
             Err(_) => return Ok(None),
         };
-        let history = path.history().to_vec();
-        Ok(Some((path.state().clone(), history, step.method)))
+        Ok(Some(Found {
+            state: path.state().clone(),
+            history: path.history().to_vec(),
+            method: step.method,
+        }))
     }
 }
 
