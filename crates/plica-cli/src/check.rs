@@ -43,7 +43,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
                 "{} D long, wall {} D thick{}",
                 tube.length,
                 tube.thickness,
-                match tube.material {
+                match tube.layers[0].material {
                     Material::NeoHookean(NeoHookean {
                         volumetric: Volumetric::Quadratic,
                         ..

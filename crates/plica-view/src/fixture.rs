@@ -4,14 +4,16 @@ use plica::assembly::SplineTube;
 use plica::material::{Material, NeoHookean};
 use plica::saved_state::SavedState;
 use plica::study::{Output, Plan};
-use plica::tube::{Mesh, Support, Symmetry, Tube};
+use plica::tube::{Mesh, Support, Symmetry, Tube, WallLayer};
 
 /// A tube of length D with free ends and without muscles.
 pub fn short() -> Tube {
     Tube {
         length: 1.0,
         thickness: 0.1,
-        material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+        layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+            1.0, 0.3,
+        )))],
         muscles: vec![],
         ends: [Support::Free; 2],
         imperfections: vec![],
@@ -30,6 +32,7 @@ pub fn coarse() -> Mesh {
         grading: 1.0,
         contact_range: 0.25,
         volumetric: Default::default(),
+        layers: vec![],
     }
 }
 

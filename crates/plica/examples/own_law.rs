@@ -85,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "
     );
     let mut plan = case::read(&text, "own law")?;
-    plan.tube.material = Material::Custom(CustomLaw::new(law));
+    plan.tube.layers[0].material = Material::Custom(CustomLaw::new(law));
     let mut study = Study::new(&plan)?;
     let mut radii = vec![];
     while let Some(state) = study.next() {

@@ -10,7 +10,7 @@ use plica::material::{Material, NeoHookean};
 use plica::monitor::Monitor;
 use plica::solve::{Equilibrium, Integrator, Path, PseudoTime, Scheme, Settings, State};
 use plica::spline::Refinement;
-use plica::tube::{Load, Mesh, Support, Tube};
+use plica::tube::{Load, Mesh, Support, Tube, WallLayer};
 use std::f64::consts::PI;
 use std::fmt::Display;
 
@@ -32,7 +32,9 @@ fn tube(length: f64, muscles: Vec<Muscle>, ends: Support) -> Tube {
     Tube {
         length,
         thickness: 0.06,
-        material: Material::NeoHookean(NeoHookean::new(1.0, 0.495)),
+        layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+            1.0, 0.495,
+        )))],
         muscles,
         ends: [ends; 2],
         imperfections: vec![],
@@ -51,6 +53,7 @@ fn mesh(degree: usize, [along, around, through]: [usize; 3]) -> Mesh {
         grading: 1.0,
         contact_range: 0.25,
         volumetric: Default::default(),
+        layers: vec![],
     }
 }
 
@@ -208,6 +211,7 @@ fn the_energy_does_not_depend_on_the_number_of_rings_in_a_sector() {
         grading: 1.0,
         contact_range: 0.25,
         volumetric: Default::default(),
+        layers: vec![],
     };
     let energy = |rings: usize| {
         let problem = problem(&tube, &mesh, rings);
@@ -373,7 +377,9 @@ fn the_order_of_convergence_of_the_energy_is_twice_the_degree() {
     let around = muscle(Direction::Circular, [0.0, length], Profile::RaisedCosine);
     let tube = Tube {
         thickness: 0.2,
-        material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+        layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+            1.0, 0.3,
+        )))],
         ..tube(length, vec![around], Support::Sliding)
     };
     let contracted = Load {

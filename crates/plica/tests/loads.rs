@@ -8,13 +8,16 @@ use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
 use plica::solve::{Path, Settings, State};
 use plica::stability::Harmonics;
-use plica::tube::{Load, Mesh, Pressure, Support, Tube};
+use plica::tube::{Load, Mesh, Pressure, Support, Tube, WallLayer};
 
 fn tube(length: f64, poisson_ratio: f64) -> Tube {
     Tube {
         length,
         thickness: 0.06,
-        material: Material::NeoHookean(NeoHookean::new(1.0, poisson_ratio)),
+        layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+            1.0,
+            poisson_ratio,
+        )))],
         muscles: vec![],
         ends: [Support::Sliding; 2],
         imperfections: vec![],
@@ -33,6 +36,7 @@ fn problem(tube: &Tube, [along, around, through]: [usize; 3], rings: usize) -> T
         grading: 1.0,
         contact_range: 0.25,
         volumetric: Default::default(),
+        layers: vec![],
     };
     TubeProblem::new(SplineTube::new(tube, &mesh, rings))
 }

@@ -5,7 +5,7 @@ use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
 use plica::solve::{Path, Settings};
 use plica::stability::{Harmonics, ModeStability};
-use plica::tube::{Mesh, Support, Tube};
+use plica::tube::{Mesh, Support, Tube, WallLayer};
 use std::f64::consts::PI;
 
 /// Returns an axisymmetric tube without muscles.
@@ -17,7 +17,10 @@ fn passive(
     let tube = Tube {
         length,
         thickness,
-        material: Material::NeoHookean(NeoHookean::new(1.0, poisson_ratio)),
+        layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+            1.0,
+            poisson_ratio,
+        )))],
         muscles: vec![],
         imperfections: vec![],
         obstacles: vec![],
@@ -32,6 +35,7 @@ fn passive(
         grading: 1.0,
         contact_range: 0.25,
         volumetric: Default::default(),
+        layers: vec![],
     };
     TubeProblem::new(SplineTube::new(&tube, &mesh, 1))
 }

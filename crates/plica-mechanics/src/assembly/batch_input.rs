@@ -41,7 +41,7 @@ impl SplineTube {
             let (mut along, mut around) = (Lanes::default(), Lanes::default());
             for l in 0..z.0.len() {
                 // Angle zero represents all; axial batches neglect variation around the tube.
-                let (theta_z, theta_t) = self.tube.stretches_at(z.0[l], 0.0, load);
+                let (theta_z, theta_t) = self.tube.stretches_at(self.wall_layer, z.0[l], 0.0, load);
                 along.0[l] = 1.0 / theta_z;
                 around.0[l] = 1.0 / theta_t;
             }
@@ -101,7 +101,7 @@ impl SplineTube {
         let mut stretch = vec![];
         for z in batch.z.iter().map(|z| z.0[lane]) {
             if !self.tube.muscles_vary_around() {
-                stretch.push(inverse(&|_| self.tube.stretches(z, load)));
+                stretch.push(inverse(&|_| self.tube.stretches(self.wall_layer, z, load)));
                 continue;
             }
             for point in around {
@@ -110,7 +110,7 @@ impl SplineTube {
                         let element = (v * LANES + lane) % self.sector.rings;
                         // The middle of element 0 is at angle zero.
                         let phi = (element as f64 + point.s - 0.5) * self.sector.angle();
-                        self.tube.stretches_at(z, phi, load)
+                        self.tube.stretches_at(self.wall_layer, z, phi, load)
                     }));
                 }
             }

@@ -7,7 +7,7 @@ use crate::matrix::BlockBanded;
 impl SplineTube {
     /// Assembles the damping matrix of the sector.
     pub fn damping(&self) -> BlockBanded {
-        let (layers, around, sector) = (&self.layers, &self.around, &self.sector);
+        let (around, sector) = (&self.around, &self.sector);
         let (rows, points) = (self.axial.functions(), self.wall.functions());
         let (degree, k) = (self.degree(), sector.rings);
         let functions = degree + 1;
@@ -16,10 +16,10 @@ impl SplineTube {
 
         // The integral over a cross-section: a dense block, the same for every row.
         let mut section = vec![0.0; size * size];
-        for layer in layers {
+        for layer in self.elements_through() {
             for q in 0..layer.radius.len() {
                 for point in around {
-                    let area = layer.weight[q]
+                    let area = layer.weight_at_rest[q]
                         * layer.radius[q]
                         * point.weight
                         * point.across

@@ -53,14 +53,21 @@ impl SplineTube {
     /// [`Inverted`] if det Fe is not positive at a quadrature point.
     pub fn forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
         let mut forces = self.elastic_forces(load, u)?;
-        if let Some(part) = &self.volumetric {
-            let volumetric = part.elastic_forces(load, u)?;
-            forces.energy += volumetric.energy;
-            forces.energy_ungrown += volumetric.energy_ungrown;
-            forces.residual_scale = forces.residual_scale.hypot(volumetric.residual_scale);
-            // At the points of the shear part det Fe only has to be positive.
-            forces.smallest_jacobian = volumetric.smallest_jacobian;
-            for (sum, part) in forces.residual.iter_mut().zip(&volumetric.residual) {
+        // Where a law has volumetric points, det Fe only has to be positive at those of its shear part.
+        let counts =
+            |part: &Self| part.is_volumetric || self.parts.iter().all(|p| !p.is_volumetric);
+        if !counts(self) {
+            forces.smallest_jacobian = f64::INFINITY;
+        }
+        for part in &self.parts {
+            let of_part = part.elastic_forces(load, u)?;
+            forces.energy += of_part.energy;
+            forces.energy_ungrown += of_part.energy_ungrown;
+            forces.residual_scale = forces.residual_scale.hypot(of_part.residual_scale);
+            if counts(part) {
+                forces.smallest_jacobian = forces.smallest_jacobian.min(of_part.smallest_jacobian);
+            }
+            for (sum, part) in forces.residual.iter_mut().zip(&of_part.residual) {
                 *sum += part;
             }
         }
@@ -69,8 +76,7 @@ impl SplineTube {
         Ok(forces)
     }
 
-    /// Assembles energy and residual of the wall, without pressures and without the volumetric
-    /// part.
+    /// Assembles energy and residual of this part of the wall, without pressures.
     fn elastic_forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
         let batches: Vec<BatchForces> = if self.sector.rings < CIRCUMFERENTIAL_BATCH_RINGS {
             let forces = |(number, batch): (usize, &AxialBatch)| {
@@ -105,7 +111,7 @@ impl SplineTube {
                 let along = batch.first + batch.row(lane);
                 let (from, to) = self.axial.element(along);
                 return Err(Inverted {
-                    element: [along, layer, around],
+                    element: [along, self.layers[layer].element, around],
                     place: self.place(
                         f64::midpoint(from, to),
                         self.layers[layer].radius[qr],

@@ -163,7 +163,7 @@ impl<'a> ModeShape<'a> {
                 let mut u = [0.0; 3];
                 for (a, n) in along.value.iter().enumerate() {
                     for (c, m) in through.value.iter().enumerate() {
-                        let point = (along.element + a) * points + through.element + c;
+                        let point = (along.first + a) * points + through.first + c;
                         for (u, x) in u.iter_mut().zip(&self.mode.values[3 * point..]) {
                             *u += n * m * x;
                         }

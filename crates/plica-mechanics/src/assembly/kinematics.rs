@@ -27,19 +27,20 @@ pub struct GradientMap<S> {
 }
 
 impl<S: Real> GradientMap<S> {
-    /// Returns the map at reference radius R of a perfect wall, given 1/θζ and 1/θη.
+    /// Returns the map at reference radius R of a perfect wall, given 1/θζ and 1/θη of the muscles, and of the
+    /// residual stretch.
     #[inline(always)]
     pub fn new(
         point: &CircumferentialPoint,
         radius: f64,
-        inverse_along: S,
-        inverse_around: S,
+        [inverse_along, inverse_around]: [S; 2],
+        residual: [f64; 2],
     ) -> Self {
         let b = point.across;
         Self {
-            along: inverse_along,
-            around: inverse_around.times(1.0 / (radius * b)),
-            across: inverse_around.times(-point.outwards / (b * point.radius)),
+            along: inverse_along.times(residual[0]),
+            around: inverse_around.times(residual[1] / (radius * b)),
+            across: inverse_around.times(-residual[1] * point.outwards / (b * point.radius)),
             outwards: inverse_along.like(1.0 / point.radius),
             imperfection_map: None,
         }

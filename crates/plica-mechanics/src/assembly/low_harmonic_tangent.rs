@@ -3,7 +3,7 @@
 use super::SplineTube;
 use super::circumferential::{self, AVERAGED};
 use super::dispatch::{with_degree, with_law_and_degree};
-use super::low_harmonics::{LowHarmonics, POINTS_THROUGH, THROUGH};
+use super::low_harmonics::{LayerPoints, LowHarmonics, POINTS_THROUGH, THROUGH};
 use super::tables::AxialBatch;
 use crate::material::Material;
 use crate::matrix::{BlockBanded, multiply};
@@ -93,15 +93,36 @@ impl SplineTube {
         u: &[f64],
         displacement: Option<&[f64]>,
     ) -> Vec<[Vec<f64>; 4]> {
+        let size = low.row_size();
+        let mut sums = vec![[0, 1, 2, 3].map(|_| vec![0.0; size * size]); low.points_along];
+        let parts = self.all_parts().filter(|part| !part.is_volumetric);
+        for (part, layer) in parts.zip(&low.layers) {
+            part.add_coupled_sums(low, layer, (batch, lane), load, u, displacement, &mut sums);
+        }
+        sums
+    }
+
+    /// Adds the sums over the points of a layer of the wall.
+    #[allow(clippy::too_many_arguments)] // all of them are needed
+    fn add_coupled_sums(
+        &self,
+        low: &LowHarmonics,
+        layer: &LayerPoints,
+        (batch, lane): (&AxialBatch, usize),
+        load: &Load,
+        u: &[f64],
+        displacement: Option<&[f64]>,
+        out: &mut [[Vec<f64>; 4]],
+    ) {
         let (k, padded) = (self.sector.rings, self.padded_rings.padded);
         let row = self.wall.functions() * 3 * padded;
         let stretch = self.inverse_stretch_around(batch, lane, &low.middle, load);
-        let shape =
-            displacement.map(|u| self.stress_free_around(batch, lane, &low.points, &low.middle, u));
+        let shape = displacement
+            .map(|u| self.stress_free_around(batch, lane, &layer.points, &low.middle, u));
         let input = circumferential::Input {
             batch,
             lane,
-            layers: &low.points,
+            layers: &layer.points,
             around: &low.middle,
             points: self.wall.functions(),
             rings: &self.padded_rings,
@@ -112,7 +133,7 @@ impl SplineTube {
         let mut moduli = vec![0.0; low.points_along * POINTS_THROUGH * AVERAGED * padded];
         with_law_and_degree!(
             self,
-            self.tube.material,
+            self.tube.layers[self.wall_layer].material,
             circumferential::moduli,
             &input,
             &mut moduli
@@ -126,47 +147,48 @@ impl SplineTube {
             vec![0.0; columns * columns],
         ];
         let mut moduli = moduli.chunks_exact(AVERAGED * padded);
-        (0..low.points_along)
-            .map(|_| {
-                let mut out = [0, 1, 2].map(|_| vec![0.0; size * size]);
-                for ((value, slope), moduli) in low.wall.iter().zip(moduli.by_ref()) {
-                    // Blocks (ζ,ζ) (ζ,s) (ζ,R); (s,s) (s,R); (R,R).
-                    let mut block = 0;
-                    for (alpha, sum) in sums.iter_mut().enumerate() {
-                        let width = (3 - alpha) * columns;
-                        for beta in alpha..3 {
-                            let wave = &low.waves[usize::from(beta == 1)];
-                            for e in 0..k {
-                                let A: [f64; 9] =
-                                    std::array::from_fn(|x| moduli[(9 * block + x) * padded + e]);
-                                let from = &wave[3 * e * columns..][..3 * columns];
-                                for j in 0..3 {
-                                    let to = (3 * e + j) * width + (beta - alpha) * columns;
-                                    let to = &mut moved[to..to + columns];
-                                    for (x, to) in to.iter_mut().enumerate() {
-                                        *to = A[3 * j] * from[x]
-                                            + A[3 * j + 1] * from[columns + x]
-                                            + A[3 * j + 2] * from[2 * columns + x];
-                                    }
+        for total in out {
+            let mut out = [0, 1, 2].map(|_| vec![0.0; size * size]);
+            for ((value, slope), moduli) in layer.wall.iter().zip(moduli.by_ref()) {
+                // Blocks (ζ,ζ) (ζ,s) (ζ,R); (s,s) (s,R); (R,R).
+                let mut block = 0;
+                for (alpha, sum) in sums.iter_mut().enumerate() {
+                    let width = (3 - alpha) * columns;
+                    for beta in alpha..3 {
+                        let wave = &low.waves[usize::from(beta == 1)];
+                        for e in 0..k {
+                            let A: [f64; 9] =
+                                std::array::from_fn(|x| moduli[(9 * block + x) * padded + e]);
+                            let from = &wave[3 * e * columns..][..3 * columns];
+                            for j in 0..3 {
+                                let to = (3 * e + j) * width + (beta - alpha) * columns;
+                                let to = &mut moved[to..to + columns];
+                                for (x, to) in to.iter_mut().enumerate() {
+                                    *to = A[3 * j] * from[x]
+                                        + A[3 * j + 1] * from[columns + x]
+                                        + A[3 * j + 2] * from[2 * columns + x];
                                 }
                             }
-                            block += 1;
                         }
-                        let wave = &low.waves[usize::from(alpha == 1)];
-                        multiply(
-                            (wave, [columns, 3 * k], [1, columns]),
-                            (&moved[..3 * k * width], [3 * k, width], [width, 1]),
-                            (sum, [1, columns]),
-                        );
+                        block += 1;
                     }
-                    add_through(&sums, columns, value, slope, &mut out);
+                    let wave = &low.waves[usize::from(alpha == 1)];
+                    multiply(
+                        (wave, [columns, 3 * k], [1, columns]),
+                        (&moved[..3 * k * width], [3 * k, width], [width, 1]),
+                        (sum, [1, columns]),
+                    );
                 }
-                let [slopes, mixed, values] = out;
-                let transposed = |at: usize| mixed[at % size * size + at / size];
-                let across = (0..size * size).map(transposed).collect();
-                [slopes, mixed, across, values]
-            })
-            .collect()
+                add_through(&sums, columns, value, slope, &mut out);
+            }
+            let [slopes, mixed, values] = out;
+            let transposed = |at: usize| mixed[at % size * size + at / size];
+            let across = (0..size * size).map(transposed).collect();
+            for (total, part) in total.iter_mut().zip([slopes, mixed, across, values]) {
+                let sums = total.iter_mut().zip(&part);
+                sums.for_each(|(total, part): (&mut f64, &f64)| *total += part);
+            }
+        }
     }
 }
 

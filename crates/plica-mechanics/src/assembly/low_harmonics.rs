@@ -6,7 +6,7 @@
 //! of size m = 9 (2H + 1). These are the soft motions of a thin wall, which the average around the
 //! tube represents worst at a state that is not axisymmetric.
 //!
-//! The quadrature has four points through the wall and one in the middle of each element around,
+//! The quadrature has four points through each layer of the wall and one in the middle of each element around,
 //! where sums over periodic functions converge fastest. Along each element it has two points, or more
 //! on a mesh of few elements: with fewer points than functions along the tube, displacements that
 //! vanish at all of them, or whose slopes do, would have little energy or none. For each set of points
@@ -19,7 +19,7 @@ use crate::matrix::BlockBanded;
 use crate::rings::Rotation;
 use crate::spline::gauss_legendre;
 
-/// Quadrature points through the wall.
+/// Quadrature points through a layer of the wall.
 pub(super) const POINTS_THROUGH: usize = 4;
 
 /// Number of functions through the wall: 1, t, t².
@@ -30,18 +30,25 @@ pub(super) const THROUGH: usize = 3;
 pub struct LowHarmonics {
     /// H, the highest harmonic of the sector.
     pub highest: usize,
-    /// Control values of 1, t, t² at each point through the wall.
+    /// Control values of 1, t, t² at each control point through the wall.
     pub through: Vec<[f64; THROUGH]>,
     /// Number of quadrature points along an element.
     pub(super) points_along: usize,
     pub(super) batches: Vec<AxialBatch>,
-    pub(super) points: Vec<Layer>,
+    /// The layers of the wall.
+    pub(super) layers: Vec<LayerPoints>,
     pub(super) middle: [CircumferentialPoint; 1],
-    /// 1, t, t² at the points through the wall, and their slopes.
-    pub(super) wall: Vec<([f64; THROUGH], [f64; THROUGH])>,
     /// Displacement of the amplitudes (mode, component) in each element's frame, and its slope
     /// around: rows of (element, component).
     pub(super) waves: [Vec<f64>; 2],
+}
+
+/// The points through a layer of the wall.
+#[derive(Clone, Debug)]
+pub(super) struct LayerPoints {
+    pub points: Vec<Layer>,
+    /// 1, t, t² at the points, and their slopes.
+    pub wall: Vec<([f64; THROUGH], [f64; THROUGH])>,
 }
 
 impl LowHarmonics {
@@ -54,11 +61,20 @@ impl LowHarmonics {
         let slope = 2.0 / (outer - inner);
         let points_along = points_along(tube.degree(), tube.axial.elements());
         let along = vec![gauss_legendre(points_along); tube.axial.elements()];
-        let points = Layer::points(&tube.wall, POINTS_THROUGH);
-        let wall = points.iter().map(|point| {
-            let t = t(point.radius[0]);
-            ([1.0, t, t * t], [0.0, slope, 2.0 * t * slope])
-        });
+        let of_layer = |part: &SplineTube| {
+            let [first, last] = [0, part.layers.len() - 1].map(|i| part.layers[i].element);
+            let points = Layer::points(&tube.wall, first..last + 1, POINTS_THROUGH);
+            let wall = points.iter().map(|point| {
+                let t = t(point.radius[0]);
+                ([1.0, t, t * t], [0.0, slope, 2.0 * t * slope])
+            });
+            LayerPoints {
+                wall: wall.collect(),
+                points: tube.with_residual(part.wall_layer, points),
+            }
+        };
+        let parts = tube.all_parts().filter(|part| !part.is_volumetric);
+        let layers = parts.map(of_layer).collect();
         // t = slope · R + shift
         let shift = t(0.0);
         let through = tube.wall.quadratics().into_iter().map(|[one, x, xx]| {
@@ -71,8 +87,7 @@ impl LowHarmonics {
             through,
             points_along,
             batches: AxialBatch::all(&tube.axial, &along),
-            wall: wall.collect(),
-            points,
+            layers,
             middle: [CircumferentialPoint::at(
                 &tube.sector,
                 &tube.circle,

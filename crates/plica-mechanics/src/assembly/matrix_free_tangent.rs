@@ -21,9 +21,8 @@ pub struct MatrixFreeTangent {
     /// By batch.
     tangent_data: Vec<PackedTangentData>,
     pub(super) walls: Option<WallTangent>,
-    /// Tangent of the volumetric part, if it has quadrature points of its own; `average` includes
-    /// its average.
-    volumetric: Option<Box<MatrixFreeTangent>>,
+    /// Tangents of the other parts of the wall; `average` includes their averages.
+    parts: Vec<MatrixFreeTangent>,
     /// The tangent averaged over the rings; every unknown is free.
     pub average: Circulant,
 }
@@ -35,10 +34,12 @@ impl SplineTube {
     pub fn linearise(&self, load: &Load, u: &[f64], tangent: &mut MatrixFreeTangent) {
         tangent.walls = self.wall_tangent(load, u);
         self.linearise_elastic(load, u, tangent);
-        if let Some(part) = &self.volumetric {
-            let volumetric = tangent.volumetric.get_or_insert_default();
-            part.linearise_elastic(load, u, volumetric);
-            tangent.average.add(&volumetric.average);
+        tangent
+            .parts
+            .resize_with(self.parts.len(), Default::default);
+        for (part, of_part) in self.parts.iter().zip(&mut tangent.parts) {
+            part.linearise_elastic(load, u, of_part);
+            tangent.average.add(&of_part.average);
         }
         if let Some(walls) = &tangent.walls {
             self.add_average_walls(walls, &mut tangent.average);
@@ -103,12 +104,12 @@ impl SplineTube {
         }
         let v = self.padded_rings.pad(v);
         self.add_elastic_product(at, factor, &v, y);
-        if let (Some(part), Some(at)) = (&self.volumetric, &at.volumetric) {
+        for (part, at) in self.parts.iter().zip(&at.parts) {
             part.add_elastic_product(at, factor, &v, y);
         }
     }
 
-    /// Adds the product of the wall's part; v has padded rows.
+    /// Adds the product of this part of the wall; v has padded rows.
     fn add_elastic_product(&self, at: &MatrixFreeTangent, factor: f64, v: &[f64], y: &mut [f64]) {
         let row = self.padded_row_size();
         let parts: Vec<Vec<f64>> = self

@@ -32,7 +32,7 @@ impl SplineTube {
             let mut of_ring = vec![0.0; 3 * rings];
             for (a, n) in axial.value.iter().enumerate() {
                 for (c, m) in wall.value.iter().enumerate() {
-                    let at = (axial.element + a) * self.row_size() + (wall.element + c) * 3 * rings;
+                    let at = (axial.first + a) * self.row_size() + (wall.first + c) * 3 * rings;
                     let u = &u[at..at + 3 * rings];
                     of_ring
                         .iter_mut()

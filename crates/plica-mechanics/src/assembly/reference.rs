@@ -57,7 +57,10 @@ pub(super) struct ElementPoint {
     h: Vec<Vector>,
     /// dV per unit of (z, R, s), s the fraction of the element around.
     volume: f64,
-    /// Fp⁻¹; of an imperfect tube B⁻¹ Fp⁻¹, see [`ReferenceTube::at`].
+    /// Volume free of residual stretch over dV.
+    residual: f64,
+    /// Fp⁻¹; of an imperfect tube B⁻¹ Fp⁻¹, see [`ReferenceTube::at`]. Its columns are directions of the wall (along,
+    /// outwards, around), to which laws with fibres refer.
     Fp_inverse: Tensor2,
     /// det Fp.
     growth: f64,
@@ -84,13 +87,14 @@ impl<'a> ReferenceTube<'a> {
 
     /// Computes energy and residual at displacements `u`, unknowns of the tube.
     pub fn forces(&self, u: &[f64]) -> ReferenceForces {
-        let (law, u) = (self.law(), self.cartesian(u));
+        let u = self.cartesian(u);
         let (mut energy, mut energy_ungrown, mut squares) = (0.0, 0.0, 0.0);
         let mut R = vec![[0.0; 3]; self.nodes()];
         for element in self.elements() {
-            let nodes = self.element_nodes(element);
+            let (law, nodes) = (self.law(element), self.element_nodes(element));
             let mut Re = vec![[0.0; 3]; nodes.len()];
             for (q, dV) in self.quadrature(element) {
+                let dV = dV * q.residual;
                 let Fe = self.elastic(&nodes, &q, &u);
                 let (w, P) = (law.energy(&Fe), law.stress(&Fe));
                 let grown = q.growth * dV; // det Fp dV
@@ -120,15 +124,15 @@ impl<'a> ReferenceTube<'a> {
 
     /// Computes the tangent K at displacements `u`, dense, row after row.
     pub fn tangent(&self, u: &[f64]) -> Vec<f64> {
-        let (law, u) = (self.law(), self.cartesian(u));
+        let u = self.cartesian(u);
         let mut K = vec![0.0; 9 * self.nodes() * self.nodes()];
         for element in self.elements() {
-            let nodes = self.element_nodes(element);
+            let (law, nodes) = (self.law(element), self.element_nodes(element));
             let n = nodes.len();
             let mut Ke = vec![[[0.0; 3]; 3]; n * n]; // K_ab for a ≤ b
             for (q, dV) in self.quadrature(element) {
                 let A = moduli(law, &self.elastic(&nodes, &q, &u));
-                let (h, grown) = (&q.h, q.growth * dV);
+                let (h, grown) = (&q.h, q.growth * q.residual * dV);
                 for b in 0..n {
                     let mut Ah = [[[0.0; 3]; 3]; 3]; // A_ikjl h_bl
                     for i in 0..3 {
@@ -260,11 +264,15 @@ impl<'a> ReferenceTube<'a> {
         let polar = Tensor2([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]]);
         let polar = nearest_rotation(&B).times(polar);
 
-        let (theta_z, theta_t) = spline.tube.stretches(z, self.load);
-        let shrink = [1.0 / theta_z, 1.0, 1.0 / theta_t];
+        // The residual stretch is growth that is always there: dV is that of the wall free of it.
+        let layer = self.wall_layer(element);
+        let (theta_z, theta_t) = spline.tube.stretches(layer, z, self.load);
+        let residual = spline.tube.residual_stretch(layer, radius);
+        let [grown_z, grown_t] = [theta_z * residual[0], theta_t * residual[1]];
+        let shrink = [1.0 / grown_z, 1.0, 1.0 / grown_t];
         let shrink = Tensor2([0, 1, 2].map(|i| [0, 1, 2].map(|j| polar.0[i][j] * shrink[j])));
         let B_inverse = B.cofactor().transpose().scaled(1.0 / B.determinant());
-        let Fp_inverse = B_inverse.times(shrink.times(polar.transpose()));
+        let Fp_inverse = B_inverse.times(shrink);
         let Fp_inverse_transpose = Fp_inverse.transpose();
         ElementPoint {
             value,
@@ -273,6 +281,7 @@ impl<'a> ReferenceTube<'a> {
                 .map(|g| apply(&Fp_inverse_transpose, g))
                 .collect(),
             volume: D.determinant() * B.determinant(),
+            residual: residual[0] * residual[1],
             Fp_inverse,
             growth: theta_z * theta_t,
         }
@@ -295,16 +304,28 @@ impl<'a> ReferenceTube<'a> {
         let ([rings, points], p) = (self.shape(), self.spline.degree());
         let mut nodes = vec![];
         for i in e..=e + p {
-            for c in t..=t + p {
+            let first = self.spline.wall.first(t);
+            for c in first..=first + p {
                 nodes.extend((g..=g + p).map(|j| (i * points + c) * rings + j % rings));
             }
         }
         nodes
     }
 
-    /// Returns the law of the wall.
-    pub(super) fn law(&self) -> &Material {
-        &self.spline.tube.material
+    /// Returns the law of an element.
+    pub(super) fn law(&self, element: [usize; 3]) -> &Material {
+        &self.spline.tube.layers[self.wall_layer(element)].material
+    }
+
+    /// Returns the layer of the wall that an element lies in.
+    fn wall_layer(&self, [_, t, _]: [usize; 3]) -> usize {
+        let (from, to) = self.spline.wall.element(t);
+        let faces = self.spline.tube.faces();
+        let above = |face: &&f64| **face > 0.5 * (from + to);
+        faces[1..faces.len() - 1]
+            .iter()
+            .filter(|face| !above(face))
+            .count()
     }
 
     /// Counts rings, and control points through the wall.

@@ -77,12 +77,12 @@ impl RingDamping {
             }
         }
         let mut wall = Band::zeros(points, p);
-        for layer in &tube.layers {
+        for layer in tube.elements_through() {
             for q in 0..n {
                 let value = |c: usize| layer.value[q * n + c];
                 for c in 0..n {
                     for d in 0..n {
-                        let weight = layer.weight[q] * layer.radius[q];
+                        let weight = layer.weight_at_rest[q] * layer.radius[q];
                         wall.add(
                             layer.first + c,
                             layer.first + d,

@@ -37,7 +37,7 @@ pub struct Sample {
     pub energy_density: f64,
     /// Cauchy stress, in E: rows and columns (z, outwards, around) at the middle of the point's element.
     pub stress: Tensor2,
-    /// Growth stretches θζ along and θη around.
+    /// Growth stretches θζ along and θη around: of the muscles, times the residual stretches.
     pub grown: [f64; 2],
     /// Angle of the middle of the point's element, in radians.
     pub element_angle: f64,
@@ -87,8 +87,8 @@ impl Sample {
 }
 
 impl SplineTube {
-    /// Evaluates the fields at a point under a load. Outside the wall, it extrapolates the splines
-    /// of the nearest element. If the volumetric part of the law has quadrature points of its own,
+    /// Evaluates the fields at a point under a load; at an interface of layers, in the outer one.
+    /// Outside the wall, it extrapolates the splines of the nearest element. If the volumetric part of the law has quadrature points of its own,
     /// its energy and stress are those of the nearest of them through the wall, since the volume is
     /// not controlled between them.
     pub fn sample(&self, load: &Load, u: &[f64], at: Point) -> Sample {
@@ -98,8 +98,12 @@ impl SplineTube {
 
     #[inline(always)]
     fn sample_at(&self, load: &Load, u: &[f64], at: Point) -> Sample {
-        let sample = self.sample_here(load, u, at);
-        let Some(volume) = &self.volumetric else {
+        let element = self.wall.find(at.radius);
+        let holds = |part: &&Self| part.layers.iter().any(|layer| layer.element == element);
+        let parts = || self.all_parts().filter(holds);
+        let own = parts().find(|part| !part.is_volumetric).unwrap_or(self);
+        let sample = own.sample_here(load, u, at);
+        let Some(volume) = parts().find(|part| part.is_volumetric) else {
             return sample;
         };
         let points = volume.layers.iter().flat_map(|layer| {
@@ -138,15 +142,20 @@ impl SplineTube {
         };
         let point = &near.point;
         let (value, gradients) = self.displaced(u, &near);
-        let (theta_z, theta_t) = self.tube.stretches_at(at.z, at.angle, load);
+        let (theta_z, theta_t) = self
+            .tube
+            .stretches_at(self.wall_layer, at.z, at.angle, load);
+        let residual = self.tube.residual_stretch(self.wall_layer, at.radius);
+        let (theta_z, theta_t) = (theta_z * residual[0], theta_t * residual[1]);
         let (inverse_along, inverse_around) = (1.0 / theta_z, 1.0 / theta_t);
         let imperfection_map = self.stress_free_shape.as_ref().map(|imperfect| {
-            let gradient_map = GradientMap::new(point, at.radius, 1.0, 1.0);
+            let gradient_map = GradientMap::new(point, at.radius, [1.0; 2], [1.0; 2]);
             let (_, gradients) = self.displaced(&imperfect.displacement, &near);
             let A = gradient_map.elastic_gradient(point, at.radius, gradients);
             ImperfectionMap::from_gradient(A, inverse_along, inverse_around)
         });
-        let gradient_map = GradientMap::new(point, at.radius, inverse_along, inverse_around);
+        let gradient_map =
+            GradientMap::new(point, at.radius, [inverse_along, inverse_around], [1.0; 2]);
         let gradient_map = gradient_map.with_imperfection(imperfection_map);
         let Fe = gradient_map.elastic_gradient(point, at.radius, gradients);
         let reference = [at.z, at.radius * point.circle.0, at.radius * point.circle.1];
@@ -188,10 +197,10 @@ impl SplineTube {
         for (a, (n, dn)) in axial.value.iter().zip(&axial.slope).enumerate() {
             for (c, (m, dm)) in wall.value.iter().zip(&wall.slope).enumerate() {
                 for (r, ring) in near.point.ring_values.iter().enumerate() {
-                    let row = axial.element + a;
+                    let row = axial.first + a;
                     let index = |i: usize| {
                         row * self.row_size()
-                            + ((wall.element + c) * 3 + i) * rings
+                            + ((wall.first + c) * 3 + i) * rings
                             + (near.first_ring + r) % rings
                     };
                     let u = [0, 1, 2].map(|i| u[index(i)]);

@@ -11,6 +11,7 @@ use crate::material::Material;
 use crate::rings::Sector;
 use crate::spline::{Basis, Circle, gauss_legendre};
 use crate::tube::{Integration, Load, Mesh, Tube};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A tube discretised by splines.
@@ -33,14 +34,19 @@ pub struct SplineTube {
     /// Boundary conditions of a sector of one ring.
     pub(super) ring_boundary_conditions: BoundaryConditions,
     pub(super) batches: Vec<AxialBatch>,
+    /// Elements through the wall of this part of it.
     pub(super) layers: Vec<Layer>,
     pub(super) around: Vec<CircumferentialPoint>,
     pub(super) padded_rings: PaddedRings,
     pub(super) stress_free_shape: Option<Arc<StressFreeShape>>,
-    /// Law integrated at the points of `layers`: the law of the wall, or its shear part.
+    /// Law integrated at the points of `layers`: that of a layer of the wall, or one of its parts.
     pub(super) law: Material,
-    /// The volumetric part of the law, if it is integrated at fewer points.
-    pub(super) volumetric: Option<Box<SplineTube>>,
+    /// Number of the layer of the wall.
+    pub(super) wall_layer: usize,
+    /// True if `law` is the volumetric part of a law, integrated at fewer points than the shear part.
+    pub(super) is_volumetric: bool,
+    /// The other parts of the wall: its other layers, and the volumetric parts of laws.
+    pub(super) parts: Vec<SplineTube>,
     /// Barrier of contact with obstacles.
     pub(super) barrier: Barrier,
     /// Largest elastic slip of friction, in ranges of the barrier.
@@ -60,11 +66,13 @@ pub(super) struct StressFreeShape {
 
 impl SplineTube {
     /// Discretises a tube by a mesh; `rings` of the mesh's rings form the cyclic sector. Panics
-    /// unless the degree is from 1 to 5, and with reduced integration 3 or 5 and the law not a
-    /// custom one.
+    /// unless the degree is from 1 to 5, and with reduced integration 3 or 5 and no law a
+    /// custom one, or if the layers of the mesh are not those of the tube.
     pub fn new(tube: &Tube, mesh: &Mesh, rings: usize) -> Self {
         let p = mesh.degree;
         assert!((1..=5).contains(&p), "degree {p} is not between 1 and 5");
+        let layers = mesh.elements_of_layers();
+        assert_eq!(layers.len(), tube.layers.len(), "layers of mesh and tube");
         let around = mesh.elements()[1];
         let sector = Sector::new(p, around, rings);
         let circle = Circle::new(p, around);
@@ -85,7 +93,7 @@ impl SplineTube {
         let rule = gauss_legendre(p + 1);
         let spline = Self {
             batches: AxialBatch::all(&axial, &full_rules(&axial)),
-            layers: Layer::all(&wall, &full_rules(&wall)),
+            layers: vec![],
             around: CircumferentialPoint::all(&sector, &circle, &rule),
             padded_rings: PaddedRings::new(sector.rings),
             barrier: Barrier::of_mesh(&axial, mesh.contact_range),
@@ -98,41 +106,94 @@ impl SplineTube {
             boundary_conditions,
             ring_boundary_conditions,
             stress_free_shape: None,
-            law: tube.material.clone(),
-            volumetric: None,
+            law: tube.layers[0].material.clone(),
+            wall_layer: 0,
+            is_volumetric: false,
+            parts: vec![],
         };
-        let spline = match displacement {
-            Some(displacement) => spline.with_stress_free_shape(displacement),
-            None => spline,
-        };
-        match mesh.volumetric {
-            Integration::Full => spline,
-            Integration::Reduced => spline.split_volumetric(),
+        spline.with_parts(&layers, mesh.volumetric, displacement.as_deref())
+    }
+
+    /// Returns the tube with the parts of its wall: every layer, with the volumetric part of its law apart if that is
+    /// integrated at fewer points. `displacement` is that of the stress-free shape.
+    fn with_parts(
+        self,
+        layers: &[Range<usize>],
+        integration: Integration,
+        displacement: Option<&[f64]>,
+    ) -> Self {
+        let rules = full_rules(&self.wall);
+        let mut parts = vec![];
+        for (l, elements) in layers.iter().enumerate() {
+            let law = &self.tube.layers[l].material;
+            let rules = &rules[elements.clone()];
+            let (law, volume) = match integration {
+                Integration::Full => (law.clone(), None),
+                Integration::Reduced => {
+                    let [shear, volume] = law
+                        .parts()
+                        .expect("reduced integration needs a law with volumetric part");
+                    (shear, Some(volume))
+                }
+            };
+            let part = |rules: &[_], law, is_volumetric| {
+                let part = self.part((l, elements.start), rules, law, is_volumetric);
+                match displacement {
+                    Some(displacement) => part.with_stress_free_shape(displacement.to_vec()),
+                    None => part,
+                }
+            };
+            parts.push(part(rules, law, false));
+            if let Some(volume) = volume {
+                let reduced = reduced_rules(self.degree(), elements.len());
+                parts.push(part(&reduced, volume, true));
+            }
+        }
+        let others = parts.split_off(1);
+        let first = parts.swap_remove(0);
+        Self {
+            parts: others,
+            ..first
         }
     }
 
-    /// Returns the tube with the volumetric part of the law integrated at fewer points through the
-    /// wall.
-    fn split_volumetric(self) -> Self {
-        let [shear, volume] = self
-            .law
-            .parts()
-            .expect("reduced integration needs a law with volumetric part");
-        let volumetric = Self {
-            layers: Layer::all(&self.wall, &reduced_rules(&self.wall)),
-            law: volume,
-            stress_free_shape: None,
-            ..self.clone()
-        };
-        let volumetric = match &self.stress_free_shape {
-            Some(shape) => volumetric.with_stress_free_shape(shape.displacement.clone()),
-            None => volumetric,
-        };
+    /// Returns a part of the wall: the elements of a layer from the first on, with their quadrature rules and a law.
+    fn part(
+        &self,
+        (layer, first): (usize, usize),
+        rules: &[Vec<(f64, f64)>],
+        law: Material,
+        is_volumetric: bool,
+    ) -> Self {
         Self {
-            law: shear,
-            volumetric: Some(Box::new(volumetric)),
-            ..self
+            layers: self.with_residual(layer, Layer::all(&self.wall, first, rules)),
+            law,
+            wall_layer: layer,
+            is_volumetric,
+            parts: vec![],
+            ..self.clone()
         }
+    }
+
+    /// Adds the residual stretch of a layer of the wall to its elements.
+    pub(super) fn with_residual(&self, layer: usize, elements: Vec<Layer>) -> Vec<Layer> {
+        if self.tube.layers[layer].residual.is_none() {
+            return elements;
+        }
+        let stretch = |radius| self.tube.residual_stretch(layer, radius);
+        let with_residual = |element: Layer| element.with_residual(stretch);
+        elements.into_iter().map(with_residual).collect()
+    }
+
+    /// Returns the parts of the wall, this one first.
+    pub(super) fn all_parts(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.parts)
+    }
+
+    /// Returns all elements through the wall.
+    pub(super) fn elements_through(&self) -> impl Iterator<Item = &Layer> {
+        let parts = self.all_parts().filter(|part| !part.is_volumetric);
+        parts.flat_map(|part| &part.layers)
     }
 
     /// Returns the axisymmetric tube: a sector of one ring. If the geometry varies around the tube,
@@ -146,10 +207,7 @@ impl SplineTube {
             boundary_conditions: self.ring_boundary_conditions.clone(),
             sector,
             stress_free_shape: None,
-            volumetric: self
-                .volumetric
-                .as_ref()
-                .map(|volume| Box::new(volume.axisymmetric())),
+            parts: self.parts.iter().map(Self::axisymmetric).collect(),
             ..self.clone()
         };
         match &self.stress_free_shape {

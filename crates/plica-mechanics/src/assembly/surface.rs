@@ -48,7 +48,7 @@ impl SplineTube {
         let mut rings = vec![[[0.0; 3]; 2]; k];
         for (a, (n, slope)) in axial.value.iter().zip(&axial.slope).enumerate() {
             for (c, w) in wall.value.iter().enumerate() {
-                let first = (axial.element + a) * m + (wall.element + c) * 3 * k;
+                let first = (axial.first + a) * m + (wall.first + c) * 3 * k;
                 for (j, ring) in rings.iter_mut().enumerate() {
                     for i in 0..3 {
                         let u = u[first + i * k + j];

@@ -4,6 +4,7 @@ use crate::rings::{RingValues, Sector};
 use crate::spline::{Basis, Circle, gauss_legendre, reduced_rule};
 use crate::tensor::{LANES, Lanes};
 use crate::tube::{Mesh, Tube};
+use std::ops::Range;
 
 /// Returns the basis along a tube, over z, and through its wall, over the reference radius.
 pub fn bases(tube: &Tube, mesh: &Mesh) -> [Basis; 2] {
@@ -12,7 +13,7 @@ pub fn bases(tube: &Tube, mesh: &Mesh) -> [Basis; 2] {
     let radii: Vec<f64> = radii.iter().map(|h| tube.inner_radius() + h).collect();
     [
         Basis::open(mesh.degree, &breakpoints),
-        Basis::open(mesh.degree, &radii),
+        Basis::with_multiplicities(mesh.degree, &radii, &mesh.multiplicities_through()),
     ]
 }
 
@@ -25,10 +26,9 @@ pub fn full_rules(basis: &Basis) -> Rules {
     vec![gauss_legendre(basis.degree() + 1); basis.elements()]
 }
 
-/// Returns about one point on every element of a uniform basis, see [`reduced_rule`]. Panics if the
+/// Returns about one point on every element of a uniform layer, see [`reduced_rule`]. Panics if the
 /// degree has no such rule.
-pub fn reduced_rules(basis: &Basis) -> Rules {
-    let (p, elements) = (basis.degree(), basis.elements());
+pub fn reduced_rules(p: usize, elements: usize) -> Rules {
     let rules = reduced_rule(p, elements);
     let mut rules = rules.unwrap_or_else(|| panic!("degree {p} has no reduced rule"));
     for rule in &mut rules {
@@ -104,55 +104,82 @@ impl AxialBatch {
 /// One element through the wall.
 #[derive(Clone, Debug)]
 pub struct Layer {
+    /// Its number from the inside.
+    pub element: usize,
     /// First control point.
     pub first: usize,
     /// N_c at quadrature point q, at `q * (p + 1) + c`.
     pub value: Vec<f64>,
     /// dN_c/dR, likewise.
     pub slope: Vec<f64>,
-    /// Weights of the quadrature points.
+    /// Weights of the quadrature points at rest.
+    pub weight_at_rest: Vec<f64>,
+    /// Weights of the quadrature points, times the volume of the wall free of residual stress over that at rest.
     pub weight: Vec<f64>,
     /// Their reference radii R.
     pub radius: Vec<f64>,
+    /// One over the residual stretches along and around at the quadrature points.
+    pub inverse_residual: Vec<[f64; 2]>,
 }
 
 impl Layer {
-    /// Returns the layers of a basis through the wall, with a quadrature rule for every element.
-    pub fn all(basis: &Basis, rules: &Rules) -> Vec<Self> {
-        let layer = |e: usize| {
-            let rule = &rules[e];
+    /// Returns the elements from `first` on through the wall, each with a quadrature rule.
+    pub fn all(basis: &Basis, first: usize, rules: &[Vec<(f64, f64)>]) -> Vec<Self> {
+        let layer = |(e, rule): (usize, &Vec<(f64, f64)>)| {
+            let e = first + e;
             let (start, end) = basis.element(e);
             let points: Vec<f64> = rule
                 .iter()
                 .map(|(x, _)| start + (end - start) * x)
                 .collect();
             let values: Vec<_> = points.iter().map(|&x| basis.evaluate_in(e, x)).collect();
+            let weight: Vec<f64> = rule.iter().map(|(_, w)| w * (end - start)).collect();
             Self {
-                first: e,
+                element: e,
+                first: basis.first(e),
                 value: values.iter().flat_map(|v| v.value.clone()).collect(),
                 slope: values.iter().flat_map(|v| v.slope.clone()).collect(),
-                weight: rule.iter().map(|(_, w)| w * (end - start)).collect(),
+                weight_at_rest: weight.clone(),
+                weight,
+                inverse_residual: vec![[1.0; 2]; points.len()],
                 radius: points,
             }
         };
-        (0..basis.elements()).map(layer).collect()
+        rules.iter().enumerate().map(layer).collect()
     }
 
-    /// Returns `count` Gauss points through the whole wall, each as a layer of its own.
-    pub fn points(basis: &Basis, count: usize) -> Vec<Self> {
-        let (inner, outer) = (basis.element(0).0, basis.element(basis.elements() - 1).1);
+    /// Returns `count` Gauss points through some elements of the wall, each as an element of its own.
+    pub fn points(basis: &Basis, elements: Range<usize>, count: usize) -> Vec<Self> {
+        let (inner, outer) = (
+            basis.element(elements.start).0,
+            basis.element(elements.end - 1).1,
+        );
         let point = |(x, w): (f64, f64)| {
             let radius = inner + (outer - inner) * x;
             let v = basis.evaluate(radius);
+            let weight = vec![w * (outer - inner)];
             Self {
-                first: v.element,
+                element: v.element,
+                first: v.first,
                 value: v.value,
                 slope: v.slope,
-                weight: vec![w * (outer - inner)],
+                weight_at_rest: weight.clone(),
+                weight,
                 radius: vec![radius],
+                inverse_residual: vec![[1.0; 2]],
             }
         };
         gauss_legendre(count).into_iter().map(point).collect()
+    }
+
+    /// Adds the residual stretches along and around that `stretch` returns at a reference radius.
+    pub fn with_residual(mut self, stretch: impl Fn(f64) -> [f64; 2]) -> Self {
+        for (q, &radius) in self.radius.iter().enumerate() {
+            let [along, around] = stretch(radius);
+            self.inverse_residual[q] = [1.0 / along, 1.0 / around];
+            self.weight[q] = self.weight_at_rest[q] * (along * around);
+        }
+        self
     }
 }
 

@@ -46,11 +46,10 @@ impl SplineTube {
     ) -> BlockBanded {
         let (p, m) = (self.degree(), self.row_size());
         let mut matrix = BlockBanded::zeros(self.axial.functions(), m, p);
-        let all = |tube: &Self| tube.around.iter().map(rotations).collect::<Vec<_>>();
-        let own = all(self);
+        let own: Vec<_> = self.around.iter().map(rotations).collect();
         self.add_elastic_tangent(load, u, &own, &mut matrix);
-        if let Some(volume) = &self.volumetric {
-            volume.add_elastic_tangent(load, u, &all(volume), &mut matrix);
+        for part in &self.parts {
+            part.add_elastic_tangent(load, u, &own, &mut matrix);
         }
         self.add_wall_tangent(load, u, &own, &mut matrix);
         matrix

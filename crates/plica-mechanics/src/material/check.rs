@@ -96,14 +96,15 @@ pub fn check_law<L: Law>(law: &L) -> Result<(), LawError> {
 /// Direction dF of the derivatives.
 const DIRECTION: Tensor2 = Tensor2([[0.3, -0.7, 0.2], [0.5, 0.4, -0.1], [0.6, 0.1, -0.8]]);
 
-/// Deformation gradients on a line from the identity to a large deformation.
+/// Deformation gradients on a line from the identity to a large deformation, without the identity: the stress of fibres that
+/// bear no compression has a kink there.
 fn deformations() -> [Tensor2; 8] {
     let H = [[0.2, 0.3, -0.1], [0.15, -0.1, 0.25], [-0.2, 0.1, -0.15]];
     [0, 1, 2, 3, 4, 5, 6, 7].map(|n| {
         let mut F = Tensor2::IDENTITY;
         for i in 0..3 {
             for j in 0..3 {
-                F.0[i][j] += f64::from(n) / 7.0 * H[i][j];
+                F.0[i][j] += f64::from(n + 1) / 8.0 * H[i][j];
             }
         }
         F

@@ -1,7 +1,8 @@
 //! Hyperelastic laws: the strain energy density of an elastic deformation and its derivatives.
 //!
 //! A law is a function w(Fe) of the elastic part of the deformation gradient, energy per unit
-//! *grown* volume, with its exact first and second derivatives. Each file holds one law;
+//! *grown* volume, with its exact first and second derivatives. The columns of Fe are its components (along,
+//! outwards, around) in the stress-free wall, so that a direction of a law, such as that of fibres, is a constant vector. Each file holds one law;
 //! CONTRIBUTING.md shows how to add one.
 //!
 //! | letter | meaning | unit | Rust |
@@ -17,16 +18,29 @@
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
 mod check;
+mod composite;
 mod custom;
+mod demiray;
+mod fibres;
+mod first_invariant;
+mod gent;
 mod mooney_rivlin;
 mod neo_hookean;
 mod tangent_data;
+mod yeoh;
 
 pub use check::{LawError, check_law};
+pub use composite::{Composite, Matrix};
 pub use custom::CustomLaw;
+pub use demiray::Demiray;
+pub use fibres::Fibres;
+pub use gent::Gent;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::{NeoHookean, Volumetric};
 pub use tangent_data::{ModuliData, TangentData};
+pub use yeoh::Yeoh;
+
+use custom::ByLanes;
 
 use crate::tensor::{Real, Tensor2};
 
@@ -58,6 +72,8 @@ pub enum Material {
     NeoHookean(NeoHookean),
     /// Compressible Mooney–Rivlin.
     MooneyRivlin(MooneyRivlin),
+    /// Another isotropic law, or one with fibres.
+    Composite(Composite),
     /// A law of a user's own.
     Custom(CustomLaw),
 }
@@ -68,6 +84,10 @@ macro_rules! with_law {
         match $material {
             Material::NeoHookean($law) => $value,
             Material::MooneyRivlin($law) => $value,
+            Material::Composite(law) => {
+                let $law = &ByLanes(law);
+                $value
+            }
             Material::Custom($law) => $value,
         }
     };
@@ -82,12 +102,23 @@ impl Material {
         }
     }
 
+    /// Returns whether the law is known to be the same after reflection in a plane through the axis. A custom law is
+    /// not known to be.
+    pub fn is_mirror_symmetric(&self) -> bool {
+        match self {
+            Self::NeoHookean(_) | Self::MooneyRivlin(_) => true,
+            Self::Composite(law) => law.is_mirror_symmetric(),
+            Self::Custom(_) => false,
+        }
+    }
+
     /// Splits the law into the part without and the part with its volumetric constant λ, to which
     /// reduced integration applies; their sum is the law. A custom law has no such parts.
     pub fn parts(&self) -> Option<[Self; 2]> {
         match self {
             Self::NeoHookean(law) => Some(law.parts().map(Self::NeoHookean)),
             Self::MooneyRivlin(law) => Some(law.parts().map(Self::MooneyRivlin)),
+            Self::Composite(law) => Some(law.parts().map(Self::Composite)),
             Self::Custom(_) => None,
         }
     }

@@ -13,6 +13,53 @@ fn laws() -> Vec<Material> {
         mooney_rivlin(0.4, 1.0),
         mooney_rivlin(0.3, 0.0),
         Material::Custom(CustomLaw::new(MooneyRivlin::new(1.0, 0.4, 0.5))),
+        composite(yeoh(), vec![]),
+        composite(demiray(), vec![]),
+        composite(gent(), vec![]),
+    ]
+}
+
+fn composite(matrix: Matrix, fibres: Vec<Fibres>) -> Material {
+    Material::Composite(Composite { matrix, fibres })
+}
+
+fn yeoh() -> Matrix {
+    let (c, bulk) = ([0.2, 0.1, 0.03], 20.0);
+    Matrix::Yeoh(Yeoh { c, bulk })
+}
+
+fn demiray() -> Matrix {
+    Matrix::Demiray(Demiray {
+        shear_modulus: 0.4,
+        stiffening: 1.3,
+        bulk: 20.0,
+    })
+}
+
+fn gent() -> Matrix {
+    Matrix::Gent(Gent {
+        shear_modulus: 0.4,
+        limit: 2.5,
+        bulk: 20.0,
+    })
+}
+
+/// Laws with fibres: without and with dispersion, of one hand and of both.
+fn laws_with_fibres() -> Vec<Material> {
+    let media = Fibres::new([0.8, 0.84], 0.0, 0.5);
+    let dispersed = Fibres::new([0.3, 4.0], 0.226, 1.1);
+    let linear = Fibres::new([0.5, 0.0], 0.1, 0.0);
+    let neo_hookean = Matrix::NeoHookean(quadratic(0.45));
+    vec![
+        composite(neo_hookean, vec![media]),
+        composite(neo_hookean, vec![media, media.mirrored()]),
+        composite(
+            Matrix::MooneyRivlin(MooneyRivlin::new(1.0, 0.4, 0.5)),
+            vec![dispersed, dispersed.mirrored(), linear],
+        ),
+        composite(demiray(), vec![media, linear, dispersed]),
+        composite(yeoh(), vec![linear]),
+        composite(gent(), vec![media, dispersed]),
     ]
 }
 
@@ -28,7 +75,7 @@ const DEFORMED: Tensor2 = Tensor2([[1.2, 0.3, -0.1], [0.15, 0.9, 0.25], [-0.2, 0
 
 #[test]
 fn every_law_satisfies_the_identities() {
-    for law in laws() {
+    for law in laws().into_iter().chain(laws_with_fibres()) {
         // The law itself, with its own tangent data, and as a variant.
         with_law!(&law, own => check_law(own)).unwrap_or_else(|e| panic!("{law:?}: {e}"));
         check_law(&law).unwrap_or_else(|e| panic!("{law:?}: {e}"));
@@ -46,8 +93,129 @@ fn every_law_is_isotropic() {
 }
 
 #[test]
+fn laws_without_fibres_along_a_plane_are_mirror_symmetric() {
+    let expected = [false, true, true, false, true, false];
+    for (law, expected) in laws_with_fibres().iter().zip(expected) {
+        assert_eq!(law.is_mirror_symmetric(), expected, "{law:?}");
+        // Reflection of the direction along the tube.
+        let mut reflected = Tensor2::IDENTITY;
+        reflected.0[0][0] = -1.0;
+        let F = DEFORMED.times(reflected);
+        let F = reflected.times(F);
+        let same = (law.energy(&F) / law.energy(&DEFORMED) - 1.0).abs() < 1e-13;
+        assert_eq!(same, expected, "{law:?}");
+    }
+}
+
+#[test]
+fn fibres_have_the_values_of_their_formulas() {
+    // Uniaxial stretch around the tube of fibres at 30° from the circumference.
+    let (k1, k2, kappa, stretch) = (0.7, 1.9, 0.12, 1.2_f64);
+    let family = Fibres::new([k1, k2], kappa, 30.0_f64.to_radians());
+    let mut F = Tensor2::IDENTITY;
+    F.0[2][2] = stretch;
+    let I4 = 0.25 + 0.75 * stretch * stretch;
+    let E = kappa * (stretch * stretch - 1.0) + (1.0 - 3.0 * kappa) * (I4 - 1.0);
+    let expected = 0.5 * k1 / k2 * ((k2 * E * E).exp() - 1.0);
+    assert!((family.energy(&F) / expected - 1.0).abs() < 1e-13);
+    // No energy in compression.
+    F.0[2][2] = 0.9;
+    assert_eq!(family.energy(&F), 0.0);
+    // Without the exponent it is the limit of a small one, and full dispersion is isotropic.
+    F.0[2][2] = stretch;
+    let small = Fibres::new([k1, 1e-6], kappa, 0.3).energy(&F);
+    let none = Fibres::new([k1, 0.0], kappa, 0.3).energy(&F);
+    assert!((small / none - 1.0).abs() < 1e-6);
+    let of_angle = |angle| Fibres::new([k1, k2], 1.0 / 3.0, angle).energy(&DEFORMED);
+    assert!((of_angle(0.1) / of_angle(1.2) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn laws_with_fibres_are_elliptic_at_large_deformations() {
+    // Waves along n with displacements m have the stiffness m ⊗ n : A : m ⊗ n.
+    for law in laws_with_fibres() {
+        for scale in [-0.8, 0.5, 0.9] {
+            let mut F = Tensor2::IDENTITY;
+            for i in 0..3 {
+                for j in 0..3 {
+                    F.0[i][j] += scale * (DEFORMED.0[i][j] - Tensor2::IDENTITY.0[i][j]);
+                }
+            }
+            let A = law.moduli(&F);
+            for s in 0..40 {
+                let unit = |seed: f64| {
+                    let (a, b) = (
+                        seed * 2.399_963,
+                        (1.0 - 2.0 * ((0.618_034 * seed) % 1.0)).acos(),
+                    );
+                    [b.sin() * a.cos(), b.sin() * a.sin(), b.cos()]
+                };
+                let (n, m) = (unit(f64::from(s)), unit(f64::from(3 * s % 40) + 0.3));
+                let mut stiffness = 0.0;
+                for k in 0..3 {
+                    for l in 0..3 {
+                        for j in 0..3 {
+                            for i in 0..3 {
+                                let (r, c) = (3 * k + j, 3 * l + i);
+                                let a = if k <= l { A[r][c] } else { A[c][r] };
+                                stiffness += m[j] * n[k] * a * m[i] * n[l];
+                            }
+                        }
+                    }
+                }
+                assert!(stiffness > 0.0, "{law:?}: {stiffness}");
+            }
+        }
+    }
+}
+
+#[test]
+fn laws_of_the_first_invariant_have_their_limits() {
+    let mu = 0.4;
+    let neo_hookean = NeoHookean {
+        mu,
+        lambda: 20.0,
+        volumetric: Volumetric::Quadratic,
+    };
+    let expected = neo_hookean.energy(&DEFORMED);
+    for (matrix, tolerance) in [
+        (
+            Matrix::Yeoh(Yeoh {
+                c: [0.5 * mu, 0.0, 0.0],
+                bulk: 20.0,
+            }),
+            1e-14,
+        ),
+        (
+            Matrix::Demiray(Demiray {
+                shear_modulus: mu,
+                stiffening: 1e-6,
+                bulk: 20.0,
+            }),
+            1e-5,
+        ),
+        (
+            Matrix::Gent(Gent {
+                shear_modulus: mu,
+                limit: 1e6,
+                bulk: 20.0,
+            }),
+            1e-5,
+        ),
+    ] {
+        let found = composite(matrix, vec![]).energy(&DEFORMED);
+        assert!((found / expected - 1.0).abs() < tolerance, "{matrix:?}");
+        assert_eq!(matrix.shear_modulus(), mu);
+    }
+    // Beyond the limit of the extension there is no energy.
+    let mut F = Tensor2::IDENTITY;
+    F.0[0][0] = 2.5;
+    assert!(composite(gent(), vec![]).energy(&F).is_nan());
+}
+
+#[test]
 fn the_parts_of_a_law_add_up_to_it() {
-    for law in laws() {
+    for law in laws().into_iter().chain(laws_with_fibres()) {
         if let Some([shape, volume]) = law.parts() {
             let sum = shape.energy(&DEFORMED) + volume.energy(&DEFORMED);
             assert!((sum / law.energy(&DEFORMED) - 1.0).abs() < 1e-13, "{law:?}");

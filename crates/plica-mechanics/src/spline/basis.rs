@@ -5,14 +5,18 @@
 pub struct Basis {
     degree: usize,
     knots: Vec<f64>,
+    /// The first function of every element, which is the number of its knot span.
+    first: Vec<usize>,
 }
 
 /// Values at a point of the p + 1 functions that are not zero on an element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
-    /// Element (knot span).
+    /// Element.
     pub element: usize,
-    /// N, one per function; function `b` of element `e` has the number `e + b`.
+    /// The first function that is not zero on the element; entry `b` below belongs to function `first + b`.
+    pub first: usize,
+    /// N, one per function.
     pub value: Vec<f64>,
     /// dN/dx.
     pub slope: Vec<f64>,
@@ -24,26 +28,30 @@ impl Basis {
     pub fn open(degree: usize, breakpoints: &[f64]) -> Self {
         assert!(degree >= 1 && breakpoints.len() >= 2);
         assert!(breakpoints.windows(2).all(|w| w[0] < w[1]));
-        let (first, last) = (breakpoints[0], breakpoints[breakpoints.len() - 1]);
-        let mut knots = vec![first; degree];
-        knots.extend_from_slice(breakpoints);
-        knots.extend(std::iter::repeat_n(last, degree));
-        Self { degree, knots }
+        Self::with_multiplicities(degree, breakpoints, &vec![1; breakpoints.len() - 2])
     }
 
-    /// Creates a basis with inner knots of this multiplicity. Its elements are knot spans, some of
-    /// them empty.
-    pub(super) fn with_multiplicity(
+    /// Creates a basis on open knots whose inner breakpoints are repeated: with multiplicity m, functions have p − m
+    /// continuous derivatives there; with m = p they have a kink.
+    pub fn with_multiplicities(
         degree: usize,
-        multiplicity: usize,
         breakpoints: &[f64],
+        multiplicities: &[usize],
     ) -> Self {
-        let inner = &breakpoints[1..breakpoints.len() - 1];
+        assert_eq!(multiplicities.len() + 2, breakpoints.len());
         let (first, last) = (breakpoints[0], breakpoints[breakpoints.len() - 1]);
         let mut knots = vec![first; degree + 1];
-        knots.extend(inner.iter().flat_map(|&t| vec![t; multiplicity]));
+        let mut starts = vec![0];
+        for (&t, &m) in breakpoints[1..].iter().zip(multiplicities) {
+            knots.extend(vec![t; m]);
+            starts.push(knots.len() - 1 - degree);
+        }
         knots.extend(vec![last; degree + 1]);
-        Self { degree, knots }
+        Self {
+            degree,
+            knots,
+            first: starts,
+        }
     }
 
     /// Creates the element [0, 1] of a uniform periodic basis.
@@ -52,6 +60,7 @@ impl Basis {
         Self {
             degree,
             knots: (-p..=p + 1).map(f64::from).collect(),
+            first: vec![0],
         }
     }
 
@@ -67,12 +76,23 @@ impl Basis {
 
     /// Returns the number of elements (non-empty knot spans).
     pub fn elements(&self) -> usize {
-        self.knots.len() - 2 * self.degree - 1
+        self.first.len()
+    }
+
+    /// Returns the first function that is not zero on an element; there are p + 1 of them.
+    pub fn first(&self, element: usize) -> usize {
+        self.first[element]
     }
 
     /// Returns the ends of an element.
     pub fn element(&self, e: usize) -> (f64, f64) {
-        (self.knots[self.degree + e], self.knots[self.degree + e + 1])
+        let span = self.degree + self.first[e];
+        (self.knots[span], self.knots[span + 1])
+    }
+
+    /// Returns the knots, repeated ones included.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
     }
 
     /// Returns the position at an element number with fraction: 2.5 is the middle of the third.
@@ -92,7 +112,11 @@ impl Basis {
     /// Returns the element that contains `x`; the nearest one if `x` is outside.
     pub fn find(&self, x: f64) -> usize {
         let inner = &self.knots[self.degree + 1..self.knots.len() - self.degree - 1];
-        inner.partition_point(|&t| t <= x)
+        let span = inner.partition_point(|&t| t <= x);
+        match self.first.get(span) {
+            Some(&first) if first == span => span,
+            _ => self.first.partition_point(|&first| first <= span) - 1,
+        }
     }
 
     /// Returns the Greville abscissae, the control values of x.
@@ -134,7 +158,7 @@ impl Basis {
     /// that are not zero there.
     pub fn bezier_points(&self, element: usize) -> Vec<Vec<f64>> {
         let p = self.degree;
-        let t = &self.knots[element..];
+        let t = &self.knots[self.first[element]..];
         let (from, to) = self.element(element);
         // Control point k is the blossom at p − k times the first end and k times the last, by de Boor's algorithm.
         let blossom = |k: usize, function: usize| {
@@ -163,9 +187,10 @@ impl Basis {
     /// Returns values and slopes at a point of a given element (on a shared edge the side matters).
     pub fn evaluate_in(&self, element: usize, x: f64) -> Values {
         let p = self.degree;
-        let lower = self.values(element, x, p - 1);
+        let first = self.first[element];
+        let lower = self.values(first, x, p - 1);
         // N'_{i,p} = p ( N_{i,p−1} / (t_{i+p} − t_i) − N_{i+1,p−1} / (t_{i+p+1} − t_{i+1}) )
-        let t = &self.knots[element..];
+        let t = &self.knots[first..];
         let scaled: Vec<f64> = (0..p)
             .map(|b| p as f64 * lower[b] / (t[b + 1 + p] - t[b + 1]))
             .collect();
@@ -178,14 +203,15 @@ impl Basis {
             .collect();
         Values {
             element,
-            value: self.values(element, x, p),
+            first,
+            value: self.values(first, x, p),
             slope,
         }
     }
 
-    /// Returns the d + 1 functions of degree d that are not zero on an element.
-    fn values(&self, element: usize, x: f64, d: usize) -> Vec<f64> {
-        let span = element + self.degree;
+    /// Returns the d + 1 functions of degree d that are not zero on the element of a first function.
+    fn values(&self, first: usize, x: f64, d: usize) -> Vec<f64> {
+        let span = first + self.degree;
         let t = &self.knots;
         let mut n = vec![0.0; d + 1];
         n[0] = 1.0;
@@ -211,6 +237,36 @@ mod tests {
         (1..=5).map(|p| Basis::open(p, &[0.0, 0.3, 0.5, 0.55, 1.4, 3.0]))
     }
 
+    /// Bases with a kink at 0.5.
+    fn kinked() -> impl Iterator<Item = Basis> {
+        let breakpoints = [0.0, 0.3, 0.5, 0.55, 1.4, 3.0];
+        (1..=5).map(move |p| Basis::with_multiplicities(p, &breakpoints, &[1, p, 1, 1]))
+    }
+
+    #[test]
+    fn a_repeated_knot_separates_the_functions_on_its_sides() {
+        for basis in kinked() {
+            let p = basis.degree();
+            assert_eq!((basis.elements(), basis.functions()), (5, 5 + p + p - 1));
+            assert_eq!([0, 1, 2, 3].map(|e| basis.first(e)), [0, 1, p + 1, p + 2]);
+            assert_eq!(basis.element(2), (0.5, 0.55));
+            assert_eq!(
+                [0.0, 0.4, 0.5, 0.52, 1.3, 2.0, 9.0].map(|x| basis.find(x)),
+                [0, 1, 2, 2, 3, 4, 4]
+            );
+            // The function of the knot is one there, and all the others are zero.
+            for element in [1, 2] {
+                let at = basis.evaluate_in(element, 0.5);
+                let one = p + 1 - at.first;
+                assert!((at.value[one] - 1.0).abs() < 1e-14, "{at:?}");
+            }
+            assert!((basis.greville()[p + 1] - 0.5).abs() < 1e-15);
+            // Its slope jumps: the two sides are independent.
+            let slopes = [1, 2].map(|e| basis.evaluate_in(e, 0.5).slope);
+            assert!(slopes[0][p] > 0.0 && slopes[1][0] < 0.0);
+        }
+    }
+
     const POINTS: [f64; 7] = [0.0, 0.12, 0.3, 0.52, 1.0, 2.99, 3.0];
 
     #[test]
@@ -221,7 +277,7 @@ mod tests {
             for x in [0.3, 0.41, 0.55, 0.9] {
                 let at = basis.evaluate(x);
                 for (power, exact) in [1.0, x, x * x].into_iter().enumerate() {
-                    let values = at.value.iter().zip(&control[at.element..]);
+                    let values = at.value.iter().zip(&control[at.first..]);
                     let value: f64 = values.map(|(n, c)| n * c[power]).sum();
                     assert!((value - exact).abs() < 1e-14, "{p} {x}: {value} {exact}");
                 }
@@ -231,7 +287,7 @@ mod tests {
 
     #[test]
     fn bezier_points_describe_the_same_curve() {
-        for basis in bases() {
+        for basis in bases().chain(kinked()) {
             let p = basis.degree();
             for element in 0..basis.elements() {
                 let (from, to) = basis.element(element);
@@ -255,7 +311,7 @@ mod tests {
 
     #[test]
     fn functions_sum_to_one_and_slopes_to_zero() {
-        for basis in bases() {
+        for basis in bases().chain(kinked()) {
             for x in POINTS {
                 let v = basis.evaluate(x);
                 assert!((v.value.iter().sum::<f64>() - 1.0).abs() < 1e-14);
@@ -267,16 +323,13 @@ mod tests {
 
     #[test]
     fn greville_abscissae_reproduce_a_line() {
-        for basis in bases() {
+        for basis in bases().chain(kinked()) {
             let g = basis.greville();
             assert_eq!((g[0], g[g.len() - 1]), (0.0, 3.0));
             for x in POINTS {
                 let v = basis.evaluate(x);
                 let sum = |n: &[f64]| -> f64 {
-                    n.iter()
-                        .enumerate()
-                        .map(|(b, n)| n * g[v.element + b])
-                        .sum()
+                    n.iter().enumerate().map(|(b, n)| n * g[v.first + b]).sum()
                 };
                 assert!((sum(&v.value) - x).abs() < 1e-14);
                 assert!((sum(&v.slope) - 1.0).abs() < 1e-12);

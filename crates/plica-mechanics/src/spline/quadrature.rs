@@ -49,7 +49,7 @@ pub fn reduced_rule(p: usize, elements: usize) -> Option<Vec<Vec<(f64, f64)>>> {
     // In lengths of an element, so that rounding does not depend on the position of the wall.
     let breakpoints: Vec<f64> = (0..=elements).map(|e| e as f64).collect();
     let lower = Basis::open(p - 1, &breakpoints);
-    let target = Basis::with_multiplicity(p, 2, &breakpoints);
+    let target = Basis::with_multiplicities(p, &breakpoints, &vec![2; elements - 1]);
     let integrals = target.integrals();
     let (mut points, mut weights) = (lower.greville(), lower.integrals());
     for _ in 0..RULE_STEPS {
@@ -81,7 +81,7 @@ fn rule_residual(target: &Basis, integrals: &[f64], points: &[f64], weights: &[f
     for (&x, w) in points.iter().zip(weights) {
         let at = target.evaluate(x);
         for (a, value) in at.value.iter().enumerate() {
-            residual[at.element + a] += w * value;
+            residual[at.first + a] += w * value;
         }
     }
     residual
@@ -95,7 +95,7 @@ fn newton_step(target: &Basis, residual: &mut [f64], points: &mut [f64], weights
     for (at, w) in at.iter().zip(weights.iter()) {
         for (a, (value, slope)) in at.value.iter().zip(&at.slope).enumerate() {
             for (b, (other, other_slope)) in at.value.iter().zip(&at.slope).enumerate() {
-                matrix[at.element + a][p + b - a] += value * other + w * w * slope * other_slope;
+                matrix[at.first + a][p + b - a] += value * other + w * w * slope * other_slope;
             }
         }
     }
@@ -103,7 +103,7 @@ fn newton_step(target: &Basis, residual: &mut [f64], points: &mut [f64], weights
     let end = target.element(target.elements() - 1).1;
     for (i, at) in at.iter().enumerate() {
         let sum = |of: &[f64]| -> f64 {
-            let values = of.iter().zip(&residual[at.element..]);
+            let values = of.iter().zip(&residual[at.first..]);
             values.map(|(b, y)| b * y).sum()
         };
         points[i] = (points[i] - weights[i] * sum(&at.slope)).clamp(0.0, end);

@@ -22,6 +22,10 @@ pub trait Real:
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// Returns the natural logarithm.
     fn ln(self) -> Self;
+    /// Returns the exponential function.
+    fn exp(self) -> Self;
+    /// Returns `value` where this number is positive, else zero.
+    fn when_positive(self, value: Self) -> Self;
     /// Returns `self · factor`.
     fn times(self, factor: f64) -> Self;
     /// Returns the numbers of the eight lanes; a single number fills all of them.
@@ -42,6 +46,14 @@ impl Real for f64 {
     #[inline(always)]
     fn ln(self) -> Self {
         f64::ln(self)
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        f64::exp(self)
+    }
+    #[inline(always)]
+    fn when_positive(self, value: Self) -> Self {
+        if self > 0.0 { value } else { 0.0 }
     }
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
@@ -108,6 +120,55 @@ impl<S: Simd> Real for f64x8<S> {
         let ln = Real::mul_add(e, splat(LN2_HIGH), f - (half - small));
         let valid = self.simd_gt(splat(0.0)) & self.simd_lt(splat(f64::MAX));
         valid.select(ln, splat(f64::NAN))
+    }
+    // x = k ln 2 + r with |r| ≤ ½ ln 2, and exp r from the rational function of fdlibm's `e_exp.c` (error below one
+    // unit in the last place). Below −708 it is zero.
+    #[inline(always)]
+    fn exp(self) -> Self {
+        const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
+        const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+        const P: [f64; 5] = [
+            1.666_666_666_666_660_2e-1,
+            -2.777_777_777_701_559_3e-3,
+            6.613_756_321_437_934e-5,
+            -1.653_390_220_546_525_2e-6,
+            4.138_136_797_057_238_5e-8,
+        ];
+        // Adding it rounds a number to an integer, which its last bits then hold.
+        const ROUND: f64 = 6_755_399_441_055_744.0;
+        const LARGEST: f64 = 709.7;
+        const SMALLEST: f64 = -708.0;
+        let simd = self.simd;
+        let splat = |x: f64| Self::splat(simd, x);
+        let rounded = Real::mul_add(self, splat(std::f64::consts::LOG2_E), splat(ROUND));
+        let k = rounded - splat(ROUND);
+        let high = Real::mul_add(k, splat(-LN2_HIGH), self);
+        let low = k * LN2_LOW;
+        let r = high - low;
+        let t = r * r;
+        let mut series = splat(P[4]);
+        for p in [P[3], P[2], P[1], P[0]] {
+            series = Real::mul_add(series, t, splat(p));
+        }
+        let c = r - t * series;
+        let y = splat(1.0) - ((low - (r * c) / (splat(2.0) - c)) - high);
+        let bits: i64x8<S> = y.bitcast();
+        let shift: i64x8<S> = rounded.bitcast();
+        let shift = (shift - i64x8::splat(simd, ROUND.to_bits() as i64)) << 52;
+        let exp: Self = (bits + shift).bitcast();
+        let above = self.simd_gt(splat(LARGEST));
+        let below = self.simd_lt(splat(SMALLEST));
+        let within = self.simd_le(splat(LARGEST)) & self.simd_ge(splat(SMALLEST));
+        let outside = above.select(
+            splat(f64::INFINITY),
+            below.select(splat(0.0), splat(f64::NAN)),
+        );
+        within.select(exp, outside)
+    }
+    #[inline(always)]
+    fn when_positive(self, value: Self) -> Self {
+        let zero = Self::splat(self.simd, 0.0);
+        self.simd_gt(zero).select(value, zero)
     }
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
@@ -207,6 +268,68 @@ mod tests {
             )))
         });
         assert!(invalid.iter().all(|x| x.is_nan()), "{invalid:?}");
+    }
+
+    #[test]
+    fn the_exponential_of_a_vector_is_that_of_each_lane() {
+        let exp = |x: [f64; LANES]| {
+            with_vectors!(simd => {
+                <[f64; LANES]>::from(Real::exp(f64x8::simd_from(simd, x)))
+            })
+        };
+        for i in -7000..7000 {
+            let x = 0.1 * f64::from(i);
+            let x = [
+                x,
+                x + 0.013,
+                1e-3 * x,
+                1e-6 * x,
+                1e-9 * x,
+                1e-17 * x,
+                -x,
+                0.01 * x,
+            ];
+            for (found, x) in exp(x).iter().zip(x) {
+                let exact = x.exp();
+                assert!(
+                    (found - exact).abs() <= 2.0 * f64::EPSILON * exact,
+                    "exp {x} = {found}"
+                );
+            }
+        }
+        let found = exp([
+            0.0,
+            -0.0,
+            710.0,
+            f64::INFINITY,
+            -709.0,
+            f64::NEG_INFINITY,
+            -1e9,
+            1e9,
+        ]);
+        let (inf, one) = (f64::INFINITY, 1.0);
+        assert_eq!(found, [one, one, inf, inf, 0.0, 0.0, 0.0, inf]);
+        assert!(exp([f64::NAN; LANES]).iter().all(|x| x.is_nan()));
+    }
+
+    #[test]
+    fn a_value_is_kept_where_a_number_is_positive() {
+        let x = [
+            1.0,
+            0.0,
+            -1.0,
+            f64::NAN,
+            1e-300,
+            -0.0,
+            f64::INFINITY,
+            -1e-300,
+        ];
+        let kept = with_vectors!(simd => {
+            let x = f64x8::simd_from(simd, x);
+            <[f64; LANES]>::from(Real::when_positive(x, x.like(3.0)))
+        });
+        assert_eq!(kept, x.map(|x| Real::when_positive(x, 3.0)));
+        assert_eq!(kept, [3.0, 0.0, 0.0, 0.0, 3.0, 0.0, 3.0, 0.0]);
     }
 
     #[test]

@@ -8,15 +8,16 @@ mod load;
 mod mesh;
 mod obstacle;
 mod random;
+mod wall_layer;
 
 pub use imperfection::{Axial, EndDirection, Imperfection, Mode, Part, Shape, Wave};
 pub use load::{EndMotion, Load, Pressure};
-pub use mesh::{Integration, Mesh, Symmetry};
+pub use mesh::{Integration, Mesh, MeshLayer, Symmetry};
 pub use obstacle::{Distance, Obstacle, ObstacleShape, Placement, turned};
 pub use random::Random;
+pub use wall_layer::{ResidualStretch, WallLayer};
 
 use crate::activation::{Direction, Muscle};
-use crate::material::Material;
 
 /// A circular tube of outer diameter 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,9 +26,9 @@ pub struct Tube {
     pub length: f64,
     /// Wall thickness H, in D; below ½.
     pub thickness: f64,
-    /// Law of the wall, with stresses in E.
-    pub material: Material,
-    /// Muscles of the wall. Zones of muscles of one direction do not overlap.
+    /// Layers of the wall from the inside out, at least one. Their shares of the thickness add up to one.
+    pub layers: Vec<WallLayer>,
+    /// Muscles of the wall. Zones of muscles of one direction do not overlap in a layer.
     pub muscles: Vec<Muscle>,
     /// Supports of the colon end (z = 0) and the ileum end (z = L).
     pub ends: [Support; 2],
@@ -66,6 +67,38 @@ impl Tube {
         Self::OUTER_RADIUS - self.thickness
     }
 
+    /// Returns the radii of the faces of the layers, from the inside out: one more than there are layers.
+    pub fn faces(&self) -> Vec<f64> {
+        let mut share = 0.0;
+        let mut faces = vec![self.inner_radius()];
+        for layer in &self.layers[..self.layers.len() - 1] {
+            share += layer.share;
+            faces.push(self.inner_radius() + share * self.thickness);
+        }
+        faces.push(Self::OUTER_RADIUS);
+        faces
+    }
+
+    /// Returns the residual stretches along and around in a layer at a radius.
+    pub fn residual_stretch(&self, layer: usize, radius: f64) -> [f64; 2] {
+        let residual = &self.layers[layer].residual;
+        if residual.is_none() {
+            return [1.0; 2];
+        }
+        let faces = self.faces();
+        let [inner, outer] = [faces[layer], faces[layer + 1]];
+        residual.at((radius - inner) / (outer - inner))
+    }
+
+    /// Returns the largest stiffness under uniaxial strain of the layers, at small strains.
+    pub fn longitudinal_modulus(&self) -> f64 {
+        let moduli = self
+            .layers
+            .iter()
+            .map(|layer| layer.material.longitudinal_modulus());
+        moduli.fold(0.0, f64::max)
+    }
+
     /// Returns the load at rest: all muscles at ratio one, no displacement of the ends, no pressure, obstacles at their
     /// first placement.
     pub fn rest(&self) -> Load {
@@ -81,17 +114,17 @@ impl Tube {
         }
     }
 
-    /// Returns the grown stretches (θζ, θη) at z under a load, of muscles without imperfections
+    /// Returns the grown stretches (θζ, θη) of a layer at z under a load, of muscles without imperfections
     /// (Okino et al. 2025, Eq. (3)).
-    pub fn stretches(&self, z: f64, load: &Load) -> (f64, f64) {
-        self.grown(z, load, |_, theta| theta)
+    pub fn stretches(&self, layer: usize, z: f64, load: &Load) -> (f64, f64) {
+        self.grown(layer, z, load, |_, theta| theta)
     }
 
-    /// Returns the grown stretches (θζ, θη) at z and the angle `phi`, in radians, under a load, with
+    /// Returns the grown stretches (θζ, θη) of a layer at z and the angle `phi`, in radians, under a load, with
     /// θ − 1 of each muscle multiplied by [`Tube::strength`]. Without imperfections of muscles it
     /// equals [`Tube::stretches`] to the bit.
-    pub fn stretches_at(&self, z: f64, phi: f64, load: &Load) -> (f64, f64) {
-        self.grown(z, load, |m, theta| match self.strength(m, z, phi) {
+    pub fn stretches_at(&self, layer: usize, z: f64, phi: f64, load: &Load) -> (f64, f64) {
+        self.grown(layer, z, load, |m, theta| match self.strength(m, z, phi) {
             1.0 => theta,
             strength => 1.0 + strength * (theta - 1.0),
         })
@@ -117,10 +150,20 @@ impl Tube {
         })
     }
 
-    /// Returns the products of the stretches of the muscles along and around, each θ changed by `change`.
-    fn grown(&self, z: f64, load: &Load, change: impl Fn(usize, f64) -> f64) -> (f64, f64) {
+    /// Returns the products of the stretches of the muscles of a layer along and around, each θ changed by `change`.
+    fn grown(
+        &self,
+        layer: usize,
+        z: f64,
+        load: &Load,
+        change: impl Fn(usize, f64) -> f64,
+    ) -> (f64, f64) {
+        let idle = &self.layers[layer].idle_muscles;
         let (mut along, mut around) = (1.0, 1.0);
         for (m, (muscle, &ratio)) in self.muscles.iter().zip(&load.muscles).enumerate() {
+            if idle.contains(&m) {
+                continue;
+            }
             let theta = change(m, muscle.stretch(z, ratio, self.length));
             match muscle.direction {
                 Direction::Longitudinal => along *= theta,
@@ -162,14 +205,16 @@ impl Tube {
 mod tests {
     use super::*;
     use crate::activation::Profile;
-    use crate::material::NeoHookean;
+    use crate::material::{Material, NeoHookean};
     use std::f64::consts::TAU;
 
     fn tube(wave: Wave) -> Tube {
         Tube {
             length: 3.0,
             thickness: 0.06,
-            material: Material::NeoHookean(NeoHookean::new(1.0, 0.495)),
+            layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+                1.0, 0.495,
+            )))],
             muscles: vec![Muscle {
                 name: "m".into(),
                 direction: Direction::Circular,
@@ -216,7 +261,7 @@ mod tests {
             (1.7, 0.6, 0.7),
             (2.5, 0.6, 1.4),
         ] {
-            let found = tube.stretches(z, &load);
+            let found = tube.stretches(0, z, &load);
             assert!(
                 (found.0 - along).abs() < 1e-14 && (found.1 - around).abs() < 1e-14,
                 "{z}: {found:?}"
@@ -224,6 +269,32 @@ mod tests {
         }
         let ratio = |load: &Load| (tube.length_ratio(load), tube.diameter_ratio(load));
         assert_eq!(ratio(&tube.rest()), (1.0, 1.0));
+    }
+
+    #[test]
+    fn layers_have_their_own_faces_muscles_and_residual_stretches() {
+        let mut tube = tube(Wave::new(0, 0.0, Axial::Uniform));
+        tube.imperfections.clear();
+        let mut layers = vec![tube.layers[0].clone(); 2];
+        (layers[0].share, layers[1].share) = (0.25, 0.75);
+        layers[0].idle_muscles = vec![0];
+        layers[1].residual.around = [0.9, 1.1];
+        tube.layers = layers;
+        let faces = tube.faces();
+        for (face, expected) in faces.iter().zip([0.44, 0.455, 0.5]) {
+            assert!((face - expected).abs() < 1e-15);
+        }
+        let load = Load {
+            muscles: vec![0.5],
+            ..tube.rest()
+        };
+        let around = [0, 1].map(|layer| tube.stretches(layer, 0.75, &load).1);
+        assert_eq!(around, [1.0, 0.5]);
+        assert_eq!(tube.residual_stretch(0, 0.45), [1.0; 2]);
+        for (radius, expected) in [(0.455, 0.9), (0.4775, 1.0), (0.5, 1.1)] {
+            let [along, around] = tube.residual_stretch(1, radius);
+            assert!(along == 1.0 && (around - expected).abs() < 1e-12);
+        }
     }
 
     #[test]
@@ -236,12 +307,14 @@ mod tests {
             };
             for z in [0.4, 0.6, 0.75, 0.9] {
                 let around = (0..24).map(|i| TAU * f64::from(i) / 24.0);
-                let sum: f64 = around.map(|phi| tube.stretches_at(z, phi, &load).1).sum();
-                let mean = tube.stretches(z, &load).1;
+                let sum: f64 = around
+                    .map(|phi| tube.stretches_at(0, z, phi, &load).1)
+                    .sum();
+                let mean = tube.stretches(0, z, &load).1;
                 assert!((sum / 24.0 - mean).abs() < 1e-15, "{z}: {}", sum / 24.0);
             }
             // In the middle of the zone, at the crest, θ − 1 = −0.75 is a tenth larger.
-            let (along, around) = tube.stretches_at(0.75, 0.2, &load);
+            let (along, around) = tube.stretches_at(0, 0.75, 0.2, &load);
             assert!((around - (1.0 - 1.1 * 0.75)).abs() < 1e-14, "{around}");
             assert_eq!(along, 1.0);
         }

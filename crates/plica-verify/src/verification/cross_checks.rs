@@ -73,7 +73,7 @@ pub fn tangents(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     let whole = small_tube(12);
     let quadratic = {
         let mut model = small_tube(12);
-        model.tube.material = Material::NeoHookean(NeoHookean {
+        model.tube.layers[0].material = Material::NeoHookean(NeoHookean {
             volumetric: Volumetric::Quadratic,
             ..NeoHookean::new(1.0, 0.495)
         });

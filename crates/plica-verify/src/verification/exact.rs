@@ -187,9 +187,9 @@ fn projection(degree: usize, elements: usize) -> Result<f64, VerificationError> 
     for &(x, weight) in &points {
         let at = basis.evaluate(x);
         for (a, n) in at.value.iter().enumerate() {
-            control[at.element + a] += weight * n * wave(x);
+            control[at.first + a] += weight * n * wave(x);
             for (b, m) in at.value.iter().enumerate().skip(a) {
-                mass.add_at(at.element + a, b - a, 0, 0, weight * n * m);
+                mass.add_at(at.first + a, b - a, 0, 0, weight * n * m);
             }
         }
     }
@@ -199,7 +199,7 @@ fn projection(degree: usize, elements: usize) -> Result<f64, VerificationError> 
     factor.solve(&mut control);
     let squares = points.iter().map(|&(x, weight)| {
         let at = basis.evaluate(x);
-        let values = at.value.iter().zip(&control[at.element..]);
+        let values = at.value.iter().zip(&control[at.first..]);
         let value: f64 = values.map(|(n, c)| n * c).sum();
         weight * (value - wave(x)).powi(2)
     });

@@ -14,7 +14,7 @@ use plica::equilibrium::TubeProblem;
 use plica::material::{Material, NeoHookean};
 use plica::solve::{Effort, Equilibrium, ResidualEvaluation, newton};
 use plica::spline::gauss_legendre;
-use plica::tube::{Load, Mesh, Support, Tube};
+use plica::tube::{Load, Mesh, Support, Tube, WallLayer};
 use plica_view::draw::{Chart, Curve, Stroke};
 use std::f64::consts::{PI, TAU};
 
@@ -54,7 +54,9 @@ fn tube() -> Tube {
     Tube {
         length: LENGTH,
         thickness: THICKNESS,
-        material: Material::NeoHookean(NeoHookean::new(1.0, NU)),
+        layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+            1.0, NU,
+        )))],
         muscles: vec![muscle(Direction::Circular), muscle(Direction::Longitudinal)],
         ends: [Support::Fixed; 2],
         imperfections: vec![],
@@ -162,6 +164,7 @@ impl Manufactured {
             grading: 1.0,
             contact_range: 0.25,
             volumetric: Default::default(),
+            layers: vec![],
         };
         let spline = SplineTube::new(&tube(), &mesh, 1);
         let mut forces = vec![0.0; spline.unknowns()];

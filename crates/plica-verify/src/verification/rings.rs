@@ -100,7 +100,7 @@ pub fn inflation(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
 pub fn quadratic(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     let nu = 0.3;
     let mut model = TubeModel::ring(B - A, nu, 8);
-    model.tube.material = Material::NeoHookean(NeoHookean {
+    model.tube.layers[0].material = Material::NeoHookean(NeoHookean {
         volumetric: Volumetric::Quadratic,
         ..NeoHookean::new(1.0, nu)
     });
@@ -166,7 +166,7 @@ pub fn mooney_rivlin(recorder: &mut Recorder<'_>) -> Result<(), VerificationErro
     let mut model = TubeModel::ring(B - A, NU, 20)
         .with_uniform_muscle(Direction::Circular)
         .with_uniform_muscle(Direction::Longitudinal);
-    model.tube.material = Material::MooneyRivlin(MooneyRivlin::new(1.0, NU, share));
+    model.tube.layers[0].material = Material::MooneyRivlin(MooneyRivlin::new(1.0, NU, share));
     let problem = model.problem(1);
     for (growth, p) in [([1.0, 0.8], 0.01), ([1.0, 0.8], 0.03), ([0.75, 0.8], 0.0)] {
         let pressures = [p, 0.0];

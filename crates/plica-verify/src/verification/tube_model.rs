@@ -7,7 +7,7 @@ use plica::equilibrium::TubeProblem;
 use plica::material::{Law, Material, NeoHookean};
 use plica::solve::{Path, Settings, State};
 use plica::stability::Harmonics;
-use plica::tube::{Integration, Load, Mesh, Pressure, Support, Tube};
+use plica::tube::{Integration, Load, Mesh, Pressure, Support, Tube, WallLayer};
 
 /// A tube and its discretisation.
 #[derive(Clone, Debug)]
@@ -36,7 +36,10 @@ impl TubeModel {
         let tube = Tube {
             length,
             thickness,
-            material: Material::NeoHookean(NeoHookean::new(1.0, poisson_ratio)),
+            layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+                1.0,
+                poisson_ratio,
+            )))],
             muscles: vec![],
             ends: [Support::Sliding; 2],
             imperfections: vec![],
@@ -79,6 +82,7 @@ impl TubeModel {
             grading: 1.0,
             contact_range: 0.25,
             volumetric: self.volumetric,
+            layers: vec![],
         };
         TubeProblem::new(SplineTube::new(&self.tube, &mesh, rings))
     }
@@ -144,7 +148,10 @@ pub fn radial_displacement(problem: &TubeProblem, state: &State<Load>, radius: f
 pub fn stress(problem: &TubeProblem, state: &State<Load>, radius: f64) -> [f64; 3] {
     let at = point(problem, radius);
     let Fe = problem.tube.sample(&state.load, &state.u, at).elastic;
-    let sigma = problem.tube.tube.material.stress(&Fe).times(Fe.transpose());
+    let sigma = problem.tube.tube.layers[0]
+        .material
+        .stress(&Fe)
+        .times(Fe.transpose());
     [0, 1, 2].map(|i| sigma.0[i][i] / Fe.determinant())
 }
 

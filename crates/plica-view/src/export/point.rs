@@ -135,7 +135,7 @@ mod tests {
     use crate::sampled_tube::SampledState;
     use plica::assembly::{Point, SplineTube};
     use plica::material::{Material, NeoHookean, Volumetric};
-    use plica::tube::{Integration, Mesh, Tube};
+    use plica::tube::{Integration, Mesh, Tube, WallLayer};
 
     /// Both volumetric laws, with full and with reduced integration.
     #[test]
@@ -143,10 +143,10 @@ mod tests {
         for volumetric in [Volumetric::Logarithmic, Volumetric::Quadratic] {
             for integration in [Integration::Full, Integration::Reduced] {
                 let tube = Tube {
-                    material: Material::NeoHookean(NeoHookean {
+                    layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean {
                         volumetric,
                         ..NeoHookean::new(1.0, 0.3)
-                    }),
+                    }))],
                     ..fixture::short()
                 };
                 let mesh = Mesh {

@@ -13,6 +13,7 @@ pub(super) fn hairpin(gap: f64) -> (SplineTube, Vec<f64>) {
         grading: 1.0,
         contact_range: 0.25,
         volumetric: Default::default(),
+        layers: vec![],
     };
     let tube = SplineTube::new(
         &Tube {

@@ -415,14 +415,16 @@ impl Solver for HarmonicSystem {
 mod tests {
     use super::*;
     use crate::material::{Material, NeoHookean};
-    use crate::tube::{Mesh, Support, Tube};
+    use crate::tube::{Mesh, Support, Tube, WallLayer};
 
     #[test]
     fn reused_buffers_do_not_change_results() {
         let tube = Tube {
             length: 1.0,
             thickness: 0.06,
-            material: Material::NeoHookean(NeoHookean::new(1.0, 0.4)),
+            layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+                1.0, 0.4,
+            )))],
             muscles: vec![],
             ends: [Support::Fixed; 2],
             imperfections: vec![],
@@ -437,6 +439,7 @@ mod tests {
             grading: 1.0,
             contact_range: 0.25,
             volumetric: Default::default(),
+            layers: vec![],
         };
         let tube = Arc::new(SplineTube::new(&tube, &mesh, 36));
         let load = tube.tube.rest();

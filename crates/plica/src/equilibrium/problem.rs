@@ -59,7 +59,7 @@ pub enum TubeSolver {
 impl TubeProblem {
     /// Makes the problem of a tube.
     pub fn new(tube: SplineTube) -> Self {
-        let at_rest = 3e-11 * tube.tube.material.longitudinal_modulus();
+        let at_rest = 3e-11 * tube.tube.longitudinal_modulus();
         let (outer, inner) = (Tube::OUTER_RADIUS, tube.tube.inner_radius());
         let tube = Arc::new(tube);
         Self {
@@ -356,14 +356,16 @@ mod tests {
     use super::*;
     use crate::material::{Material, NeoHookean};
     use crate::solve::{Method, Path, Settings};
-    use crate::tube::{Axial, Imperfection, Mesh, Part, Shape, Support, Wave};
+    use crate::tube::{Axial, Imperfection, Mesh, Part, Shape, Support, WallLayer, Wave};
 
     #[test]
     fn an_oval_ring_of_one_element_along_passes_its_pressures_in_few_solves() {
         let tube = Tube {
             length: 0.5,
             thickness: 0.06,
-            material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+            layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+                1.0, 0.3,
+            )))],
             muscles: vec![],
             ends: [Support::Sliding; 2],
             obstacles: vec![],
@@ -382,6 +384,7 @@ mod tests {
             grading: 1.0,
             contact_range: 0.25,
             volumetric: Default::default(),
+            layers: vec![],
         };
         let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 12));
         let (rest, start) = (tube.rest(), problem.tube.initial_guess());

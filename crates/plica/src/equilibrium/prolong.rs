@@ -146,13 +146,15 @@ mod tests {
     use super::*;
     use crate::assembly::Point;
     use crate::material::{Material, NeoHookean};
-    use crate::tube::{Mesh, Support, Tube};
+    use crate::tube::{Mesh, Support, Tube, WallLayer};
 
     fn tube() -> Tube {
         Tube {
             length: 1.3,
             thickness: 0.1,
-            material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+            layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+                1.0, 0.3,
+            )))],
             muscles: vec![],
             imperfections: vec![],
             obstacles: vec![],
@@ -170,6 +172,7 @@ mod tests {
             grading: 1.0,
             contact_range: 0.25,
             volumetric: Default::default(),
+            layers: vec![],
         };
         SplineTube::new(&tube(), &mesh, rings)
     }

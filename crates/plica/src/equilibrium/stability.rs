@@ -190,14 +190,16 @@ fn seeds(tube: &SplineTube) -> Vec<Vec<f64>> {
 mod tests {
     use super::*;
     use crate::material::{Material, NeoHookean};
-    use crate::tube::{Mesh, Support, Tube};
+    use crate::tube::{Mesh, Support, Tube, WallLayer};
 
     #[test]
     fn of_an_oval_the_sign_of_the_lowest_eigenvalue_is_that_of_the_assembled_tangent() {
         let tube = Tube {
             length: 1.0,
             thickness: 0.06,
-            material: Material::NeoHookean(NeoHookean::new(1.0, 0.4)),
+            layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+                1.0, 0.4,
+            )))],
             muscles: vec![],
             ends: [Support::Fixed, Support::Sliding],
             imperfections: vec![],
@@ -212,6 +214,7 @@ mod tests {
             grading: 1.0,
             contact_range: 0.25,
             volumetric: Default::default(),
+            layers: vec![],
         };
         let mut seen = [0; 3];
         for rings in [12, 6] {

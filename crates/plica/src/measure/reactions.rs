@@ -107,7 +107,8 @@ mod tests {
 
     /// Returns μ and λ of the fixture's law.
     fn lame(tube: &SplineTube) -> [f64; 2] {
-        let Material::NeoHookean(NeoHookean { mu, lambda, .. }) = tube.tube.material else {
+        let Material::NeoHookean(NeoHookean { mu, lambda, .. }) = tube.tube.layers[0].material
+        else {
             panic!("the law is not neo-Hookean")
         };
         [mu, lambda]

@@ -3,14 +3,16 @@
 use super::{Asymmetry, Measures, Meridians, Side};
 use crate::assembly::SplineTube;
 use crate::material::{Material, NeoHookean};
-use crate::tube::{Mesh, Support, Tube};
+use crate::tube::{Mesh, Support, Tube, WallLayer};
 
 /// Returns a tube with 24 control points around, which approximate a circle to 1.2e-5.
 fn tube(rings: usize) -> SplineTube {
     let tube = Tube {
         length: 3.0,
         thickness: 0.06,
-        material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+        layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+            1.0, 0.3,
+        )))],
         muscles: vec![],
         ends: [Support::Free; 2],
         imperfections: vec![],
@@ -25,6 +27,7 @@ fn tube(rings: usize) -> SplineTube {
         grading: 1.0,
         contact_range: 0.25,
         volumetric: Default::default(),
+        layers: vec![],
     };
     SplineTube::new(&tube, &mesh, rings)
 }

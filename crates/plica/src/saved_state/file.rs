@@ -220,6 +220,7 @@ mod tests {
                 grading: 3.0,
                 contact_range: 0.5,
                 volumetric: Default::default(),
+                layers: vec![],
             },
             rings: 2,
         };

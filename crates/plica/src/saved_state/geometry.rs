@@ -18,9 +18,11 @@ pub(super) fn arrays(layout: &Layout, u: &[f64]) -> Option<[Array; 3]> {
     }
     let (mesh, p) = (&layout.mesh, layout.mesh.degree);
     let inner_radius = Tube::OUTER_RADIUS - layout.thickness;
-    let axial = knots(mesh.breakpoints_along(layout.length), p);
+    let along = mesh.breakpoints_along(layout.length);
+    let axial = knots(&along, &vec![1; along.len() - 2], p);
     let radii = mesh.breakpoints_through(layout.thickness);
-    let wall = knots(radii.iter().map(|h| inner_radius + h).collect(), p);
+    let radii: Vec<f64> = radii.iter().map(|h| inner_radius + h).collect();
+    let wall = knots(&radii, &mesh.multiplicities_through(), p);
     let stretch = Circle::new(p, mesh.around).control_radius;
     let angle = |ring: usize| (ring as f64 - 0.5 * p as f64) * TAU / mesh.around as f64;
     let mut points = Vec::with_capacity(u.len());
@@ -51,12 +53,14 @@ pub(super) fn arrays(layout: &Layout, u: &[f64]) -> Option<[Array; 3]> {
     ])
 }
 
-/// Returns open knots: the breakpoints, with the first and the last p + 1 times.
-fn knots(breakpoints: Vec<f64>, p: usize) -> Vec<f64> {
+/// Returns open knots: the breakpoints, the first and the last p + 1 times, the others as often as given.
+fn knots(breakpoints: &[f64], multiplicities: &[usize], p: usize) -> Vec<f64> {
     let (first, last) = (breakpoints[0], breakpoints[breakpoints.len() - 1]);
-    let mut knots = vec![first; p];
-    knots.extend(breakpoints);
-    knots.extend(vec![last; p]);
+    let mut knots = vec![first; p + 1];
+    for (&knot, &m) in breakpoints[1..].iter().zip(multiplicities) {
+        knots.extend(vec![knot; m]);
+    }
+    knots.extend(vec![last; p + 1]);
     knots
 }
 
@@ -90,7 +94,7 @@ mod tests {
             for (c, M) in through.value.iter().enumerate() {
                 for (b, B) in around.value.iter().enumerate() {
                     let ring = (turns.floor() as usize + b) % n;
-                    let place = ((along.element + a) * layout.mesh.thickness + through.element + c)
+                    let place = ((along.first + a) * layout.mesh.thickness + through.first + c)
                         * rings
                         + ring % rings;
                     let P = &arrays[2].values[3 * place..];

@@ -5,7 +5,7 @@ use super::file::{BLANK, FORMAT};
 use super::{Array, SavedState, SavedStateError};
 use crate::activation::Direction;
 use crate::spline::Refinement;
-use crate::tube::{EndMotion, Load, Mesh, Placement, Pressure};
+use crate::tube::{EndMotion, Load, Mesh, MeshLayer, Placement, Pressure};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -94,6 +94,15 @@ struct MeshHeader {
     grading: f64,
     #[serde(default = "usual_range", skip_serializing_if = "is_usual_range")]
     contact_range: f64,
+    /// Layers of the wall from the inside out; none for a wall of one layer.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    layers: Vec<LayerHeader>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+struct LayerHeader {
+    share: f64,
+    elements: usize,
 }
 
 fn uniform() -> f64 {
@@ -156,6 +165,10 @@ impl SavedState {
             to: r.to,
             factor: r.factor,
         };
+        let layer = |layer: &MeshLayer| LayerHeader {
+            share: layer.share,
+            elements: layer.elements,
+        };
         Header {
             format: FORMAT,
             blake3: BLANK.to_owned(),
@@ -190,6 +203,7 @@ impl SavedState {
                 refine: mesh.refinements.iter().map(refine).collect(),
                 grading: mesh.grading,
                 contact_range: mesh.contact_range,
+                layers: mesh.layers.iter().map(layer).collect(),
             },
             rings,
         }
@@ -214,6 +228,10 @@ impl SavedState {
             to: r.to,
             factor: r.factor,
         };
+        let layer = |layer: &LayerHeader| MeshLayer {
+            share: layer.share,
+            elements: layer.elements,
+        };
         let layout = Layout {
             length: header.tube.length,
             thickness: header.tube.thickness,
@@ -226,6 +244,7 @@ impl SavedState {
                 grading: header.mesh.grading,
                 contact_range: header.mesh.contact_range,
                 volumetric: Default::default(),
+                layers: header.mesh.layers.iter().map(layer).collect(),
             },
             rings: header.rings,
         };

@@ -1,6 +1,6 @@
 //! The layout of the unknowns of a state.
 
-use crate::tube::{Mesh, Tube};
+use crate::tube::{Mesh, MeshLayer, Tube};
 
 /// The layout of the unknowns of a state: size of the tube, mesh, and rings of the cyclic sector.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +38,7 @@ impl Layout {
             grading,
             contact_range,
             volumetric: _,
+            ref layers,
         } = self.mesh;
         let sound = |from: f64, to: f64, factor: f64| {
             from < to && from.is_finite() && to.is_finite() && (1.0..=1e6).contains(&factor)
@@ -58,8 +59,26 @@ impl Layout {
             Some("the grading of its mesh through the wall is invalid")
         } else if !(1e-6..=1e6).contains(&contact_range) {
             Some("the range of contact of its mesh is invalid")
+        } else if !layers.is_empty() && !self.has_valid_layers() {
+            Some("the layers of its wall do not fit together")
         } else {
             None
         }
+    }
+
+    /// Returns true if the layers of the mesh are those of a wall with its control points.
+    fn has_valid_layers(&self) -> bool {
+        let Mesh {
+            degree,
+            thickness,
+            ref layers,
+            ..
+        } = self.mesh;
+        let sound = |layer: &MeshLayer| layer.share > 0.0 && (1..=4096).contains(&layer.elements);
+        let shares: f64 = layers.iter().map(|layer| layer.share).sum();
+        layers.len() <= 4096
+            && layers.iter().all(sound)
+            && (shares - 1.0).abs() < 1e-9
+            && Mesh::points_through(degree, layers) == thickness
     }
 }

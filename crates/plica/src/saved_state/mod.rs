@@ -164,11 +164,24 @@ impl SavedState {
             } = l.mesh;
             format!("graded by {grading}, with a range of contact of {contact_range}")
         };
+        let layers = |l: &Layout| {
+            let layers = l.mesh.layers.iter();
+            let elements: Vec<String> = layers.map(|layer| layer.elements.to_string()).collect();
+            let shares: Vec<f64> = l.mesh.layers.iter().map(|layer| layer.share).collect();
+            match elements.len() {
+                0 => "of one layer".to_owned(),
+                n => format!(
+                    "of {n} layers with {} elements and shares {shares:?}",
+                    elements.join(" + ")
+                ),
+            }
+        };
         let rings = |l: &Layout| format!("{} rings", l.rings);
         compare("tube", size(found), size(expected))?;
         compare("mesh", mesh(found), mesh(expected))?;
         compare("mesh", refine(found), refine(expected))?;
         compare("mesh", graded(found), graded(expected))?;
+        compare("wall", layers(found), layers(expected))?;
         compare("symmetry", rings(found), rings(expected))?;
         compare(
             "list of obstacles",

@@ -189,14 +189,16 @@ mod tests {
     use super::*;
     use crate::assembly::SplineTube;
     use crate::material::{Material, NeoHookean};
-    use crate::tube::{Mesh, Support, Tube};
+    use crate::tube::{Mesh, Support, Tube, WallLayer};
 
     #[test]
     fn a_critical_pressure_is_narrowed_to_the_tolerance_times_the_pressure() {
         let tube = Tube {
             length: 0.1,
             thickness: 0.06,
-            material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+            layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+                1.0, 0.3,
+            )))],
             muscles: vec![],
             ends: [Support::Sliding; 2],
             imperfections: vec![],
@@ -211,6 +213,7 @@ mod tests {
             grading: 1.0,
             contact_range: 0.25,
             volumetric: Default::default(),
+            layers: vec![],
         };
         let problem = TubeProblem::new(SplineTube::new(&tube, &mesh, 1));
         let harmonics = Harmonics::new(&problem, 2);

@@ -52,7 +52,8 @@ fn overlaps(basis: &Basis, weight: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
             for b in 0..value.len() {
                 for a in b..value.len() {
                     let product = value[a] * value[b];
-                    overlaps[element + b][a - b] += w * (to - from) * weight(x) * product;
+                    overlaps[basis.first(element) + b][a - b] +=
+                        w * (to - from) * weight(x) * product;
                 }
             }
         }
@@ -91,13 +92,15 @@ fn around(tube: &SplineTube, n: usize) -> [[f64; 3]; 3] {
 mod tests {
     use super::*;
     use crate::material::{Material, NeoHookean};
-    use crate::tube::{Mesh, Support, Tube};
+    use crate::tube::{Mesh, Support, Tube, WallLayer};
 
     fn tube(rings: usize) -> SplineTube {
         let tube = Tube {
             length: 1.3,
             thickness: 0.1,
-            material: Material::NeoHookean(NeoHookean::new(1.0, 0.3)),
+            layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+                1.0, 0.3,
+            )))],
             muscles: vec![],
             imperfections: vec![],
             obstacles: vec![],
@@ -112,6 +115,7 @@ mod tests {
             grading: 1.0,
             contact_range: 0.25,
             volumetric: Default::default(),
+            layers: vec![],
         };
         SplineTube::new(&tube, &mesh, rings)
     }

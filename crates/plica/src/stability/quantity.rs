@@ -114,7 +114,7 @@ mod tests {
     use super::*;
     use crate::activation::{Direction, Muscle, Profile};
     use crate::material::{Material, NeoHookean};
-    use crate::tube::Support;
+    use crate::tube::{Support, WallLayer};
 
     #[test]
     fn the_driven_quantity_is_the_one_that_changes_most() {
@@ -127,7 +127,9 @@ mod tests {
         let tube = Tube {
             length: 3.0,
             thickness: 0.06,
-            material: Material::NeoHookean(NeoHookean::new(1.0, 0.495)),
+            layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+                1.0, 0.495,
+            )))],
             muscles: vec![
                 muscle("ring", Direction::Circular),
                 muscle("a", Direction::Longitudinal),

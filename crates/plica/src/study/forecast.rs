@@ -4,8 +4,10 @@ use super::{Plan, StudyError};
 use crate::activation::Direction;
 use crate::assembly::SplineTube;
 use crate::equilibrium::{HarmonicTangent, TubeProblem};
+use crate::material::Material;
 use crate::solve::{Equilibrium, Scheme, Solver, Tangent};
-use crate::tube::{Imperfection, Integration, Mesh, Part, Symmetry, Tube};
+use crate::tube::{Imperfection, Integration, Mesh, Part, Symmetry, Tube, WallLayer};
+use std::ops::Range;
 use std::time::Instant;
 
 /// The size and the cost of a study.
@@ -112,15 +114,25 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
         let points = along * through * (mesh.degree + 1).pow(3) * mesh.rings(plan.symmetry);
         let points = (points as f64 * 1.1) as u64;
         let geometry = |imperfection: &Imperfection| imperfection.of == Part::Geometry;
-        // Bytes of the tangent data in single precision, and of the stress-free shape in double precision.
-        let at_point = match plan.tube.imperfections.iter().any(geometry) {
-            true => 40 + 48,
-            false => 40,
+        // Bytes of the stress-free shape in double precision, and of the tangent data in single precision: 10 numbers of
+        // the neo-Hookean law, 46 of others.
+        let shape = match plan.tube.imperfections.iter().any(geometry) {
+            true => 48.0,
+            false => 0.0,
         };
-        // With reduced integration, the volumetric part has points and an average of its own.
+        let (layers, elements) = (&plan.tube.layers, mesh.elements_of_layers());
+        let of_layer = |(layer, elements): (&WallLayer, Range<usize>)| {
+            let data = match layer.material {
+                Material::NeoHookean(_) => 40.0,
+                _ => 184.0,
+            };
+            (data + shape) * elements.len() as f64 / through as f64
+        };
+        let at_point: f64 = layers.iter().zip(elements).map(of_layer).sum();
+        // Each layer has an average of its own; with reduced integration, the volumetric parts have points and averages, too.
         let (at_point, averages) = match mesh.volumetric {
-            Integration::Full => (at_point, 1),
-            Integration::Reduced => (2 * at_point, 2),
+            Integration::Full => (at_point as u64, layers.len() as u64),
+            Integration::Reduced => (2 * at_point as u64, 2 * layers.len() as u64),
         };
         let made_of = (1 + averages) * (mesh.degree as u64 + 1);
         let harmonics = (rings / 2 + made_of) * banded(row / rings);

@@ -137,8 +137,7 @@ impl State {
         };
         let above_rounding = |energy: f64| {
             let tube = &plan.tube;
-            let rounding =
-                1e-15 * tube.material.longitudinal_modulus() * tube.thickness * tube.length;
+            let rounding = 1e-15 * tube.longitudinal_modulus() * tube.thickness * tube.length;
             if energy.abs() < rounding { 0.0 } else { energy }
         };
         let (load, u) = (&accepted.load, &accepted.u);

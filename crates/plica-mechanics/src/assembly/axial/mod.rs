@@ -66,12 +66,16 @@ impl Input<'_> {
         [qr, qs]: [usize; 2],
     ) -> GradientMap<f64x8<S>> {
         let (layer, points) = (&self.layers[t], self.around.len());
-        let radius = layer.radius[qr];
-        let gradient_map =
-            GradientMap::new(&self.around[qs], radius, inverse_along, inverse_around);
+        let (radius, residual) = (layer.radius[qr], layer.inverse_residual[qr]);
+        let inverse = [inverse_along, inverse_around];
+        let gradient_map = GradientMap::new(&self.around[qs], radius, inverse, residual);
         gradient_map.with_imperfection(self.stress_free.map(|at| {
             let at = &at[(((t * self.rings + element) * points + qz) * points + qr) * points + qs];
-            at.imperfection_map(simd, inverse_along, inverse_around)
+            at.imperfection_map(
+                simd,
+                inverse_along.times(residual[0]),
+                inverse_around.times(residual[1]),
+            )
         }))
     }
 

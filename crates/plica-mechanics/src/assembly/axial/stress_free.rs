@@ -30,7 +30,7 @@ fn kernel<S: Simd, const N: usize>(simd: S, input: &Input<'_>) -> Vec<StressFree
                     let radius = layer.radius[qr];
                     contract_through::<S, N>(simd, layer, qr, &along, &mut through);
                     for point in input.around {
-                        let gradient_map = GradientMap::new(point, radius, one, one);
+                        let gradient_map = GradientMap::new(point, radius, [one; 2], [1.0; 2]);
                         let g = gradients(simd, point, &through);
                         out.push(StressFreeStretch::from_gradient(
                             gradient_map.elastic_gradient(point, radius, g),

@@ -47,7 +47,7 @@ pub struct Input<'a> {
     /// Control points through the wall.
     pub points: usize,
     pub rings: &'a PaddedRings,
-    /// 1/θζ and 1/θη: at the quadrature points along the element or, if they vary around the tube,
+    /// 1/θζ and 1/θη of the muscles: at the quadrature points along the element or, if they vary around the tube,
     /// at every (point along, point around, vector of elements).
     pub inverse_stretch: &'a [(Lanes, Lanes)],
     /// The stress-free shape at every (point along, layer, point through, vector of elements, point
@@ -104,13 +104,18 @@ impl Input<'_> {
     ) -> (GradientMap<f64x8<S>>, [f64x8<S>; 2]) {
         let (layer, point) = (&self.layers[t], &self.around[qs]);
         let (inverse_along, inverse_around) = self.stretch(simd, qz, qs, v);
-        let radius = layer.radius[qr];
-        let gradient_map = GradientMap::new(point, radius, inverse_along, inverse_around);
+        let (radius, residual) = (layer.radius[qr], layer.inverse_residual[qr]);
+        let inverse = [inverse_along, inverse_around];
+        let gradient_map = GradientMap::new(point, radius, inverse, residual);
         let stress_free = self.stress_free.filter(|_| !PERFECT);
         let gradient_map = gradient_map.with_imperfection(stress_free.map(|at| {
             let through = (qz * self.layers.len() + t) * layer.radius.len() + qr;
             let at = &at[(through * self.rings.vectors() + v) * self.around.len() + qs];
-            at.imperfection_map(simd, inverse_along, inverse_around)
+            at.imperfection_map(
+                simd,
+                inverse_along.times(residual[0]),
+                inverse_around.times(residual[1]),
+            )
         }));
         let mask = self.rings.mask[v].load(simd);
         let volume = mask.times(self.weight(qz) * layer.weight[qr] * point.volume(radius));

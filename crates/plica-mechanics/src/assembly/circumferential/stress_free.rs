@@ -28,7 +28,7 @@ fn kernel<S: Simd, const N: usize>(simd: S, input: &Input<'_>) -> Vec<StressFree
                 sum_through::<S, N>(simd, input, layer, qr, &along, &mut through);
                 for v in 0..input.rings.vectors() {
                     for (point, ring_values) in input.around.iter().zip(&ring_values) {
-                        let gradient_map = GradientMap::new(point, radius, one, one);
+                        let gradient_map = GradientMap::new(point, radius, [one; 2], [1.0; 2]);
                         let g = gradients::<S, N>(simd, ring_values, &through, W, v);
                         out.push(StressFreeStretch::from_gradient(
                             gradient_map.elastic_gradient(point, radius, g),

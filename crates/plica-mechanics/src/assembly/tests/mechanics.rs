@@ -4,7 +4,7 @@ use super::{TubeAndLoad, direction, dot, largest, mesh, moved, tube_and_load, un
 use crate::assembly::reference::ReferenceTube;
 use crate::assembly::{Point, SplineTube};
 use crate::material::{Material, NeoHookean};
-use crate::tube::{Load, Support, Tube};
+use crate::tube::{Load, Support, Tube, WallLayer};
 use std::f64::consts::{PI, TAU};
 
 #[test]
@@ -12,7 +12,9 @@ fn tube_at_rest_has_exact_radii_and_volume_and_no_residual() {
     let tube = Tube {
         length: 3.0,
         thickness: 0.06,
-        material: Material::NeoHookean(NeoHookean::new(1.0, 0.495)),
+        layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+            1.0, 0.495,
+        )))],
         muscles: vec![],
         ends: [Support::Fixed; 2],
         imperfections: vec![],

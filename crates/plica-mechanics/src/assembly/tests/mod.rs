@@ -3,6 +3,7 @@
 mod batches;
 mod boundary_conditions;
 mod imperfection;
+mod layers;
 mod mechanics;
 mod reduced_integration;
 mod reference;
@@ -12,7 +13,7 @@ mod symmetry;
 use super::{MatrixFreeTangent, SplineTube};
 use crate::activation::{Direction, Muscle, Profile};
 use crate::material::{Material, NeoHookean};
-use crate::tube::{Load, Mesh, Support, Tube};
+use crate::tube::{Load, Mesh, Support, Tube, WallLayer};
 use std::f64::consts::TAU;
 
 /// A short, thick tube and a load under which both its muscles are active.
@@ -36,7 +37,9 @@ pub(in crate::assembly) fn tube_and_load(
     let tube = Tube {
         length: 1.5,
         thickness: 0.15,
-        material: Material::NeoHookean(NeoHookean::new(1.0, 0.45)),
+        layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
+            1.0, 0.45,
+        )))],
         muscles: vec![
             muscle(Direction::Circular, [0.2, 1.3]),
             muscle(Direction::Longitudinal, [0.3, 1.2]),
@@ -66,6 +69,7 @@ pub(in crate::assembly) fn mesh(degree: usize, [along, through, around]: [usize;
         grading: 1.0,
         contact_range: 0.25,
         volumetric: Default::default(),
+        layers: vec![],
     }
 }
 

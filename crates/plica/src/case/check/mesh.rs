@@ -30,6 +30,7 @@ pub(super) fn mesh(case: &Case, tube: &Tube, problems: &mut Problems) -> (Mesh, 
         grading: case.mesh.grading,
         contact_range: case.mesh.contact_range,
         volumetric: case.mesh.volumetric_integration,
+        layers: vec![],
     };
     let (degree, around) = (mesh.degree, mesh.around);
     for (key, count) in [(AXIAL, mesh.axial), (THICKNESS, mesh.thickness)] {

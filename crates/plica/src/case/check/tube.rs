@@ -5,7 +5,7 @@ use super::super::problem::Problems;
 use super::muscles::muscles;
 use super::zone::{length, tidy};
 use crate::material::{Material, MooneyRivlin, NeoHookean, Volumetric};
-use crate::tube::Tube;
+use crate::tube::{Tube, WallLayer};
 
 /// Returns the tube without its imperfections, dimensionless.
 pub(super) fn tube(case: &Case, problems: &mut Problems) -> Tube {
@@ -37,7 +37,7 @@ pub(super) fn tube(case: &Case, problems: &mut Problems) -> Tube {
     Tube {
         length,
         thickness,
-        material: material(case, problems),
+        layers: vec![WallLayer::of(material(case, problems))],
         muscles: muscles(case, length, problems),
         ends: [case.ends.colon, case.ends.ileum],
         imperfections: vec![],

@@ -136,6 +136,7 @@ fn state() -> SavedState {
             grading: 1.0,
             contact_range: 0.25,
             volumetric: tube::Integration::Full,
+            layers: vec![],
         },
         rings: 1,
     };
