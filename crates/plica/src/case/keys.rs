@@ -24,8 +24,13 @@ table! {
         units: Option<Units> = described("none", "{ length = \"mm\", stress = \"kPa\" }");
         /// The size of the tube at rest.
         tube: Tube = default("{}");
-        /// The constitutive law of the wall, one of the tables below.
+        /// The constitutive law of the wall, one of the tables below. Young's modulus E, in which results without units are
+        /// given, is `youngs_modulus` of the law, or three times its shear modulus if it has none; of several layers the
+        /// largest.
         material: Material = default("{ neo-hookean = {} }");
+        /// The layers of the wall, from the inside out. Without them the wall is one layer of `material`. Strains may jump
+        /// at an interface; displacements do not.
+        layers: Vec<WallLayer> = default("[]");
         /// The muscles of the wall, each with a name that you choose. `colon`, `ileum`, `inner-wall` and
         /// `outer-wall` are taken. A name has at most 40 letters, digits, - and _.
         muscles: BTreeMap<String, Muscle> = default("{}");
@@ -106,6 +111,9 @@ table! {
 pub(super) enum Material {
     NeoHookean(NeoHookean),
     MooneyRivlin(MooneyRivlin),
+    Yeoh(Yeoh),
+    Demiray(Demiray),
+    Gent(Gent),
 }
 
 choice! { Material {
@@ -113,6 +121,12 @@ choice! { Material {
     "neo-hookean": NeoHookean = described("", "{}") => Material::NeoHookean,
     /// The compressible Mooney–Rivlin law.
     "mooney-rivlin": MooneyRivlin = described("", "{}") => Material::MooneyRivlin,
+    /// Yeoh's law, a polynomial in I₁ − 3.
+    "yeoh": Yeoh = described("", "{ c1 = 0.2, bulk = 20.0 }") => Material::Yeoh,
+    /// Demiray's law, exponential in I₁ − 3: μ/(2b) (exp(b (I₁ − 3)) − 1).
+    "demiray": Demiray = described("", "{ shear_modulus = 0.3, stiffening = 1.0, bulk = 20.0 }") => Material::Demiray,
+    /// Gent's law, with a limit j of the extension: −μ/2 j ln(1 − (I₁ − 3)/j).
+    "gent": Gent = described("", "{ shear_modulus = 0.3, limit = 30.0, bulk = 20.0 }") => Material::Gent,
 } }
 
 table! {
@@ -124,6 +138,11 @@ table! {
         /// The volumetric energy: λ/2 (ln J)², as in the paper, or λ/4 (J² − 1 − 2 ln J), which stays
         /// elliptic where the wall expands strongly and needs ν ≥ 0.
         volumetric: Volumetric = default("logarithmic");
+        /// The shear modulus μ at small strains. With `bulk` it takes the place of the keys above; the volumetric energy is
+        /// then the quadratic one.
+        shear_modulus: Option<f64> = described("from `youngs_modulus`", "0.3").unit(STRESS).from(1e-12).to(1e15);
+        /// The constant K of the volumetric energy K/4 (J² − 1 − 2 ln J).
+        bulk: Option<f64> = described("from `poisson_ratio`", "20.0").unit(STRESS).from(1e-12).to(1e15);
     }
 }
 
@@ -139,6 +158,84 @@ table! {
     }
 }
 
+table! {
+    Yeoh {
+        /// The factor c₁ of I₁ − 3, half the shear modulus at small strains.
+        c1: f64 = required("0.2").unit(STRESS).from(1e-12).to(1e15);
+        /// The factor c₂ of (I₁ − 3)².
+        c2: f64 = default("0.0").unit(STRESS).from(0.0).to(1e15);
+        /// The factor c₃ of (I₁ − 3)³.
+        c3: f64 = default("0.0").unit(STRESS).from(0.0).to(1e15);
+        /// The constant K of the volumetric energy K/4 (J² − 1 − 2 ln J).
+        bulk: f64 = required("20.0").unit(STRESS).from(1e-12).to(1e15);
+    }
+}
+
+table! {
+    Demiray {
+        /// The shear modulus μ at small strains.
+        shear_modulus: f64 = required("0.3").unit(STRESS).from(1e-12).to(1e15);
+        /// The stiffening b, the factor of I₁ − 3 in the exponent.
+        stiffening: f64 = required("1.0").from(1e-6).to(1e6);
+        /// The constant K of the volumetric energy K/4 (J² − 1 − 2 ln J).
+        bulk: f64 = required("20.0").unit(STRESS).from(1e-12).to(1e15);
+    }
+}
+
+table! {
+    Gent {
+        /// The shear modulus μ at small strains.
+        shear_modulus: f64 = required("0.3").unit(STRESS).from(1e-12).to(1e15);
+        /// The value j of I₁ − 3 at which the law becomes infinitely stiff.
+        limit: f64 = required("30.0").from(1e-3).to(1e9);
+        /// The constant K of the volumetric energy K/4 (J² − 1 − 2 ln J).
+        bulk: f64 = required("20.0").unit(STRESS).from(1e-12).to(1e15);
+    }
+}
+
+table! {
+    WallLayer {
+        /// Its name, by which a muscle is placed in it. At most 40 letters, digits, - and _.
+        name: Option<String> = described("layer-1, layer-2, …", "media");
+        /// Its thickness at rest. All of them add up to `tube.thickness`, which need not be given.
+        thickness: f64 = required("0.03").unit(LENGTH).above(0.0);
+        /// The number of elements through it.
+        elements: usize = default("3").from(1.0).to(60.0);
+        /// Its constitutive law, as for the whole wall.
+        material: Option<Material> = described("that of the whole wall", "{ neo-hookean = {} }");
+        /// Families of fibres, which stiffen the law in their directions.
+        fibres: Vec<Fibres> = default("[]");
+        /// The stretches that make it free of stress when it is cut out of the tube at rest.
+        residual: Residual = default("{}");
+    }
+}
+
+table! {
+    Fibres {
+        /// The stiffness k₁ in k₁/(2 k₂) (exp(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1). ⟨E⟩ is E where it is
+        /// positive, and else zero.
+        k1: f64 = required("0.5").unit(STRESS).from(0.0).to(1e15);
+        /// The stiffening k₂. With 0 the energy is k₁/2 ⟨E⟩².
+        k2: f64 = required("0.8").from(0.0).to(1e6);
+        /// The angle from the circumference toward the axis: 0 is around the tube, 90 along it.
+        angle_degrees: f64 = required("30.0").unit("degrees").from(-90.0).to(90.0);
+        /// Whether there is a second family at minus this angle. One family alone twists the tube.
+        pair: bool = default("true");
+        /// The dispersion κ: 0 for fibres of one direction, 1/3 for all directions alike.
+        dispersion: f64 = default("0.0").from(0.0).to(0.333_333_333_333_333_3);
+    }
+}
+
+table! {
+    Residual {
+        /// The stress-free length around the tube over the length at rest, at the inner and the outer face of the layer;
+        /// linear in between.
+        around: [f64; 2] = default("[1.0, 1.0]");
+        /// The same along the tube.
+        along: [f64; 2] = default("[1.0, 1.0]");
+    }
+}
+
 choice! { Volumetric {
     "logarithmic" => Volumetric::Logarithmic,
     "quadratic" => Volumetric::Quadratic,
@@ -149,11 +246,13 @@ table! {
         /// The direction of its fibres: around the tube or along it.
         direction: Direction = required("circular");
         /// The part of the tube that it acts on, from the colon end. Zones of muscles of the same
-        /// direction do not overlap.
+        /// direction do not overlap, unless they act in different layers.
         zone: [f64; 2] = required("[0.5, 1.0]").unit(LENGTH);
         /// The distribution of its activity over the zone: ½(1 − cos 2πx), or sin πx, which has kinks at
         /// the edges of the zone.
         profile: Profile = default("raised-cosine");
+        /// The name of the layer that it acts in.
+        layer: Option<String> = described("all layers", "media");
     }
 }
 
@@ -218,7 +317,7 @@ table! {
             described("the zones of the muscles, factor 3", "[{ zone = [0.5, 1.0], factor = 3.0 }]");
         /// The thickness of the innermost element of the wall over that of the outermost; those in
         /// between form a geometric sequence. Above 1 the elements become thinner towards the outer
-        /// surface, where a fold creases; 1 is uniform. `"reduced"` integration needs 1.
+        /// surface, where a fold creases; 1 is uniform. `"reduced"` integration and several layers need 1.
         grading: f64 = default("1.0").from(0.001).to(1000.0);
         /// The range of the law of contact, in smallest axial elements at rest. Half and double the range
         /// show how far the results depend on it.
@@ -233,8 +332,8 @@ table! {
         /// Control points around the whole tube, whatever the symmetry; at least twice the degree plus
         /// two.
         around: usize = default("60").from(4.0).to(4096.0);
-        /// Control points through the wall, more than the degree.
-        thickness: usize = default("8").from(2.0).to(64.0);
+        /// Control points through the wall, more than the degree. A wall with layers has `layers[].elements` instead.
+        thickness: Option<usize> = described("8, or as many as the layers need", "8").from(2.0).to(64.0);
     }
 }
 

@@ -172,6 +172,11 @@ impl<'t> Problems<'t> {
         !keys.iter().any(is_wrong)
     }
 
+    /// Returns whether a key is in the text.
+    pub fn is_given(&self, key: &str) -> bool {
+        self.places.contains_key(key)
+    }
+
     /// Returns whether neither a key, nor one below it, nor a table around it is replaced.
     pub fn is_as_written(&self, key: &str) -> bool {
         let mut tables = key.match_indices(['.', '[']).map(|(end, _)| &key[..end]);

@@ -28,6 +28,12 @@ const CLOSING: &str = "
 - Targets keep every stress-free stretch between 0.02 and 100, and the distance of the ends between 0.05 and 10 times
   that at rest. `diameter_ratio` drives a circular muscle, `length_ratio` a longitudinal one. A displacement needs a fixed
   or sliding end, a twist a fixed one.
+- The layers of a wall are at least a thousandth of it thick, have different names, and add up to `tube.thickness` where
+  that is given. With layers, `mesh.control_points.thickness` is not given, and `mesh.grading` is 1 unless there is only
+  one. A muscle with a `layer` acts in that layer only; its zone may overlap those of muscles in other layers.
+- `shear_modulus` and `bulk` of the neo-Hookean law are given together, without `youngs_modulus` and `poisson_ratio`. A
+  pair of families of fibres is not at 0° or 90°, where it would count one family twice. Residual stretches lie between
+  0.1 and 10. With `contact`, every family of a layer has a mirror image.
 - A pressure is at most 10 E. A follower pressure needs both ends held; an axial imperfection of an end then needs that
   end to be fixed. (Where an end moves freely, the work of a follower pressure depends on the path and on the closure of
   the end. A dead load has no such restriction.)

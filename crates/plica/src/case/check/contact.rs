@@ -3,12 +3,18 @@
 use super::super::keys::Case;
 use super::super::problem::Problems;
 use crate::study::Stage;
-use crate::tube::Symmetry;
+use crate::tube::{Symmetry, Tube, WallLayer};
 
 const CONTACT: &str = "contact";
 
 /// Checks that a tube with contact is axisymmetric without twist, and that its splines are smooth.
-pub(super) fn check(case: &Case, symmetry: Symmetry, stages: &[Stage], problems: &mut Problems) {
+pub(super) fn check(
+    case: &Case,
+    symmetry: Symmetry,
+    tube: &Tube,
+    stages: &[Stage],
+    problems: &mut Problems,
+) {
     if !case.contact {
         if case.friction > 0.0 && problems.are_sound(&["friction"]) {
             let help = "set `contact = true`; an obstacle has a `friction` of its own";
@@ -32,6 +38,12 @@ pub(super) fn check(case: &Case, symmetry: Symmetry, stages: &[Stage], problems:
             "must be false if `mesh.degree` is 1, where a wall has corners",
             help,
         );
+    }
+    let symmetric = |layer: &WallLayer| layer.material.is_mirror_symmetric();
+    if !tube.layers.iter().all(symmetric) && problems.are_sound(&["layers"]) {
+        let help = "set `contact = false`, or give the fibres of each layer their mirror images";
+        let rule = "must be false if fibres of one hand twist the tube";
+        problems.value(CONTACT, rule, help);
     }
     let twists = |stage: &Stage| stage.load.ends.iter().any(|end| end.twist != 0.0);
     if stages.iter().any(twists) {

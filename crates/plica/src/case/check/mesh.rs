@@ -2,12 +2,15 @@
 
 use super::super::keys::Case;
 use super::super::problem::Problems;
+use super::layers::mesh_layers;
 use super::zone::zone;
 use crate::spline::Refinement;
 use crate::tube::{Integration, Mesh, Symmetry, Tube};
 
 /// Largest number of control points that are solved for, which takes some 100 GB.
 const LARGEST: usize = 20_000_000;
+/// Control points through a wall without layers.
+const POINTS_THROUGH: usize = 8;
 /// Refinement of the zones of muscles.
 const FACTOR: f64 = 3.0;
 
@@ -21,16 +24,26 @@ const INTEGRATION: &str = "mesh.volumetric_integration";
 /// Returns the mesh, and the symmetry of the solution.
 pub(super) fn mesh(case: &Case, tube: &Tube, problems: &mut Problems) -> (Mesh, Symmetry) {
     let points = &case.mesh.control_points;
+    let (layers, degree) = (mesh_layers(case, &tube.layers), case.mesh.degree);
+    let thickness = match (&layers[..], &case.layers[..]) {
+        ([], []) => points.thickness.unwrap_or(POINTS_THROUGH),
+        ([], written) => written[0].elements + degree,
+        (layers, _) => Mesh::points_through(degree, layers),
+    };
+    if !case.layers.is_empty() && points.thickness.is_some() && problems.are_sound(&[THICKNESS]) {
+        let rule = "cannot be given for a wall with layers";
+        problems.key(THICKNESS, rule, "give each layer its number of elements");
+    }
     let mesh = Mesh {
         axial: points.axial,
         around: points.around,
-        thickness: points.thickness,
+        thickness,
         degree: case.mesh.degree,
         refinements: refinements(case, tube, problems),
         grading: case.mesh.grading,
         contact_range: case.mesh.contact_range,
         volumetric: case.mesh.volumetric_integration,
-        layers: vec![],
+        layers,
     };
     let (degree, around) = (mesh.degree, mesh.around);
     for (key, count) in [(AXIAL, mesh.axial), (THICKNESS, mesh.thickness)] {
@@ -57,6 +70,10 @@ pub(super) fn mesh(case: &Case, tube: &Tube, problems: &mut Problems) -> (Mesh, 
         let rule = "needs elements of one thickness, grading 1";
         problems.value(INTEGRATION, rule, "try \"full\"");
     }
+    if mesh.layers.len() > 1 && mesh.grading != 1.0 && problems.are_sound(&[GRADING]) {
+        let help = "give a layer more elements instead";
+        problems.value(GRADING, "must be 1 for a wall with several layers", help);
+    }
     if let Symmetry::Fold(m) = case.symmetry
         && !around.is_multiple_of(m)
         && problems.are_sound(&["symmetry", AROUND])
@@ -65,7 +82,7 @@ pub(super) fn mesh(case: &Case, tube: &Tube, problems: &mut Problems) -> (Mesh, 
         let help = format!("try {} points around", around.next_multiple_of(m));
         problems.value("symmetry.fold", rule, help);
     }
-    if problems.are_sound(&["mesh.control_points", DEGREE, "symmetry"]) {
+    if problems.are_sound(&["mesh.control_points", DEGREE, "symmetry", "layers"]) {
         let solved = mesh.axial * mesh.thickness * mesh.rings(case.symmetry);
         if solved > LARGEST {
             let rule = format!("{solved} control points to solve for, {LARGEST} at most");

@@ -6,6 +6,8 @@
 
 mod contact;
 mod imperfections;
+mod layers;
+mod material;
 mod mesh;
 mod muscles;
 mod obstacles;
@@ -39,7 +41,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
     imperfections::check_stretches(&tube, &stages, problems);
     imperfections::check_wall(case, &tube, run, problems);
     stages::check_end_planes(&tube, &stages, problems);
-    contact::check(case, symmetry, &stages, problems);
+    contact::check(case, symmetry, &tube, &stages, problems);
     obstacles::check(case, &tube, run, (&begin, &stages), problems);
     let title = case.title.clone().unwrap_or_else(|| name.to_owned());
     let output = &case.output;
@@ -66,7 +68,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
             length: units.length,
             stress: units.stress,
             diameter: case.tube.diameter,
-            youngs_modulus: tube::youngs_modulus(case),
+            youngs_modulus: material::youngs_modulus(case),
         }),
     }
 }

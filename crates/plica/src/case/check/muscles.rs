@@ -1,10 +1,11 @@
 //! The names, zones and profiles of the muscles.
 
 use super::super::key::join;
-use super::super::keys::Case;
+use super::super::keys::{self, Case};
 use super::super::problem::Problems;
 use super::zone::{ROUNDING, zone};
 use crate::activation::{Muscle, Profile};
+use std::collections::BTreeSet;
 
 /// The names of the ends in a stage, in the order of the load.
 pub(super) const ENDS: [&str; 2] = ["colon", "ileum"];
@@ -70,15 +71,35 @@ fn check_name(path: &str, name: &str, problems: &mut Problems) {
     }
 }
 
-/// Checks that zones of muscles of the same direction do not overlap, even where a zone is not within
+/// Checks that zones of muscles of the same direction do not overlap in a layer, even where a zone is not within
 /// the tube.
 fn check_overlaps(case: &Case, problems: &mut Problems) {
+    let layers = case.muscles.values().filter_map(|m| m.layer.as_deref());
+    let mut layers: Vec<Option<&str>> = layers.map(Some).collect();
+    layers.push(None);
+    layers.sort_unstable();
+    layers.dedup();
+    let mut reported = BTreeSet::new();
+    for layer in layers {
+        // Muscles of a layer, and those that act in all of them.
+        let acts = |m: &keys::Muscle| m.layer.is_none() || m.layer.as_deref() == layer;
+        check_overlaps_of(case, acts, &mut reported, problems);
+    }
+}
+
+/// Checks the zones of the muscles that act in a layer.
+fn check_overlaps_of(
+    case: &Case,
+    acts: impl Fn(&keys::Muscle) -> bool,
+    reported: &mut BTreeSet<String>,
+    problems: &mut Problems,
+) {
     let mut zones: [Vec<(f64, f64, usize, &str)>; 2] = Default::default();
     for (i, (name, muscle)) in case.muscles.iter().enumerate() {
         let path = join("muscles", name);
         let is_as_written = |key| problems.is_as_written(&format!("{path}.{key}"));
         let [from, to] = muscle.zone.map(|z| z / case.tube.diameter);
-        if from < to && is_as_written("direction") && is_as_written("zone") {
+        if from < to && acts(muscle) && is_as_written("direction") && is_as_written("zone") {
             zones[muscle.direction as usize].push((from, to, i, name));
         }
     }
@@ -93,8 +114,11 @@ fn check_overlaps(case: &Case, problems: &mut Problems) {
                     false => (zone.3, other.3),
                 };
                 let key = format!("{}.zone", join("muscles", second));
-                let rule = format!("overlaps the zone of {first}, a muscle of the same direction");
-                problems.value(&key, rule, "let one zone end where the other begins");
+                if reported.insert(key.clone()) {
+                    let rule =
+                        format!("overlaps the zone of {first}, a muscle of the same direction");
+                    problems.value(&key, rule, "let one zone end where the other begins");
+                }
             }
             if farthest.is_none_or(|other| zone.1 > other.1) {
                 farthest = Some(zone);

@@ -4,9 +4,9 @@ use super::super::key::join;
 use super::super::keys::{Case, Drive};
 use super::super::problem::Problems;
 use super::super::spelling::{nearest, target};
+use super::material::youngs_modulus;
 use super::muscles::{ENDS, WALLS};
 use super::obstacles::in_tube;
-use super::tube::youngs_modulus;
 use super::zone::{stress, tidy};
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
@@ -303,7 +303,7 @@ fn apply(
 
 /// Checks the size of a pressure in E.
 fn check_pressure(key: &str, pressure: f64, case: &Case, problems: &mut Problems) {
-    if pressure.abs() > LARGEST_PRESSURE && problems.are_sound(&[key, "material"]) {
+    if pressure.abs() > LARGEST_PRESSURE && problems.are_sound(&[key, "material", "layers"]) {
         let largest = stress(case, LARGEST_PRESSURE);
         let rule = format!("must be from -{largest} to {largest}, ten times Young's modulus");
         problems.value(key, rule, "");

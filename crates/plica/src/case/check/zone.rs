@@ -2,7 +2,7 @@
 
 use super::super::keys::Case;
 use super::super::problem::Problems;
-use super::tube::youngs_modulus;
+use super::material::youngs_modulus;
 
 /// Relative rounding error that is allowed for when lengths are scaled to D.
 pub(super) const ROUNDING: f64 = 1e-12;

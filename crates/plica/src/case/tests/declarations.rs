@@ -28,8 +28,41 @@ fn base(pattern: &str) -> String {
     if pattern.starts_with("units.") {
         text += "[units]\nlength = 'mm'\nstress = 'kPa'\n";
     }
-    if pattern.starts_with("material.mooney-rivlin.") {
-        text += "[material.mooney-rivlin]\n";
+    // The laws with the keys that they need.
+    let laws = [
+        ("mooney-rivlin", ""),
+        ("yeoh", "c1 = 0.2, bulk = 20.0"),
+        (
+            "demiray",
+            "shear_modulus = 0.3, stiffening = 1.0, bulk = 20.0",
+        ),
+        ("gent", "shear_modulus = 0.3, limit = 30.0, bulk = 20.0"),
+        ("neo-hookean", "shear_modulus = 0.3, bulk = 20.0"),
+    ];
+    let needs_both = pattern.ends_with(".shear_modulus") || pattern.ends_with(".bulk");
+    let own = |law: &&(&str, &str)| {
+        let is_own = pattern.contains(&format!("material.{}.", law.0));
+        is_own && (law.0 != "neo-hookean" || needs_both)
+    };
+    let law = laws.iter().find(own);
+    let law = law.map_or(String::new(), |(name, keys)| {
+        format!("{name} = {{ {keys} }}")
+    });
+    if pattern.starts_with("layers[]") || pattern.ends_with(".layer") {
+        let law = match &law[..] {
+            "" => String::new(),
+            law => format!("material = {{ {law} }}\n"),
+        };
+        let fibres = match pattern.contains(".fibres[]") {
+            true => "fibres = [{ k1 = 0.5, k2 = 0.8, angle_degrees = 29.0 }]\n",
+            false => "",
+        };
+        text += &format!(
+            "[[layers]]\nname = 'media'\nthickness = 0.03\n{law}{fibres}\
+             [[layers]]\nname = 'adventitia'\nthickness = 0.03\n"
+        );
+    } else if !law.is_empty() {
+        text = format!("material = {{ {law} }}\n{text}");
     }
     if pattern.starts_with("mesh.refine[]") {
         text += "[[mesh.refine]]\nzone = [0.5, 1.0]\n";
@@ -238,9 +271,26 @@ fn units_scale_a_case_and_change_nothing_else() {
     );
     let has_unit = |key: &Key| key.rule.unit == LENGTH || key.rule.unit == STRESS;
     let all = keys().into_iter().filter(|(_, key)| has_unit(key));
-    // A case has only one law.
-    seen.insert("material.mooney-rivlin.youngs_modulus".into());
-    assert_eq!(seen, all.map(|(pattern, _)| pattern).collect());
+    // A layer has only one law.
+    let is_other = |pattern: &str| {
+        let of_layer = pattern.starts_with("layers[]");
+        let others = [
+            "mooney-rivlin",
+            "demiray",
+            "gent",
+            if of_layer { "neo-hookean" } else { "yeoh" },
+        ];
+        let is_second =
+            pattern.starts_with("material.neo-hookean.") && !pattern.ends_with("youngs_modulus");
+        is_second
+            || others
+                .iter()
+                .any(|law| pattern.contains(&format!("material.{law}.")))
+    };
+    let all = all
+        .map(|(pattern, _)| pattern)
+        .filter(|pattern| !is_other(pattern));
+    assert_eq!(seen, all.collect());
 }
 
 #[test]

@@ -25,10 +25,22 @@ thickness = 1.0
 youngs_modulus = 64.0
 poisson_ratio = 0.4
 volumetric = "quadratic"
+[[layers]]
+name = "inner"
+thickness = 0.5
+elements = 1
+[[layers]]
+name = "media"
+thickness = 0.5
+elements = 1
+material = { yeoh = { c1 = 4.0, c2 = 2.0, c3 = 1.0, bulk = 512.0 } }
+fibres = [{ k1 = 8.0, k2 = 0.5, angle_degrees = 30.0, dispersion = 0.125 }]
+residual = { around = [0.875, 1.125] }
 [muscles.ring]
 direction = "circular"
 zone = [56.0, 72.0]
 profile = "half-sine"
+layer = "media"
 [muscles.next]
 direction = "circular"
 zone = [72.0, 76.0]
@@ -41,7 +53,7 @@ profile = { table = [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]] }
 colon = "fixed"
 ileum = "sliding"
 [mesh]
-control_points = { axial = 40, around = 24, thickness = 6 }
+control_points = { axial = 40, around = 24 }
 degree = 3
 volumetric_integration = "reduced"
 refine = [{ zone = [64.0, 68.0], factor = 2.0 }]
