@@ -7,7 +7,7 @@ use plica::material::{Material, NeoHookean, Volumetric};
 use plica::run_directory::DiskUse;
 use plica::spline::Circle;
 use plica::study::{Plan, check_memory, forecast};
-use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube};
+use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube, WallLayer};
 
 /// Checks a case and prints its size and estimated cost.
 pub fn check(arguments: &CaseArguments) -> Result<(), Failure> {
@@ -127,6 +127,17 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         let described: Vec<String> = imperfections.map(|i| imperfection(tube, i)).collect();
         rows.insert(3, ("imperfect", described.join("; ")));
     }
+    let is_simple = |layer: &WallLayer| {
+        let law = &layer.material;
+        matches!(law, Material::NeoHookean(_) | Material::MooneyRivlin(_))
+            && layer.residual.is_none()
+    };
+    if tube.layers.len() > 1 || !tube.layers.iter().all(is_simple) {
+        let layers = tube.layers.iter().zip(mesh.elements_of_layers());
+        for (i, (layer, elements)) in layers.enumerate() {
+            rows.insert(1 + i, ("layer", layer_row(tube, layer, elements.len())));
+        }
+    }
     if let Some(start) = &plan.start {
         let (row, stage) = (start.state.row, &start.state.stage);
         rows.insert(
@@ -140,6 +151,35 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         rows.insert(1, ("units", units));
     }
     rows
+}
+
+/// Describes a layer: thickness, elements, law, fibres and residual stretches.
+fn layer_row(tube: &Tube, layer: &WallLayer, elements: usize) -> String {
+    let (law, fibres) = match &layer.material {
+        Material::NeoHookean(_) => ("neo-Hookean", 0),
+        Material::MooneyRivlin(_) => ("Mooney–Rivlin", 0),
+        Material::Custom(_) => ("a law of its own", 0),
+        Material::Composite(law) => (law.matrix.name(), law.fibres.len()),
+    };
+    let mut text = format!(
+        "{}, {:.4} D thick, {elements} elements, {law}",
+        layer.name,
+        layer.share * tube.thickness
+    );
+    match fibres {
+        0 => {}
+        1 => text += ", 1 family of fibres",
+        n => text += &format!(", {n} families of fibres"),
+    }
+    for (name, [inner, outer]) in [
+        ("around", layer.residual.around),
+        ("along", layer.residual.along),
+    ] {
+        if [inner, outer] != [1.0; 2] {
+            text += &format!(", residual stretch {name} {inner} to {outer}");
+        }
+    }
+    text
 }
 
 /// Describes the room that the run takes on the disk.

@@ -56,6 +56,17 @@ impl Matrix {
         }
     }
 
+    /// Returns the name of the law.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::NeoHookean(_) => "neo-Hookean",
+            Self::MooneyRivlin(_) => "Mooney–Rivlin",
+            Self::Yeoh(_) => "Yeoh",
+            Self::Demiray(_) => "Demiray",
+            Self::Gent(_) => "Gent",
+        }
+    }
+
     /// Returns the parts without and with the volumetric constant alone.
     fn parts(self) -> [Self; 2] {
         let volume = |bulk| {

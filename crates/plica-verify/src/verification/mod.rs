@@ -3,8 +3,10 @@
 //! | module | contents |
 //! |---|---|
 //! | [`one_dimension`] | independent reference solution of axisymmetric tubes and their buckling |
+//! | [`layered_wall`] | independent reference solution of tubes of layers with fibres |
 //! | `tube_model` | the tubes that Plica solves for the comparisons |
 //! | `exact` | identities that hold to rounding |
+//! | `layers` | layers, laws, fibres and residual stretches |
 //! | `rings`, `columns` | pressure, growth, buckling; limits of thin walls and long tubes |
 //! | `locking` | nearly incompressible thick walls |
 //! | `manufactured` | orders of convergence on manufactured solutions |
@@ -22,6 +24,8 @@ mod cross_checks;
 mod error;
 mod exact;
 mod friction;
+pub mod layered_wall;
+mod layers;
 mod locking;
 mod main_case;
 mod manufactured;
@@ -87,6 +91,13 @@ pub const CHECKS: &[Check] = &[
         "mooney-rivlin",
         "inflation and growth of a Mooney–Rivlin ring",
         rings::mooney_rivlin,
+    ),
+    quick("laws", "inflation of rings of other laws", layers::laws),
+    quick("artery", "inflation of a carotid artery", layers::artery),
+    quick(
+        "helical-fibres",
+        "twist of a tube with fibres of one hand",
+        layers::helical_fibres,
     ),
     quick(
         "ring-buckling",

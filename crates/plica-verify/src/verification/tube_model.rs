@@ -7,7 +7,7 @@ use plica::equilibrium::TubeProblem;
 use plica::material::{Law, Material, NeoHookean};
 use plica::solve::{Path, Settings, State};
 use plica::stability::Harmonics;
-use plica::tube::{Integration, Load, Mesh, Pressure, Support, Tube, WallLayer};
+use plica::tube::{Integration, Load, Mesh, MeshLayer, Pressure, Support, Tube, WallLayer};
 
 /// A tube and its discretisation.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub struct TubeModel {
     pub degree: usize,
     /// Integration of the volumetric energy.
     pub volumetric: Integration,
+    /// Elements of the layers; none for a wall of one layer.
+    pub layers: Vec<MeshLayer>,
 }
 
 /// Returns solver settings with a tolerance near rounding.
@@ -50,6 +52,7 @@ impl TubeModel {
             elements,
             degree: 3,
             volumetric: Integration::Full,
+            layers: vec![],
         }
     }
 
@@ -76,13 +79,16 @@ impl TubeModel {
         let mesh = Mesh {
             axial: along + p,
             around,
-            thickness: through + p,
+            thickness: match &self.layers[..] {
+                [] => through + p,
+                layers => Mesh::points_through(p, layers),
+            },
             degree: p,
             refinements: vec![],
             grading: 1.0,
             contact_range: 0.25,
             volumetric: self.volumetric,
-            layers: vec![],
+            layers: self.layers.clone(),
         };
         TubeProblem::new(SplineTube::new(&self.tube, &mesh, rings))
     }

@@ -200,7 +200,7 @@ mod tests {
     use crate::activation::Direction;
     use crate::saved_state::Layout;
     use crate::spline::Refinement;
-    use crate::tube::{EndMotion, Load, Mesh, Placement, Pressure};
+    use crate::tube::{EndMotion, Load, Mesh, MeshLayer, Placement, Pressure};
 
     /// A state whose numbers use all their bits.
     fn state() -> SavedState {
@@ -210,7 +210,7 @@ mod tests {
             mesh: Mesh {
                 axial: 7,
                 around: 12,
-                thickness: 4,
+                thickness: 7,
                 degree: 3,
                 refinements: vec![Refinement {
                     from: 1.0 / 3.0,
@@ -220,7 +220,9 @@ mod tests {
                 grading: 3.0,
                 contact_range: 0.5,
                 volumetric: Default::default(),
-                layers: vec![],
+                layers: [1.0 / 3.0, 2.0 / 3.0]
+                    .map(|share| MeshLayer { share, elements: 1 })
+                    .to_vec(),
             },
             rings: 2,
         };

@@ -76,15 +76,22 @@ mod tests {
     use crate::assembly::{Point, SplineTube};
     use crate::spline::Basis;
     use crate::study::fixture::{plan, state};
-    use crate::tube::Symmetry;
+    use crate::tube::{Mesh, MeshLayer, Symmetry};
 
     /// Evaluates the formula of docs/run-directory.md.
     #[allow(non_snake_case)]
     fn position(layout: &Layout, arrays: &[Array; 3], at: Point) -> [f64; 3] {
         let (p, n, rings) = (layout.mesh.degree, layout.mesh.around, layout.rings);
-        let breakpoints = |array: &Array| array.values[p..array.values.len() - p].to_vec();
-        let along = Basis::open(p, &breakpoints(&arrays[0])).evaluate(at.z);
-        let through = Basis::open(p, &breakpoints(&arrays[1])).evaluate(at.radius);
+        let basis = |array: &Array| {
+            let mut breakpoints = array.values.clone();
+            breakpoints.dedup();
+            let count = |t: &f64| array.values.iter().filter(|knot| *knot == t).count();
+            let inner = breakpoints[1..breakpoints.len() - 1].iter();
+            let multiplicities: Vec<usize> = inner.map(count).collect();
+            Basis::with_multiplicities(p, &breakpoints, &multiplicities)
+        };
+        let along = basis(&arrays[0]).evaluate(at.z);
+        let through = basis(&arrays[1]).evaluate(at.radius);
         let element = Basis::uniform_element(p);
         let alpha = TAU / n as f64;
         let turns = at.angle / alpha + 0.5;
@@ -109,8 +116,17 @@ mod tests {
 
     #[test]
     fn knots_and_control_points_give_the_positions_of_the_wall() {
-        for symmetry in [Symmetry::Axisymmetric, Symmetry::Fold(3), Symmetry::None] {
-            let plan = plan(symmetry);
+        let symmetries = [Symmetry::Axisymmetric, Symmetry::Fold(3), Symmetry::None];
+        let plans = symmetries.map(|symmetry| (plan(symmetry), symmetry));
+        let mut layered = plan(Symmetry::Fold(3));
+        layered.tube.layers = vec![layered.tube.layers[0].clone(); 2];
+        (layered.tube.layers[0].share, layered.tube.layers[1].share) = (0.3, 0.7);
+        let shares = [0.3, 0.7];
+        layered.mesh.layers = shares
+            .map(|share| MeshLayer { share, elements: 2 })
+            .to_vec();
+        layered.mesh.thickness = Mesh::points_through(layered.mesh.degree, &layered.mesh.layers);
+        for (plan, symmetry) in plans.into_iter().chain([(layered, Symmetry::Fold(3))]) {
             let state = state(&plan, 2);
             let tube = SplineTube::new(&plan.tube, &plan.mesh, plan.mesh.rings(symmetry));
             let arrays = arrays(&state.layout, &state.u).unwrap();
