@@ -26,10 +26,9 @@ fn place(study: &Study, state: &State, radius: f64) -> (f64, f64) {
 }
 
 #[test]
-fn the_carotid_artery_has_the_radii_that_its_case_tells() {
+fn the_carotid_artery_has_the_radii_that_its_case_describes() {
     let text = include_str!("../../../cases/carotid.toml");
-    let small = text.replace("around = 60", "around = 120");
-    let (study, states) = run(&small);
+    let (study, states) = run(text);
     let inner = study.tube().tube.inner_radius();
     for (stage, expected) in [
         ("inflate", [1.06225501, 1.24248370]),
@@ -59,7 +58,7 @@ fn two_layers(keys: &str, rest: &str) -> String {
 fn a_tube_with_residual_stress_takes_its_own_shape_without_load() {
     let text = two_layers(
         "residual = { around = [0.9, 1.1] }",
-        "[[stages]]\nsteps = 1\n",
+        "[[stages]]\nsteps = 1\ndrive.ileum.displacement = 1e-3\n",
     );
     let (study, states) = run(&text);
     let first = &states[0];
@@ -133,13 +132,16 @@ fn fibres_of_one_hand_turn_a_sliding_end_and_a_state_of_theirs_starts_a_run() {
     let bytes = bytes.to_bytes().unwrap();
     let text = two_layers(
         &fibres(true),
-        &format!("{stage}[start]\nstate = 's'\n"),
+        "[[stages]]\nsteps = 1\ndrive.inner-wall.pressure = 0.031\n[start]\nstate = 's'\n",
     );
     let text = format!("symmetry = 'none'\n{text}");
     let open = |_: InputFile<'_>| SavedState::from_bytes(&bytes);
-    let mut plan = case::read_with(&text, "case", &open).unwrap();
-    plan.stages[0].steps = 1;
+    let plan = case::read_with(&text, "case", &open).unwrap();
     let mut study = Study::new(&plan).unwrap();
     let first = study.next().unwrap().unwrap();
-    assert!(first.relative_residual < 1e-7, "{}", first.relative_residual);
+    assert!(
+        first.relative_residual < 1e-7,
+        "{}",
+        first.relative_residual
+    );
 }

@@ -8,6 +8,7 @@ mod equilibrium;
 mod examples;
 mod fuzz;
 mod imperfections;
+mod layers;
 mod loads;
 mod lowest_modes;
 mod rigid_body_motions;

@@ -90,6 +90,12 @@ impl Tube {
         residual.at((radius - inner) / (outer - inner))
     }
 
+    /// Returns true if a layer has residual stretches, so that the tube is not free of stress at rest.
+    pub fn has_residual_stretch(&self) -> bool {
+        let mut residual = self.layers.iter().map(|layer| &layer.residual);
+        residual.any(|residual| !residual.is_none())
+    }
+
     /// Returns the largest stiffness under uniaxial strain of the layers, at small strains.
     pub fn longitudinal_modulus(&self) -> f64 {
         let moduli = self

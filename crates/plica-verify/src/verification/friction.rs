@@ -127,7 +127,7 @@ impl Sheathed {
                 angle: 0.0,
             };
             let Fe = self.problem.tube.sample(load, u, point).elastic;
-            2.0 * PI * radius * thickness * tube.material.stress(&Fe).0[0][0]
+            2.0 * PI * radius * thickness * tube.layers[0].material.stress(&Fe).0[0][0]
         };
         gauss([0.0, 1.0], 4, at)
     }

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 /// A tube that is followed through the stages of a plan: an iterator of accepted states.
 ///
-/// The first state is the tube at rest, with its imperfections, or the state that the plan starts
+/// The first state is the tube at rest, with its imperfections and residual stress, or the state that the plan starts
 /// from. Then every step of every stage ends in one state. The iterator ends after the last stage,
 /// when it is cancelled, or with an error when the tube cannot be followed further.
 pub struct Study {
@@ -200,7 +200,7 @@ impl Study {
         }
     }
 
-    /// Computes the tube at rest with its imperfections, or the state that the plan starts from.
+    /// Computes the tube at rest with its imperfections and residual stress, or the state that the plan starts from.
     fn first_state(&mut self, monitor: &mut dyn Monitor) -> Option<State> {
         let name = if self.plan.start.is_some() {
             "start"
@@ -245,7 +245,7 @@ impl Study {
         Path::begin(self.problem.clone(), load, u, self.plan.solver.clone())
     }
 
-    /// Brings the tube to rest, which takes a solve if it has imperfections.
+    /// Brings the tube to rest, which takes a solve if it has imperfections or residual stress.
     fn rest(
         &self,
         monitor: &mut dyn Monitor,
@@ -266,7 +266,8 @@ impl Study {
                 limit_point: None,
                 step,
             })?;
-        if self.plan.tube.imperfections.is_empty() {
+        let residual = self.plan.tube.has_residual_stretch();
+        if self.plan.tube.imperfections.is_empty() && !residual {
             return Ok((path, step));
         }
         path.begin_segment(rest);

@@ -39,6 +39,7 @@ pub(super) fn start(
     }
     let before = problems.len();
     check_size(KEY, &state, case, tube, problems);
+    check_layers(KEY, &state.layout, tube, problems);
     check_symmetry(&state.layout, mesh, symmetry, problems);
     let load = load(&state, tube, problems);
     (problems.len() == before).then_some(Start { file, load, state })
@@ -66,6 +67,24 @@ pub(super) fn check_size(
             let rule = format!("its tube is {found} {what}, and this one is {expected} {what}");
             problems.value(key, rule, "");
         }
+    }
+}
+
+/// Checks that a state, or a mode, has the layers of the wall.
+pub(super) fn check_layers(key: &str, layout: &Layout, tube: &Tube, problems: &mut Problems) {
+    let shares = |of: &[f64]| match of.len() {
+        0 | 1 => "one layer".to_owned(),
+        n => format!("{n} layers, with {of:?} of its thickness"),
+    };
+    let found: Vec<f64> = layout.mesh.layers.iter().map(|layer| layer.share).collect();
+    let expected: Vec<f64> = tube.layers.iter().map(|layer| layer.share).collect();
+    let [count, needed] = [&found, &expected].map(|shares| shares.len().max(1));
+    let pairs = found.iter().zip(&expected);
+    let same = pairs.fold(true, |same, (a, b)| same && (a - b).abs() < 1e-9);
+    if count != needed || !same {
+        let (found, expected) = (shares(&found), shares(&expected));
+        let rule = format!("its wall has {found}, and this one has {expected}");
+        problems.value(key, rule, "");
     }
 }
 

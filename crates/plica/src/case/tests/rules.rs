@@ -1,6 +1,8 @@
 //! The rules between keys, each once just inside and once just outside its bound.
 
 use super::*;
+use crate::material::Material;
+use crate::tube::MeshLayer;
 
 /// A case with a value of `@`.
 struct Rule {
@@ -129,6 +131,55 @@ const OF_RING: &[Rule] = &[
         "material.mooney-rivlin = { poisson_ratio = 0.25, i2_share = @ }",
         &["0.5", "0.0"],
         &["0.5001"],
+    ),
+    rule(
+        "tube.thickness",
+        "layers = [{ thickness = 0.02 }, { thickness = 0.04 }]\ntube.thickness = @",
+        &["0.06", "0.06000001"],
+        &["0.0601", "0.0599"],
+    ),
+    rule(
+        "layers[1].thickness",
+        "layers = [{ thickness = @ }, { thickness = 0.06 }]",
+        &["6.1e-5"],
+        &["5.9e-5"],
+    ),
+    rule(
+        "layers[2].name",
+        "layers = [{ thickness = 0.03, name = 'a' }, { thickness = 0.03, name = @ }]",
+        &["'b'"],
+        &["'a'", "'b c'", "'layer/2'"],
+    ),
+    rule(
+        "layers[1].residual.around",
+        "layers = [{ thickness = 0.06, residual = { around = @ } }]",
+        &["[0.1, 10.0]"],
+        &["[0.0999, 1.0]", "[1.0, 10.01]", "[-1.0, 1.0]"],
+    ),
+    rule(
+        "layers[1].fibres[1].angle_degrees",
+        "layers = [{ thickness = 0.06, fibres = [{ k1 = 1.0, k2 = 1.0, angle_degrees = @ }] }]",
+        &["0.1", "-89.9", "45.0"],
+        &["0.0", "90.0", "-90.0", "-91.0"],
+    ),
+    rule(
+        "mesh.grading",
+        "layers = [{ thickness = 0.03 }, { thickness = 0.03 }]\nmesh.grading = @",
+        &["1.0"],
+        &["1.5"],
+    ),
+    rule(
+        "mesh.control_points.thickness",
+        "layers = [{ thickness = 0.03 }]\nmesh.control_points = { axial = 40 @ }",
+        &[""],
+        &[", thickness = 8"],
+    ),
+    rule(
+        "contact",
+        "layers = [{ thickness = 0.06, fibres = [{ k1 = 1.0, k2 = 1.0, angle_degrees = 30.0, \
+         pair = false }] }]\ncontact = @",
+        &["false"],
+        &["true"],
     ),
     rule(
         "solver.pseudo_time",
@@ -451,6 +502,94 @@ fn with_state(text: &str, change: impl Fn(&mut SavedState)) -> Vec<String> {
 }
 
 #[test]
+fn muscles_of_a_layer_and_laws_by_their_moduli_are_complete() {
+    let layers = "layers = [{ thickness = 0.03, name = 'in' }, { thickness = 0.03 }]\n";
+    let two = |first: &str, second: &str| {
+        let muscle = |name, layer| {
+            format!("[muscles.{name}]\ndirection = 'circular'\nzone = [0.5, 1.0]\n{layer}\n")
+        };
+        let stage = "[[stages]]\ndrive.a.diameter_ratio = 0.5\n";
+        format!(
+            "{layers}{}{}{stage}",
+            muscle("a", first),
+            muscle("b", second)
+        )
+    };
+    let law = |keys: &str| format!("material.neo-hookean = {{ {keys} }}{RING}");
+    for (text, problem) in [
+        (two("layer = 'in'", "layer = 'layer-2'"), None),
+        (
+            two("layer = 'in'", "layer = 'in'"),
+            Some("muscles.b.zone = [0.5, 1.0]: overlaps the zone of a"),
+        ),
+        (
+            two("layer = 'in'", ""),
+            Some("muscles.b.zone = [0.5, 1.0]: overlaps the zone of a"),
+        ),
+        (
+            two("", ""),
+            Some("muscles.b.zone = [0.5, 1.0]: overlaps the zone of a"),
+        ),
+        (
+            two("layer = 'in'", "layer = 'out'"),
+            Some("muscles.b.layer = 'out': no layer has this name; the layers are in, layer-2"),
+        ),
+        (law("shear_modulus = 1.0, bulk = 50.0"), None),
+        (
+            law("shear_modulus = 1.0"),
+            Some("material.neo-hookean.shear_modulus: needs bulk"),
+        ),
+        (
+            law("bulk = 1.0"),
+            Some("material.neo-hookean.bulk: needs shear_modulus"),
+        ),
+        (
+            law("shear_modulus = 1.0, bulk = 50.0, youngs_modulus = 3.0"),
+            Some(
+                "material.neo-hookean.youngs_modulus: cannot be given together with shear_modulus",
+            ),
+        ),
+    ] {
+        let found = read(&text, "case").map_or_else(|error| error.problems, |_| vec![]);
+        let found: Vec<String> = found.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            found.len(),
+            usize::from(problem.is_some()),
+            "{found:?}\n{text}"
+        );
+        assert!(
+            found
+                .iter()
+                .all(|found| found.starts_with(problem.unwrap())),
+            "{found:?}"
+        );
+    }
+    // Stresses are measured in the stiffest of the layers.
+    let text = "[units]\nlength = 'mm'\nstress = 'kPa'\n[tube]\ndiameter = 2.0\n\
+        [[layers]]\nthickness = 0.2\nmaterial.gent = { shear_modulus = 3.0, limit = 2.0, bulk = 90.0 }\n\
+        [[layers]]\nthickness = 0.1\nmaterial.neo-hookean = { youngs_modulus = 4.5 }\n\
+        fibres = [{ k1 = 18.0, k2 = 1.0, angle_degrees = 30.0 }]\n\
+        [[stages]]\ndrive.inner-wall.dead_load = 1.8\n";
+    let plan = read(text, "case").unwrap();
+    assert_eq!(plan.units.unwrap().youngs_modulus, 9.0);
+    assert_eq!(plan.stages[0].load.pressures[0].dead, 0.2);
+    let [inner, outer] = &plan.tube.layers[..] else {
+        panic!()
+    };
+    let Material::Composite(law) = &outer.material else {
+        panic!()
+    };
+    assert_eq!((law.fibres.len(), law.fibres[0].k1), (2, 2.0));
+    assert!((law.matrix.shear_modulus() - 0.5 / 2.99).abs() < 1e-15);
+    let Material::Composite(law) = &inner.material else {
+        panic!()
+    };
+    assert!((law.matrix.shear_modulus() - 1.0 / 3.0).abs() < 1e-15);
+    assert!((inner.share - 2.0 / 3.0).abs() < 1e-12 && (plan.tube.thickness - 0.15).abs() < 1e-15);
+    assert_eq!(plan.mesh.thickness, 3 + 3 + 3 + 2);
+}
+
+#[test]
 fn a_state_to_start_from_fits_the_case() {
     let text = format!("start.state = 'x'{RING}");
     let check = |text: &str, change: &dyn Fn(&mut SavedState), rules: &[&str]| {
@@ -474,6 +613,19 @@ fn a_state_to_start_from_fits_the_case() {
         &text,
         &|s| s.layout.thickness = 0.07,
         &["its tube is 0.07 D thick"],
+    );
+    check(
+        &text,
+        &|s| {
+            s.layout.mesh.layers = vec![
+                MeshLayer {
+                    share: 0.5,
+                    elements: 1
+                };
+                2
+            ]
+        },
+        &["its wall has 2 layers, with [0.5, 0.5] of its thickness, and this one has one layer"],
     );
     check(&text, &|s| s.layout.rings = 8, &["has no symmetry"]);
     let fold = |m: usize| format!("symmetry.fold = {m}\n{text}");
