@@ -22,7 +22,7 @@
 use super::one_dimension::NoEquilibrium;
 
 /// Steps of the fourth-order Runge–Kutta method through a layer.
-const STEPS: usize = 400;
+const STEPS: usize = 100;
 /// Limit of iterations.
 const ITERATIONS: usize = 100;
 

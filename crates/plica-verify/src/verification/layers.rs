@@ -190,7 +190,7 @@ pub fn artery(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     Ok(())
 }
 
-/// Records radii and twist of an inflated tube with fibres of one hand, whose end is free to turn.
+/// Records radii and twist of an inflated tube with fibres of one hand, whose ends are free to turn.
 pub fn helical_fibres(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     for dispersion in [0.0, 0.2] {
         let mut layer = Layer::new(0.5, 0.4, 20.0);
@@ -206,9 +206,14 @@ pub fn helical_fibres(recorder: &mut Recorder<'_>) -> Result<(), VerificationErr
         };
         let p = 0.05;
         let expected = wall.inflate(p, 4)?;
-        let (problem, state) = inflated(&model(&wall, &[6]), &wall, p, 8)?;
+        // In the uniform state shear stresses act on a cross-section, without torque. They vanish on a sliding end, so
+        // that the tube is uniform only far from its ends.
+        let mut model = model(&wall, &[6]);
+        model.tube.length = 4.0;
+        model.elements[0] = 40;
+        let (problem, state) = inflated(&model, &wall, p, 8)?;
         recorder.case(format!(
-            "ring, fibres at 0.6 rad, dispersion {dispersion}, ℓ = 1.1, p = {p}"
+            "tube, fibres at 0.6 rad, dispersion {dispersion}, ℓ = 1.1, p = {p}"
         ))?;
         let both = [expected.radii[0], expected.radii[1]];
         radii(recorder, 1e-5, (&problem, &state), &wall, (both, ONE));
@@ -221,8 +226,7 @@ pub fn helical_fibres(recorder: &mut Recorder<'_>) -> Result<(), VerificationErr
             let [_, x, y] = problem.tube.sample(&state.load, &state.u, at).position;
             y.atan2(x)
         };
-        let length = problem.tube.tube.length;
-        let twist = (turn(length) - turn(0.0)) / length;
+        let twist = (turn(2.2) - turn(1.8)) / 0.4;
         recorder.relative(1e-5, "twist over length", twist, (expected.twist, ONE));
     }
     Ok(())
