@@ -26,6 +26,7 @@ mod nearest;
 mod pairs;
 mod pressure;
 mod report;
+mod space;
 mod step;
 mod surface;
 #[cfg(test)]
@@ -36,6 +37,7 @@ pub use curve::Face;
 pub use friction::{FaceFriction, SelfFriction};
 pub use pressure::{PressedPoint, PressureField, place_of};
 pub use report::{ContactReport, FaceContact};
+pub use space::{SurfaceContact, SurfaceContactState, SurfaceTangent};
 pub use surface::{BIOT, CREASE, FaceSurface};
 
 use crate::assembly::SplineTube;
