@@ -1,97 +1,77 @@
 //! The pressure of contact at points of a face.
 
-use super::bezier::{Bezier, Point};
-use super::boxes::{Box2, BoxTree};
-use super::curve::FaceCurve;
-use super::pairs::{FaceQuadrature, pairs_of_point};
-use super::{Face, SelfContact, bezier};
+use super::meridian::MeridianPressure;
+use super::surfaces::SurfacePressure;
+use super::{Face, SelfContact};
 use crate::assembly::SplineTube;
-use std::f64::consts::TAU;
 
 /// A quadrature point of a face under pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressedPoint {
-    /// Current position (z, r), in D.
-    pub position: Point,
-    /// Current area of the whole circle, in D².
+    /// Current axial position, in D.
+    pub z: f64,
+    /// Current area on the whole tube, in D².
     pub area: f64,
     /// Pressure of contact, per current area, in E.
     pub pressure: f64,
 }
 
 /// The pressure of contact in a state.
+///
+/// The energy ½ ∫ b dA₀ gives both points of a pair half of their common force, so the pressure at x is
+/// −½ b′ (dA₀/da|x + dA₀/da|y), summed over the points y that x is in contact with.
 pub struct PressureField<'a> {
-    contact: &'a SelfContact,
-    /// The curves of each face and the tree of their boxes.
-    faces: Vec<(Vec<Bezier>, BoxTree)>,
+    tube: &'a SplineTube,
+    of: Pressure<'a>,
+}
+
+enum Pressure<'a> {
+    Meridian(MeridianPressure<'a>),
+    Surface(SurfacePressure<'a>),
 }
 
 impl PressureField<'_> {
-    /// Returns the pressure at a place of a face, given as an element and a position from 0 to 1 in it: force per current
-    /// area, in E. The energy ½ ∫ b dA₀ gives both points of a pair half of their common force, so the pressure at x is
-    /// −½ b′ (dA₀/da|x + dA₀/da|y), summed over the points y that x is in contact with.
-    pub fn at(&self, face: Face, (e, xi): (usize, f64)) -> f64 {
-        let index = usize::from(face == Face::Inner);
-        let contact = self.contact;
-        let (face, quadrature) = &contact.faces[index];
-        let (curves, tree) = &self.faces[index];
-        // dA₀/da of a point of an element with the derivative x′ over the position in it.
-        let rest_area = |element: usize, radius: f64, slope: Point| {
-            contact.repeats * quadrature.area(element) / (TAU * radius * bezier::length(slope))
-        };
-        let at = curves[e].at(xi);
-        let mut pairs = vec![];
-        let place = Box2::around([at.position]);
-        tree.near(&place, contact.barrier.range, &mut |other| {
-            let (x, y) = ((e, &curves[e], xi), (other, &curves[other]));
-            pairs_of_point(face, x, y, &contact.barrier, 1.0, &mut pairs);
-        });
-        let here = rest_area(e, at.position[1], at.slope);
-        let of_pair = |pair: &super::Pair| {
-            let there = rest_area(pair.y.0, pair.radii[1], pair.slope);
-            -0.5 * pair.barrier.slope * (here + there)
-        };
-        pairs.iter().map(of_pair).sum()
+    /// Returns the pressure, force per current area in E, at a place of a face at rest: its axial position in D and its angle
+    /// in radians.
+    pub fn at(&self, face: Face, z: f64, angle: f64) -> f64 {
+        let along = place(self.tube, z);
+        match &self.of {
+            Pressure::Meridian(pressure) => pressure.at(face, along),
+            Pressure::Surface(pressure) => {
+                let sector = &self.tube.sector;
+                // Element 0 is centred on angle zero.
+                let turns = angle / sector.angle() + 0.5;
+                let element = turns.floor();
+                let around = (element as i64).rem_euclid(sector.around as i64) as usize;
+                pressure.at(face, [along.0, around], [along.1, turns - element])
+            }
+        }
     }
 }
 
 /// Returns the element of an axial position at rest, and the position from 0 to 1 in it.
-pub fn place_of(tube: &SplineTube, z: f64) -> (usize, f64) {
+fn place(tube: &SplineTube, z: f64) -> (usize, f64) {
     let element = tube.axial.evaluate(z).element;
     let (from, to) = tube.axial.element(element);
     (element, ((z - from) / (to - from)).clamp(0.0, 1.0))
 }
 
 impl SelfContact {
-    /// Returns the pressure of contact in a state.
-    pub fn pressure(&self, u: &[f64]) -> PressureField<'_> {
-        let of_face = |(curve, _): &(FaceCurve, FaceQuadrature)| {
-            let curves = curve.curves(u);
-            let tree = BoxTree::of_curves(&curves);
-            (curves, tree)
+    /// Returns the pressure of contact in a state of a tube.
+    pub fn pressure<'a>(&'a self, tube: &'a SplineTube, u: &[f64]) -> PressureField<'a> {
+        let of = match self {
+            Self::Meridian(contact) => Pressure::Meridian(contact.pressure(u)),
+            Self::Surface(contact) => Pressure::Surface(contact.pressure(u)),
         };
-        PressureField {
-            contact: self,
-            faces: self.faces.iter().map(of_face).collect(),
-        }
+        PressureField { tube, of }
     }
 
     /// Returns the quadrature points of a face that are under pressure. The sum of pressure times area is twice the force
     /// between the two sides of the contact.
     pub fn pressed_points(&self, u: &[f64], face: Face) -> Vec<PressedPoint> {
-        let field = self.pressure(u);
-        let index = usize::from(face == Face::Inner);
-        let (curves, points) = (&field.faces[index].0, self.faces[index].1.points());
-        let places = (0..curves.len()).flat_map(|e| points.iter().map(move |&of| (e, of)));
-        let pressed = |(e, (xi, weight)): (usize, (f64, f64))| {
-            let at = curves[e].at(xi);
-            let point = PressedPoint {
-                position: at.position,
-                area: weight * TAU * at.position[1] * bezier::length(at.slope),
-                pressure: field.at(face, (e, xi)),
-            };
-            (point.pressure > 0.0).then_some(point)
-        };
-        places.filter_map(pressed).collect()
+        match self {
+            Self::Meridian(contact) => contact.pressed_points(u, face),
+            Self::Surface(contact) => contact.pressed_points(u, face),
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Contact of a state in numbers.
 
-use super::{ContactState, Face, FaceFriction, FaceSurface, SelfContact};
+use super::{FaceFriction, FaceSurface};
 
 /// Contact of a state, on the whole tube.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,43 +28,22 @@ pub struct FaceContact {
     pub from_to: [f64; 2],
 }
 
-impl SelfContact {
-    /// Sums up the contact of a state, with its surfaces.
-    pub fn report(
-        &self,
-        at: &ContactState,
-        surfaces: [FaceSurface; 2],
-        position: impl Fn(usize, f64) -> f64,
-    ) -> ContactReport {
-        let mut report = ContactReport {
-            energy: 0.0,
-            faces: [None; 2],
-            surfaces,
-            friction: None,
-        };
-        for ((curve, _), pairs) in self.faces.iter().zip(&at.0) {
-            let mut sum: Option<FaceContact> = None;
-            // A point may belong to several pairs; its area counts once.
-            let mut last = None;
-            for pair in pairs {
-                let z = position(pair.x.0, pair.places[0]);
-                let face = sum.get_or_insert(FaceContact {
-                    area: 0.0,
-                    force: 0.0,
-                    gap: f64::INFINITY,
-                    from_to: [f64::INFINITY, f64::NEG_INFINITY],
-                });
-                if last != Some(z) {
-                    face.area += self.repeats * pair.area;
-                    last = Some(z);
-                }
-                face.force -= 0.5 * self.repeats * pair.area * pair.barrier.slope;
-                face.gap = face.gap.min(pair.gap);
-                face.from_to = [face.from_to[0].min(z), face.from_to[1].max(z)];
-                report.energy += 0.5 * self.repeats * pair.area * pair.barrier.value;
-            }
-            report.faces[usize::from(curve.face == Face::Inner)] = sum;
-        }
-        report
+impl FaceContact {
+    /// Contact without points.
+    const NONE: Self = Self {
+        area: 0.0,
+        force: 0.0,
+        gap: f64::INFINITY,
+        from_to: [f64::INFINITY, f64::NEG_INFINITY],
+    };
+
+    /// Adds a pair of points to the contact of a face: the axial position at rest of the first, the force between them, and
+    /// their gap. `area` is that of the first point; zero if it belongs to a pair already.
+    pub(super) fn add(sum: &mut Option<Self>, z: f64, area: f64, force: f64, gap: f64) {
+        let face = sum.get_or_insert(Self::NONE);
+        face.area += area;
+        face.force += force;
+        face.gap = face.gap.min(gap);
+        face.from_to = [face.from_to[0].min(z), face.from_to[1].max(z)];
     }
 }

@@ -3,7 +3,7 @@
 use super::nearest::local_minima;
 use super::net::{FaceNet, Functions};
 use super::patch::{Patch, PatchPoint};
-use super::tree::{Bounds, Node, NodeBounds, Tree};
+use super::tree::{Bounds, Box3, Node, NodeBounds, Tree};
 use super::vector::{Vector, cross, dot, length, minus};
 use crate::assembly::Barrier;
 use crate::spline::gauss_legendre;
@@ -146,6 +146,31 @@ impl<'a> FaceState<'a> {
         }
     }
 
+    /// Returns the area of a patch at rest.
+    pub fn area(&self, patch: usize) -> f64 {
+        let net = self.net;
+        net.lengths[patch / net.around] * net.radius * net.element_angle()
+    }
+
+    /// Returns the patches whose boxes are within a distance of a point.
+    pub fn near_point(&self, (patch, place): (usize, [f64; 2]), distance: f64) -> Vec<usize> {
+        let at = Box3::around([self.patches[patch].at(place).position]);
+        let mut near = vec![];
+        let mut nodes = vec![self.tree.root()];
+        while let Some(node) = nodes.pop() {
+            if !self.bounds.of(node).points.is_within(distance, &at) {
+                continue;
+            }
+            if node.is_patch() {
+                near.push(node.rows[0] * self.net.around + node.columns[0]);
+            } else {
+                nodes.extend(self.tree.halves(node));
+            }
+        }
+        near.sort_unstable();
+        near
+    }
+
     fn pairs_of_patch(
         &self,
         own: usize,
@@ -155,7 +180,7 @@ impl<'a> FaceState<'a> {
     ) -> Vec<Pair> {
         let net = self.net;
         let mut pairs = vec![];
-        let area = net.lengths[own / net.around] * net.radius * net.element_angle();
+        let area = self.area(own);
         for (along, (v, weight_v)) in quadrature.points[0].iter().enumerate() {
             for (w, weight_w) in &quadrature.points[1] {
                 let place = [*v, *w];

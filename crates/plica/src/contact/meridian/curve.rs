@@ -1,28 +1,11 @@
 //! The meridian of a face of an axisymmetric tube, as Bézier curves.
 
-use super::bezier::{Bezier, MAX_POINTS, Point, bernstein, bernstein_slopes};
+use super::bezier::{Bezier, Point};
 use crate::assembly::SplineTube;
+use crate::contact::Face;
+use crate::contact::bernstein::{MAX_POINTS, bernstein, bernstein_slopes};
 use crate::spline::control_wave;
 use crate::tube::Tube;
-use std::fmt;
-
-/// A face of the wall.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Face {
-    /// Reference radius D/2.
-    Outer,
-    /// Reference radius D/2 − H.
-    Inner,
-}
-
-impl fmt::Display for Face {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Outer => "outer wall",
-            Self::Inner => "inner wall",
-        })
-    }
-}
 
 /// The meridian of a face of an axisymmetric tube without twist: its place among the unknowns.
 #[derive(Clone, Debug)]

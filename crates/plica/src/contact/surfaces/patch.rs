@@ -1,7 +1,7 @@
 //! Bézier patches in three dimensions: one element of a spline surface, or a part of it.
 
 use super::vector::{Vector, between, minus};
-use crate::contact::bezier::{MAX_POINTS, bernstein, bernstein_slopes};
+use crate::contact::bernstein::{MAX_POINTS, bernstein, bernstein_slopes};
 
 /// A Bézier patch over (v, w) from 0 to 1: v along the tube, w around it. Points are (z, x, y), in D.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,8 +157,8 @@ fn jet(degree: usize, xi: f64) -> [[f64; MAX_POINTS]; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::space::vector::length;
-    use crate::contact::space::random::Random;
+    use crate::contact::surfaces::vector::length;
+    use crate::contact::surfaces::random::Random;
 
     fn patch(degree: usize, random: &mut Random) -> Patch {
         let mut points = [[[0.0; 3]; MAX_POINTS]; MAX_POINTS];

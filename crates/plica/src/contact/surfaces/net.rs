@@ -5,7 +5,7 @@ use super::patch::Patch;
 use super::vector::{Vector, plus};
 use crate::assembly::SplineTube;
 use crate::contact::Face;
-use crate::contact::bezier::{MAX_POINTS, bernstein, bernstein_slopes};
+use crate::contact::bernstein::{MAX_POINTS, bernstein, bernstein_slopes};
 use crate::spline::Basis;
 use crate::tube::Tube;
 use rayon::prelude::*;

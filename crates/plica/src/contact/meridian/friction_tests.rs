@@ -1,6 +1,6 @@
 //! Friction of the wall with itself: forces and tangent against differences, balance, rigid motions.
 
-use super::SelfContact;
+use super::MeridianContact;
 use super::friction::SelfFriction;
 use super::tests::{contact, hairpin, moved};
 
@@ -8,7 +8,7 @@ use super::tests::{contact, hairpin, moved};
 const ELASTIC: f64 = 2e-4;
 
 /// Returns the friction of a step to a hairpin, with slips from a step before.
-fn stepped(contact: &SelfContact, u: &[f64], elastic: f64) -> SelfFriction {
+fn stepped(contact: &MeridianContact, u: &[f64], elastic: f64) -> SelfFriction {
     let [first, start, lag] = [-3e-4, -1e-4, 2e-4].map(|t| moved(u, t));
     let friction = contact.friction((&first, &[]), &start, elastic);
     let slips = contact.elastic_slips(&friction, &start);

@@ -1,10 +1,11 @@
 //! Pairs of points of a meridian that are in contact.
 
-use super::bezier::{Bezier, MAX_POINTS, Point, dot, length, minus};
+use super::bezier::{Bezier, Point, dot, length, minus};
 use super::boxes::{Box2, BoxTree};
 use super::curve::FaceCurve;
 use super::nearest::local_minima;
 use crate::assembly::{Barrier, BarrierJet};
+use crate::contact::bernstein::MAX_POINTS;
 use crate::spline::gauss_legendre;
 use rayon::prelude::*;
 

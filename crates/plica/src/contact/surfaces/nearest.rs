@@ -10,6 +10,9 @@ const MAX_HALVINGS: usize = 16;
 /// Distance, over the place in the patch, by which a minimum on an edge may lie outside.
 const EDGE: f64 = 1e-10;
 
+/// Size of a step, over the place in the patch, after which Newton's method takes one step more.
+const SMALL: f64 = 1e-8;
+
 /// Most steps of Newton's method.
 const STEPS: usize = 40;
 
@@ -125,7 +128,7 @@ fn minimum(patch: &Patch, part: &Part, x: Vector) -> Option<[f64; 2]> {
     let clamped = |place: [f64; 2]| [0, 1].map(|i| place[i].clamp(low[i], high[i]));
     let mut place = [0, 1].map(|i| f64::midpoint(part.from[i], part.to[i]));
     let mut at = patch.at(place);
-    let mut converged = false;
+    let mut last = f64::INFINITY;
     for _ in 0..STEPS {
         let d = minus(at.position, x);
         let gradient = at.slopes.map(|s| dot(d, s));
@@ -153,21 +156,21 @@ fn minimum(patch: &Patch, part: &Part, x: Vector) -> Option<[f64; 2]> {
             }
             t *= 0.5;
         }
-        // The next step would be of the size of rounding errors.
-        converged = step.iter().all(|s| s.abs() < 1e-12);
-        if converged || place == before.0 {
+        // One step more after a small one, whose error is of the size of rounding errors.
+        let before_last = std::mem::replace(&mut last, step[0].abs().max(step[1].abs()));
+        if before_last < SMALL || place == before.0 {
             break;
         }
     }
     let inside = |i: usize| place[i] >= part.from[i] - EDGE && place[i] <= part.to[i] + EDGE;
-    (converged && inside(0) && inside(1)).then_some(place)
+    (last < SMALL && inside(0) && inside(1)).then_some(place)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::bezier::MAX_POINTS;
-    use crate::contact::space::random::Random;
+    use crate::contact::bernstein::MAX_POINTS;
+    use crate::contact::surfaces::random::Random;
 
     fn minima(patch: &Patch, x: Vector, range: f64) -> Vec<[f64; 2]> {
         let mut all: Vec<[f64; 2]> = vec![];

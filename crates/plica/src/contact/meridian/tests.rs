@@ -55,8 +55,8 @@ pub(super) fn moved(u: &[f64], step: f64) -> Vec<f64> {
         .collect()
 }
 
-pub(super) fn contact(tube: &SplineTube) -> SelfContact {
-    SelfContact::new(tube).with_range(0.02)
+pub(super) fn contact(tube: &SplineTube) -> MeridianContact {
+    MeridianContact::new(tube).with_range(0.02)
 }
 
 #[test]
@@ -225,9 +225,10 @@ fn the_tangent_of_a_mode_is_the_second_derivative_of_the_energy_of_its_wave() {
 
 /// The energy of contact of a face with a circumferential wave, from three-dimensional distances.
 mod wave {
-    use super::super::bezier::{MAX_POINTS, Point};
+    use super::super::bezier::Point;
     use super::super::curve::FaceCurve;
-    use super::super::{ContactState, SelfContact};
+    use crate::contact::bernstein::MAX_POINTS;
+    use super::super::{MeridianPairs, MeridianContact};
     use std::f64::consts::TAU;
 
     /// Angles around the tube at which the energy is evaluated.
@@ -275,8 +276,8 @@ mod wave {
 
     /// Returns the energy of the pairs of a state, of one sector, averaged around the tube.
     pub fn energy(
-        contact: &SelfContact,
-        pairs: &ContactState,
+        contact: &MeridianContact,
+        pairs: &MeridianPairs,
         direction: &[f64],
         mode: usize,
         size: f64,

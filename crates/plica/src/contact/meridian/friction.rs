@@ -8,11 +8,12 @@
 //! slip there. A rigid motion of the pair changes no slip. The force along τ is μλ f₁(s) ([`Slip`]) as on obstacles, with
 //! λ the normal force of the pair. For the λ, τ and η of some state the forces have the potential Σ μλ f₀(s).
 
-use super::bezier::{Bezier, MAX_POINTS, Point, dot, length, minus};
+use super::bezier::{Bezier, Point, dot, length, minus};
 use super::curve::FaceCurve;
 use super::pairs::{FaceQuadrature, Pair};
-use super::{ContactForces, SelfContact};
+use super::{ContactForces, MeridianContact};
 use crate::assembly::Slip;
+use crate::contact::bernstein::MAX_POINTS;
 use std::collections::BTreeMap;
 
 /// Share of a pair in the energy of contact: the two points of a gap find each other.
@@ -55,7 +56,7 @@ pub struct FaceFriction {
     pub dissipated: f64,
 }
 
-impl SelfContact {
+impl MeridianContact {
     /// Returns the friction in a step from a state `start` with its elastic slips, with the normal forces and pairs of a
     /// state `u`.
     pub fn friction(

@@ -1,46 +1,20 @@
 //! Stretch and turning of a face: signs that it creases, and that the mesh resolves the crease.
 
-use super::SelfContact;
+use super::MeridianContact;
 use super::bezier::{Bezier, Point, dot};
 use crate::assembly::{Point as MaterialPoint, SplineTube};
+use crate::contact::FaceSurface;
 use crate::tube::Load;
-
-/// Surface stretch s = λ₁² λ₂ below which a crease of a flat neo-Hookean surface has less energy than the flat surface
-/// (Hong, Zhao and Suo 2009: in plane strain from the stretch 0.646 down, 0.646² = 0.417).
-pub const CREASE: f64 = 0.417;
-
-/// Surface stretch below which a flat incompressible neo-Hookean surface is unstable: x³ + x² + 3x − 1 = 0 (Biot 1963).
-pub const BIOT: f64 = 0.295_597_742_522_084_8;
 
 /// Points of an element at which a face is looked at, its ends included.
 const POINTS: usize = 9;
 
-/// Stretch and turning of a face.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FaceSurface {
-    /// Smallest s = λ₁² λ₂ of the elastic stretches along and around the face, λ₁ the smaller one.
-    pub stretch: f64,
-    /// Axial position at rest of the smallest s, in D.
-    pub stretch_at: f64,
-    /// Largest angle by which the face turns along one element, in radians. A wall that bends with a radius ρ turns by
-    /// h/ρ along an element of deformed length h, whatever its size: splines of any degree lose the shape of a crease
-    /// where that is no longer small.
-    pub turn: f64,
-    /// Axial position at rest of the middle of that element, in D.
-    pub turn_at: f64,
-}
-
-impl SelfContact {
+impl MeridianContact {
     /// Returns stretch and turning of each face, outer and inner, of a state of a tube of one ring without twist.
     pub fn surfaces(&self, tube: &SplineTube, load: &Load, u: &[f64]) -> [FaceSurface; 2] {
         [0, 1].map(|i| {
             let curve = &self.faces[i].0;
-            let mut surface = FaceSurface {
-                stretch: f64::INFINITY,
-                stretch_at: 0.0,
-                turn: 0.0,
-                turn_at: 0.0,
-            };
+            let mut surface = FaceSurface::FLAT;
             for (e, of_element) in curve.curves(u).iter().enumerate() {
                 let (from, to) = tube.axial.element(e);
                 let turn = turn(of_element);
@@ -88,11 +62,6 @@ fn turn(curve: &Bezier) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_threshold_of_biot_is_the_root_of_his_cubic() {
-        assert!((((BIOT + 1.0) * BIOT + 3.0) * BIOT - 1.0).abs() < 1e-15);
-    }
 
     #[test]
     fn a_parabola_turns_by_the_angle_between_its_ends() {

@@ -8,17 +8,23 @@ mod nearest;
 mod net;
 mod pairs;
 mod patch;
+mod pressure;
 #[cfg(test)]
 mod random;
 mod step;
+mod stretch;
 #[cfg(test)]
 mod tests;
 mod tree;
 mod vector;
 
-use super::{ContactForces, Face};
+pub use pressure::SurfacePressure;
+
+use super::report::FaceContact;
+use super::{ContactForces, ContactReport, Face};
 use crate::assembly::{Barrier, LowHarmonics, SplineTube};
 use crate::matrix::CoupledBanded;
+use crate::tube::Load;
 use average::AverageContact;
 use net::FaceNet;
 use pairs::{FaceState, Pair, Quadrature};
@@ -37,16 +43,18 @@ pub struct SurfaceContact {
     faces: Vec<(FaceNet, Tree)>,
     quadrature: Quadrature,
     row_size: usize,
+    /// Sectors of the whole tube.
+    repeats: f64,
 }
 
 /// The pairs of a state, by face.
 #[derive(Clone, Debug)]
-pub struct SurfaceContactState(Vec<Vec<Pair>>);
+pub struct SurfacePairs(Vec<Vec<Pair>>);
 
 /// The tangent of contact at a state.
 #[derive(Clone, Debug)]
 pub struct SurfaceTangent {
-    pairs: SurfaceContactState,
+    pairs: SurfacePairs,
     average: Vec<AverageContact>,
 }
 
@@ -67,6 +75,7 @@ impl SurfaceContact {
             faces: vec![face(Face::Outer), face(Face::Inner)],
             quadrature: Quadrature::new(POINTS),
             row_size: 3 * tube.wall.functions(),
+            repeats: tube.sector.repeats(),
         }
     }
 
@@ -76,19 +85,19 @@ impl SurfaceContact {
     }
 
     /// Finds the pairs of a state.
-    pub fn at(&self, u: &[f64]) -> SurfaceContactState {
+    pub fn at(&self, u: &[f64]) -> SurfacePairs {
         self.pairs(u, &self.quadrature)
     }
 
-    fn pairs(&self, u: &[f64], quadrature: &Quadrature) -> SurfaceContactState {
+    fn pairs(&self, u: &[f64], quadrature: &Quadrature) -> SurfacePairs {
         let of_face = |(net, tree): &(FaceNet, Tree)| {
             FaceState::new(net, tree, u).pairs(quadrature, &self.barrier)
         };
-        SurfaceContactState(self.faces.iter().map(of_face).collect())
+        SurfacePairs(self.faces.iter().map(of_face).collect())
     }
 
     /// Adds the forces of a state to a residual.
-    pub fn add_forces(&self, at: &SurfaceContactState, residual: &mut [f64]) -> ContactForces {
+    pub fn add_forces(&self, at: &SurfacePairs, residual: &mut [f64]) -> ContactForces {
         let mut forces = ContactForces::default();
         for ((net, _), pairs) in self.faces.iter().zip(&at.0) {
             if !pairs.is_empty() {
@@ -148,7 +157,36 @@ impl SurfaceContact {
     }
 }
 
-impl SurfaceContactState {
+impl SurfaceContact {
+    /// Sums up the contact of a state, with its surfaces.
+    pub fn report(&self, tube: &SplineTube, load: &Load, u: &[f64]) -> ContactReport {
+        let mut report = ContactReport {
+            energy: 0.0,
+            faces: [None; 2],
+            surfaces: self.surfaces(tube, load, u),
+            friction: None,
+        };
+        for ((net, _), pairs) in self.faces.iter().zip(&self.at(u).0) {
+            let face = &mut report.faces[usize::from(net.face == Face::Inner)];
+            // A point may belong to several pairs; its area counts once.
+            let mut last = None;
+            for pair in pairs {
+                let x = (pair.patches[0], pair.places[0]);
+                let (from, to) = tube.axial.element(net.elements_of(x.0)[0]);
+                let z = from + x.1[0] * (to - from);
+                let own = self.repeats * pair.area;
+                let area = if last == Some(x) { 0.0 } else { own };
+                last = Some(x);
+                let force = self.repeats * vector::length(pair.force);
+                FaceContact::add(face, z, area, force, pair.gap);
+                report.energy += self.repeats * pair.energy;
+            }
+        }
+        report
+    }
+}
+
+impl SurfacePairs {
     /// Returns whether no points are in contact.
     pub fn is_empty(&self) -> bool {
         self.0.iter().all(Vec::is_empty)

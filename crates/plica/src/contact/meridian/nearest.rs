@@ -127,7 +127,7 @@ fn evaluate(f: &[f64], xi: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::bezier::length;
+    use crate::contact::meridian::bezier::length;
 
     fn minima(curve: &Bezier, x: Point) -> Vec<f64> {
         let mut all = vec![];
