@@ -1,7 +1,7 @@
 //! A tube and its contact, sampled at material points of states.
 
 use plica::assembly::{Point, Sample, SplineTube};
-use plica::contact::{Face, PressureField, SelfContact, place_of};
+use plica::contact::{Face, PressureField, SelfContact};
 use plica::study::Plan;
 use plica::tube::{Load, Tube};
 use std::ops::Deref;
@@ -66,7 +66,7 @@ impl SampledTube {
     /// Prepares a state for sampling.
     pub fn state<'a>(&'a self, load: &'a Load, u: &'a [f64]) -> SampledState<'a> {
         SampledState {
-            pressure: self.contact.as_ref().map(|contact| contact.pressure(u)),
+            pressure: self.contact.as_ref().map(|contact| contact.pressure(&self.tube, u)),
             ..SampledState::without_contact(&self.tube, load, u)
         }
     }
@@ -99,7 +99,7 @@ impl<'a> SampledState<'a> {
             } else {
                 return 0.0;
             };
-            field.at(face, place_of(self.tube, point.z))
+            field.at(face, point.z, point.angle)
         };
         FieldSample {
             wall: self.tube.sample(self.load, self.u, point),

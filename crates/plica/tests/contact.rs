@@ -2,7 +2,7 @@
 
 use crate::common::main_case;
 use plica::assembly::SplineTube;
-use plica::contact::{ContactReport, SelfContact};
+use plica::contact::{ContactReport, MeridianContact, SelfContact};
 use plica::equilibrium::{TubeProblem, UnstableMode, prolong, test_stability};
 use plica::measure::Measures;
 use plica::solve::{Equilibrium, Path};
@@ -28,7 +28,7 @@ fn folded(range: Option<f64>) -> Reached {
     let plan = main_case([70, 16, 4]);
     let mut problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, 1));
     problem.contact = range.map(|range| {
-        let contact = SelfContact::new(&problem.tube).with_range(range);
+        let contact = SelfContact::Meridian(MeridianContact::new(&problem.tube).with_range(range));
         Arc::new(contact)
     });
     let rest = vec![0.0; problem.tube.unknowns()];
@@ -86,7 +86,7 @@ fn a_fold_that_touches_itself_is_carried_onto_a_finer_graded_mesh_and_range() {
     let mut plan = main_case([100, 16, 5]);
     plan.mesh.grading = 4.0;
     let mut problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, 1));
-    let contact = SelfContact::new(&problem.tube).with_range(0.5 * RANGE);
+    let contact = SelfContact::Meridian(MeridianContact::new(&problem.tube).with_range(0.5 * RANGE));
     problem.contact = Some(Arc::new(contact.clone()));
     let (load, u) = (&coarse.path.state().load, &coarse.path.state().u);
     let u = prolong(&coarse.problem.tube, &problem.tube, u);

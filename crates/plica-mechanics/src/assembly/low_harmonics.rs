@@ -15,7 +15,7 @@
 use super::SplineTube;
 use super::ring_damping::RingDamping;
 use super::tables::{AxialBatch, CircumferentialPoint, Layer};
-use crate::matrix::BlockBanded;
+use crate::matrix::{BlockBanded, FarBlocks};
 use crate::rings::Rotation;
 use crate::spline::gauss_legendre;
 
@@ -190,28 +190,51 @@ impl LowHarmonics {
         index: impl Fn((usize, usize), (usize, usize)) -> (usize, usize),
         into: &mut BlockBanded,
     ) {
-        let m = block.size();
         for j in 0..block.blocks() {
             for d in 0..=block.band().min(block.blocks() - 1 - j) {
-                // B T, then Tᵀ of it.
-                let mut right = vec![[0.0; THROUGH * 3]; m];
-                for (row, right) in right.iter_mut().enumerate() {
-                    for column in 0..m {
-                        let entry = block.in_block(j, d, row, column);
-                        for c in 0..THROUGH {
-                            right[3 * c + column % 3] += entry * self.through[column / 3][c];
-                        }
-                    }
-                }
+                let entry = |row: usize, column: usize| block.in_block(j, d, row, column);
+                self.project_block(block.size(), entry, |row, column, value| {
+                    let (row, column) = index(row, column);
+                    into.add_at(j, d, row, column, value);
+                });
+            }
+        }
+    }
+
+    /// Adds Tᵀ B T for the blocks B outside the band of a matrix of one ring, numbered by function and component.
+    pub fn project_far(&self, far: &FarBlocks, into: &mut FarBlocks) {
+        let (m, size) = (far.size(), into.size());
+        for ((i, j), block) in far.blocks() {
+            let entry = |row: usize, column: usize| block[column * m + row];
+            self.project_block(m, entry, |(c, i_row), (d, i_column), value| {
+                into.add_at(i * size + 3 * c + i_row, j * size + 3 * d + i_column, value);
+            });
+        }
+    }
+
+    /// Calls `add` with the entries of Tᵀ B T for one m × m block B: (function, component) of row and column, and value.
+    fn project_block(
+        &self,
+        m: usize,
+        entry: impl Fn(usize, usize) -> f64,
+        mut add: impl FnMut((usize, usize), (usize, usize), f64),
+    ) {
+        // B T, then Tᵀ of it.
+        let mut right = vec![[0.0; THROUGH * 3]; m];
+        for (row, right) in right.iter_mut().enumerate() {
+            for column in 0..m {
+                let entry = entry(row, column);
                 for c in 0..THROUGH {
-                    for i in 0..3 {
-                        for at in 0..THROUGH * 3 {
-                            let rows = right.iter().enumerate().skip(i).step_by(3);
-                            let sum = rows.map(|(row, right)| self.through[row / 3][c] * right[at]);
-                            let (row, column) = index((c, i), (at / 3, at % 3));
-                            into.add_at(j, d, row, column, sum.sum());
-                        }
-                    }
+                    right[3 * c + column % 3] += entry * self.through[column / 3][c];
+                }
+            }
+        }
+        for c in 0..THROUGH {
+            for i in 0..3 {
+                for at in 0..THROUGH * 3 {
+                    let rows = right.iter().enumerate().skip(i).step_by(3);
+                    let sum = rows.map(|(row, right)| self.through[row / 3][c] * right[at]);
+                    add((c, i), (at / 3, at % 3), sum.sum());
                 }
             }
         }

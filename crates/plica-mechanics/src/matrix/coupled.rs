@@ -27,6 +27,12 @@ impl From<BlockBanded> for CoupledBanded {
     }
 }
 
+impl From<Factor> for CoupledFactor {
+    fn from(factor: Factor) -> Self {
+        Self::Banded(factor)
+    }
+}
+
 impl CoupledBanded {
     /// Returns the number of unknowns.
     pub fn unknowns(&self) -> usize {
@@ -88,6 +94,30 @@ impl CoupledFactor {
         match self {
             Self::Banded(factor) => factor.solve(b),
             Self::Sparse(factor) => factor.solve(b),
+        }
+    }
+
+    /// Solves A x = b in place for two right-hand sides at once.
+    pub fn solve_pair(&self, b: [&mut [f64]; 2]) {
+        match self {
+            Self::Banded(factor) => factor.solve_pair(b),
+            Self::Sparse(factor) => factor.solve_pair(b),
+        }
+    }
+
+    /// Replaces every pivot by its size. The result is positive definite, and unchanged if the factored matrix was.
+    pub fn make_positive(&mut self) {
+        match self {
+            Self::Banded(factor) => factor.make_positive(),
+            Self::Sparse(factor) => factor.make_positive(),
+        }
+    }
+
+    /// Returns the memory of a banded factor for another matrix; its entries are meaningless.
+    pub fn into_memory(self) -> Option<BlockBanded> {
+        match self {
+            Self::Banded(factor) => Some(factor.into_memory()),
+            Self::Sparse(_) => None,
         }
     }
 }

@@ -1,21 +1,21 @@
 //! Harmonic solver: the inverse of a block-circulant matrix, harmonic by harmonic.
 
 use super::{HarmonicColumns, LowHarmonicCorrection, Transform};
-use crate::matrix::Factor;
+use crate::matrix::CoupledFactor;
 use rayon::prelude::*;
 
 /// Factorised blocks of all circumferential harmonics of a sector.
 #[derive(Clone, Debug)]
 pub struct HarmonicSolver {
     transform: Transform,
-    factors: Vec<(HarmonicColumns, Factor)>,
+    factors: Vec<(HarmonicColumns, CoupledFactor)>,
     correction: Option<LowHarmonicCorrection>,
 }
 
 impl HarmonicSolver {
     /// Returns the solver for k rings from the factorised blocks of the harmonics of the sector, 0
     /// to k/2, with prescribed unknowns constrained.
-    pub fn new(rings: usize, factors: Vec<Factor>) -> Self {
+    pub fn new(rings: usize, factors: Vec<CoupledFactor>) -> Self {
         let transform = Transform::new(rings);
         Self {
             factors: transform.harmonics().zip(factors).collect(),
@@ -31,7 +31,7 @@ impl HarmonicSolver {
     }
 
     /// Returns the factors of all harmonics, and the correction.
-    pub fn into_factors(self) -> (impl Iterator<Item = Factor>, Option<LowHarmonicCorrection>) {
+    pub fn into_factors(self) -> (impl Iterator<Item = CoupledFactor>, Option<LowHarmonicCorrection>) {
         (
             self.factors.into_iter().map(|(_, factor)| factor),
             self.correction,

@@ -10,7 +10,7 @@
 //! average. It is positive definite if A and B are, since B⁻¹ − E B_E⁻¹ Eᵀ is positive
 //! semidefinite, and it equals B⁻¹ if A = B_E.
 
-use crate::matrix::Factor;
+use crate::matrix::CoupledFactor;
 
 /// Factorised matrices of the low harmonics.
 #[derive(Clone, Debug)]
@@ -21,11 +21,11 @@ pub struct LowHarmonicCorrection {
     pub through: Vec<[f64; 3]>,
     /// A, with rows numbered (function through the wall, mode, component), modes 1, cos φ, sin φ,
     /// ….
-    pub coupled: Factor,
+    pub coupled: CoupledFactor,
     /// For every row of A, whether its function is prescribed; E has the others.
     pub prescribed: Vec<bool>,
     /// B_E of each harmonic 0 to H, for one wave; rows numbered (function, component).
-    pub averaged: Vec<Factor>,
+    pub averaged: Vec<CoupledFactor>,
 }
 
 /// Functions through the wall times components.

@@ -167,7 +167,7 @@ fn intervals(problem: &TubeProblem, wall: Face, u: &[f64]) -> Vec<Interval> {
     let length = problem.tube.tube.length / INTERVALS;
     let mut found: std::collections::BTreeMap<i64, Interval> = Default::default();
     for point in contact.pressed_points(u, wall) {
-        let number = (point.position[0] / length).floor() as i64;
+        let number = (point.z / length).floor() as i64;
         let interval = found.entry(number).or_insert(Interval {
             number,
             force_per_length: 0.0,

@@ -21,6 +21,13 @@ impl<T> Buffers<T> {
         self.0.lock().ok()?.pop()
     }
 
+    /// Returns an object for reuse, if there is one.
+    pub fn give_some(&self, object: Option<T>) {
+        if let Some(object) = object {
+            self.give(object);
+        }
+    }
+
     /// Returns an object for reuse.
     pub fn give(&self, object: T) {
         if let Ok(mut free) = self.0.lock() {

@@ -1,7 +1,7 @@
 //! Friction in a load step of a tube: on obstacles, and of the wall with itself.
 
 use crate::assembly::{Forces, Friction, ObstacleFriction, SplineTube, StepStart};
-use crate::contact::{FaceFriction, SelfContact, SelfFriction};
+use crate::contact::{FaceFriction, MeridianContact, SelfFriction};
 use crate::tube::Load;
 
 /// A load step with friction: the state from which it begins, and the friction with the normal forces of a state.
@@ -19,7 +19,7 @@ pub struct FrictionStep {
 }
 
 /// Returns the contact of a wall that has friction on itself.
-fn rough(contact: Option<&SelfContact>) -> Option<&SelfContact> {
+fn rough(contact: Option<&MeridianContact>) -> Option<&MeridianContact> {
     contact.filter(|contact| contact.has_friction())
 }
 
@@ -27,7 +27,7 @@ impl FrictionStep {
     /// Begins a step at a state with its history, which is empty at the first state. Returns none without friction.
     pub fn begin(
         tube: &SplineTube,
-        contact: Option<&SelfContact>,
+        contact: Option<&MeridianContact>,
         (load, u): (&Load, &[f64]),
         history: &[f64],
     ) -> Option<Self> {
@@ -62,7 +62,7 @@ impl FrictionStep {
     pub fn update(
         &mut self,
         tube: &SplineTube,
-        contact: Option<&SelfContact>,
+        contact: Option<&MeridianContact>,
         (load, u): (&Load, &[f64]),
     ) {
         if tube.has_friction() {
@@ -79,7 +79,7 @@ impl FrictionStep {
     pub fn history(
         &self,
         tube: &SplineTube,
-        contact: Option<&SelfContact>,
+        contact: Option<&MeridianContact>,
         (load, u): (&Load, &[f64]),
     ) -> Vec<f64> {
         let on = self.on_obstacles(tube, load, u);
@@ -112,7 +112,7 @@ impl FrictionStep {
 
     /// Returns the friction of the outer and the inner face with itself in a state, with the energy that it has dissipated
     /// since the first state.
-    pub fn on_faces(&self, contact: Option<&SelfContact>, u: &[f64]) -> [FaceFriction; 2] {
+    pub fn on_faces(&self, contact: Option<&MeridianContact>, u: &[f64]) -> [FaceFriction; 2] {
         let mut on = match (&self.own, contact) {
             (Some(own), Some(contact)) => contact.friction_on_faces(own, u),
             _ => Default::default(),

@@ -3,7 +3,8 @@
 
 use super::buffers::Buffers;
 use crate::assembly::{Friction, LowHarmonics, MatrixFreeTangent, RingDamping, SplineTube};
-use crate::matrix::{BlockBanded, Factor, Singular};
+use crate::contact::{SelfContact, SurfaceContact, SurfaceTangent};
+use crate::matrix::{BlockBanded, CoupledBanded, CoupledFactor, Singular};
 use crate::monitor::Monitor;
 use crate::rings::{HarmonicSolver, LowHarmonicCorrection, Transform};
 use crate::solve::{NegativeCurvature, Operator, Solved, Solver, Tangent, conjugate_gradients};
@@ -32,6 +33,7 @@ const ITERATIONS: usize = 400;
 #[derive(Debug)]
 pub struct HarmonicTube {
     tube: Arc<SplineTube>,
+    contact: Option<Arc<SelfContact>>,
     damping: RingDamping,
     /// Low harmonics up to each of [`HIGHEST`], made when a state first needs them.
     low: [OnceLock<Arc<LowHarmonics>>; 2],
@@ -52,12 +54,14 @@ pub struct HarmonicTangent {
 struct Linear {
     tube: Arc<HarmonicTube>,
     at: MatrixFreeTangent,
+    /// Contact of the wall with itself, if it touches.
+    contact: Option<SurfaceTangent>,
     /// Whether the displacements are the same at every ring.
     symmetric: bool,
     /// The low harmonics that the state couples, if any.
     low: Option<Arc<LowHarmonics>>,
     /// The tangent on them, until a solver takes it.
-    coupled: Option<BlockBanded>,
+    coupled: Option<CoupledBanded>,
 }
 
 /// K + α C on the free unknowns.
@@ -75,7 +79,7 @@ impl Drop for Linear {
     fn drop(&mut self) {
         self.tube.linearised.give(std::mem::take(&mut self.at));
         if let Some(coupled) = self.coupled.take() {
-            self.tube.coupled.give(coupled);
+            self.tube.coupled.give(coupled.band);
         }
     }
 }
@@ -86,21 +90,22 @@ impl Drop for HarmonicSystem {
         if let Some(preconditioner) = self.preconditioner.take() {
             let (factors, coupling) = preconditioner.into_factors();
             for factor in factors {
-                tube.blocks.give(factor.into_memory());
+                tube.blocks.give_some(factor.into_memory());
             }
             if let Some(coupling) = coupling {
-                tube.coupled.give(coupling.coupled.into_memory());
+                tube.coupled.give_some(coupling.coupled.into_memory());
             }
         }
     }
 }
 
 impl HarmonicTube {
-    /// Prepares the tangents of a tube.
-    pub fn new(tube: Arc<SplineTube>) -> Self {
+    /// Prepares the tangents of a tube, with contact with itself if it has that.
+    pub fn new(tube: Arc<SplineTube>, contact: Option<Arc<SelfContact>>) -> Self {
         Self {
             damping: tube.ring_damping(),
             tube,
+            contact,
             low: Default::default(),
             linearised: Buffers::default(),
             blocks: Buffers::default(),
@@ -129,6 +134,8 @@ impl HarmonicTube {
         let difference = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs()));
         let differs = rings.map(difference).fold(0.0, f64::max);
         let low = (differs > COUPLED).then(|| self.low_harmonics(u));
+        let touching = self.surface_contact();
+        let touching = touching.and_then(|contact| Some((contact, contact.tangent(u)?)));
         let coupled = low.as_ref().map(|low| {
             let mut coupled = self.low_matrix(low);
             self.tube.low_harmonic_tangent(low, load, u, &mut coupled);
@@ -136,16 +143,28 @@ impl HarmonicTube {
                 self.tube
                     .add_low_harmonic_friction(low, friction, load, u, &mut coupled);
             }
+            let mut coupled = CoupledBanded::from(coupled);
+            if let Some((contact, _)) = &touching {
+                contact.add_low_harmonics(u, low, &mut coupled);
+            }
             coupled
         });
         HarmonicTangent {
             state: Arc::new(Linear {
                 tube: self.clone(),
                 at,
+                contact: touching.map(|(_, tangent)| tangent),
                 symmetric: differs <= SYMMETRIC,
                 low,
                 coupled,
             }),
+        }
+    }
+
+    fn surface_contact(&self) -> Option<&SurfaceContact> {
+        match self.contact.as_deref() {
+            Some(SelfContact::Surface(contact)) => Some(contact),
+            _ => None,
         }
     }
 
@@ -190,8 +209,7 @@ impl Tangent for HarmonicTangent {
     type Solver = HarmonicSystem;
 
     fn multiply_add(&self, factor: f64, v: &[f64], y: &mut [f64]) {
-        let Linear { tube, at, .. } = &*self.state;
-        tube.tube.add_tangent_product(at, factor, v, y);
+        self.state.add_product(factor, v, y);
     }
 
     fn shifted(&self, alpha: f64) -> Result<HarmonicSystem, Singular> {
@@ -199,9 +217,10 @@ impl Tangent for HarmonicTangent {
             tube, low, coupled, ..
         } = &*self.state;
         let copy = low.as_deref().zip(coupled.as_ref()).map(|(low, coupled)| {
-            let mut matrix = tube.low_matrix(low);
-            matrix.copy_from(coupled);
-            matrix
+            let mut band = tube.low_matrix(low);
+            band.copy_from(&coupled.band);
+            let far = coupled.far.clone();
+            CoupledBanded { band, far }
         });
         self.system(alpha, copy)
     }
@@ -219,7 +238,7 @@ impl Tangent for HarmonicTangent {
 
 impl HarmonicTangent {
     /// Prepares K + α C for solving, with the tangent on low harmonics if they are coupled.
-    fn system(&self, alpha: f64, coupled: Option<BlockBanded>) -> Result<HarmonicSystem, Singular> {
+    fn system(&self, alpha: f64, coupled: Option<CoupledBanded>) -> Result<HarmonicSystem, Singular> {
         let tube = &self.state.tube;
         let rings = tube.tube.sector.rings;
         let blocks: Vec<Block> = (0..=rings / 2)
@@ -234,7 +253,7 @@ impl HarmonicTangent {
         let mut preconditioner = HarmonicSolver::new(rings, factors);
         if let (Some(low), Some(mut matrix)) = (self.state.low.as_deref(), coupled) {
             if alpha != 0.0 {
-                low.add_damping(&tube.tube, &tube.damping, alpha, &mut matrix);
+                low.add_damping(&tube.tube, &tube.damping, alpha, &mut matrix.band);
             }
             let prescribed = low.prescribed(&tube.tube);
             matrix.constrain(&prescribed);
@@ -259,17 +278,26 @@ impl HarmonicTangent {
 
 /// The factored block of a harmonic, made positive definite by additional damping if needed.
 struct Block {
-    factor: Factor,
+    factor: CoupledFactor,
     /// Negative pivots of the block without the additional damping.
     negative_pivots: usize,
     /// The block on the functions through the wall of the coupled harmonics, if the harmonic is coupled.
-    averaged: Option<Factor>,
+    averaged: Option<CoupledFactor>,
 }
 
 /// First additional damping to make a block positive definite, and its growth factor.
 const SHIFT: (f64, f64) = (1e-3, 4.0);
 
 impl Linear {
+    /// Adds factor · K v to y.
+    fn add_product(&self, factor: f64, v: &[f64], y: &mut [f64]) {
+        let tube = &self.tube;
+        tube.tube.add_tangent_product(&self.at, factor, v, y);
+        if let (Some(contact), Some(tangent)) = (tube.surface_contact(), &self.contact) {
+            contact.add_product(tangent, factor, v, y);
+        }
+    }
+
     /// Factors K_n + α C_n of the averaged tangent, for harmonic n of the cyclic sector.
     fn block(&self, n: usize, alpha: f64) -> Result<Block, Singular> {
         let (tube, waves) = (&self.tube.tube, n * self.waves());
@@ -280,6 +308,10 @@ impl Linear {
             if alpha != 0.0 {
                 self.tube.damping.add_harmonic(alpha, waves, &mut block);
             }
+            let mut block = CoupledBanded::from(block);
+            if let Some(contact) = &self.contact {
+                contact.add_harmonic(n, &mut block);
+            }
             let averaged = self
                 .low
                 .as_deref()
@@ -289,7 +321,7 @@ impl Linear {
             block.constrain(&prescribed);
             Ok((block.factor()?, averaged))
         };
-        let pivots = |factored: &Result<(Factor, _), Singular>| {
+        let pivots = |factored: &Result<(CoupledFactor, _), Singular>| {
             factored
                 .as_ref()
                 .map_or(1, |(factor, _)| factor.negative_pivots())
@@ -304,7 +336,7 @@ impl Linear {
         let mut shift = 0.0;
         while pivots(&found) > 0 && shift < 1e6 {
             if let Ok((factor, _)) = found {
-                self.tube.blocks.give(factor.into_memory());
+                self.tube.blocks.give_some(factor.into_memory());
             }
             shift = f64::max(shift * SHIFT.1, SHIFT.0);
             found = factored(alpha + shift);
@@ -330,15 +362,15 @@ impl Linear {
         &self,
         low: &LowHarmonics,
         n: usize,
-        block: &BlockBanded,
-    ) -> Result<Factor, Singular> {
-        let mut matrix = BlockBanded::zeros(block.blocks(), 3 * low.functions(), block.band());
+        block: &CoupledBanded,
+    ) -> Result<CoupledFactor, Singular> {
+        let band = &block.band;
+        let band = BlockBanded::zeros(band.blocks(), 3 * low.functions(), band.band());
+        let mut matrix = CoupledBanded::from(band);
         let place = |(c, i): (usize, usize)| 3 * c + i;
-        low.project(
-            block,
-            |row, column| (place(row), place(column)),
-            &mut matrix,
-        );
+        let places = |row, column| (place(row), place(column));
+        low.project(&block.band, places, &mut matrix.band);
+        low.project_far(&block.far, &mut matrix.far);
         matrix.constrain(&low.prescribed_in_harmonic(&self.tube.tube, n));
         matrix.factor()
     }
@@ -352,9 +384,9 @@ impl Operator for HarmonicSystem {
         self.state.tube.tube.project_out_constraints(v);
     }
     fn apply(&self, v: &[f64], out: &mut [f64]) {
-        let Linear { tube, at, .. } = &*self.state;
+        let tube = &self.state.tube;
         out.fill(0.0);
-        tube.tube.add_tangent_product(at, 1.0, v, out);
+        self.state.add_product(1.0, v, out);
         if self.alpha != 0.0 {
             tube.damping(self.alpha, v, out);
         }
@@ -459,14 +491,14 @@ mod tests {
             assert!(solved.converged);
             (coupled, solved.iterations, b)
         };
-        let shared = Arc::new(HarmonicTube::new(tube.clone()));
+        let shared = Arc::new(HarmonicTube::new(tube.clone(), None));
         let mut couplings = vec![];
         for harmonic in [2.0, 1.0, 0.0, 2.0, 1.0] {
             let u = match harmonic {
                 0.0 => vec![0.0; tube.unknowns()],
                 _ => wave(harmonic),
             };
-            let alone = Arc::new(HarmonicTube::new(tube.clone()));
+            let alone = Arc::new(HarmonicTube::new(tube.clone(), None));
             let found = solved(&shared, &u);
             assert_eq!(found, solved(&alone, &u));
             couplings.push(found.0);

@@ -3,7 +3,7 @@
 use super::friction_step::FrictionStep;
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
 use crate::assembly::{Forces, Inverted, ObstacleContact, SplineTube};
-use crate::contact::{ContactReport, Face, SelfContact, place_of};
+use crate::contact::{ContactReport, MeridianContact, PressureField, SelfContact};
 use crate::matrix::{BlockBanded, CoupledBanded, CoupledFactor, Singular};
 use crate::monitor::Monitor;
 use crate::solve::{
@@ -66,7 +66,7 @@ impl TubeProblem {
             rings: if tube.sector.rings == 1 {
                 Rings::One(Arc::new(tube.damping()))
             } else {
-                Rings::Many(Arc::new(HarmonicTube::new(tube.clone())))
+                Rings::Many(Arc::new(HarmonicTube::new(tube.clone(), None)))
             },
             prescribed: tube.prescribed().into(),
             volume: PI * (outer * outer - inner * inner) * tube.tube.length / tube.sector.repeats(),
@@ -77,32 +77,41 @@ impl TubeProblem {
         }
     }
 
-    /// Returns the problem with contact of the wall with itself. Its circumferential displacements are prescribed to be
-    /// zero: a tube that buckles by twisting leaves the meridians on which contact is found.
-    ///
-    /// # Panics
-    ///
-    /// If the tube has several rings.
+    /// Returns the problem with contact of the wall with itself. The circumferential displacements of a tube of one ring are
+    /// prescribed to be zero: a tube that buckles by twisting leaves the meridians on which contact is found.
     pub fn with_contact(mut self) -> Self {
-        self.contact = Some(Arc::new(SelfContact::new(&self.tube)));
-        let prescribed = self.prescribed.iter().enumerate();
-        self.prescribed = prescribed.map(|(i, own)| *own || i % 3 == 2).collect();
+        let contact = Arc::new(SelfContact::new(&self.tube));
+        if let Rings::Many(_) = self.rings {
+            let tube = HarmonicTube::new(self.tube.clone(), Some(contact.clone()));
+            self.rings = Rings::Many(Arc::new(tube));
+        } else {
+            let prescribed = self.prescribed.iter().enumerate();
+            self.prescribed = prescribed.map(|(i, own)| *own || i % 3 == 2).collect();
+        }
+        self.contact = Some(contact);
         self
     }
 
-    /// Returns the problem with friction of the wall with itself, if it has contact.
+    /// Returns the problem with friction of the wall with itself, if it has one ring and contact.
     #[must_use]
     pub fn with_friction(mut self, coefficient: f64) -> Self {
-        if let Some(contact) = self.contact.take() {
-            let contact = Arc::unwrap_or_clone(contact).with_friction(coefficient);
-            self.contact = Some(Arc::new(contact));
+        if let Some(contact) = self.meridian_contact() {
+            let contact = contact.clone().with_friction(coefficient);
+            self.contact = Some(Arc::new(SelfContact::Meridian(contact)));
         }
         self
     }
 
+    fn meridian_contact(&self) -> Option<&MeridianContact> {
+        match self.contact.as_deref() {
+            Some(SelfContact::Meridian(contact)) => Some(contact),
+            _ => None,
+        }
+    }
+
     /// Returns whether the tube has friction.
     pub fn has_friction(&self) -> bool {
-        let contact = self.contact.as_ref();
+        let contact = self.meridian_contact();
         self.tube.has_friction() || contact.is_some_and(|contact| contact.has_friction())
     }
 
@@ -150,26 +159,20 @@ impl TubeProblem {
     /// Sums up the contact of a state; none of a problem without contact.
     pub fn contact_report(&self, load: &Load, u: &[f64]) -> Option<ContactReport> {
         let contact = self.contact.as_ref()?;
-        let position = |element: usize, xi: f64| {
-            let (from, to) = self.tube.axial.element(element);
-            from + xi * (to - from)
-        };
-        let surfaces = contact.surfaces(&self.tube, load, u);
-        let mut report = contact.report(&contact.at(u), surfaces, position);
-        if let Some(step) = self.friction.as_ref().filter(|_| contact.has_friction()) {
+        let mut report = contact.report(&self.tube, load, u);
+        let meridian = self.meridian_contact();
+        if let (Some(step), Some(contact)) = (&self.friction, meridian)
+            && contact.has_friction()
+        {
             report.friction = Some(step.on_faces(Some(contact), u));
         }
         Some(report)
     }
 
-    /// Returns the pressure of contact, per current area in E, at axial positions at rest of a face; zero without contact.
-    pub fn contact_pressures(&self, u: &[f64], face: Face, z: &[f64]) -> Vec<f64> {
-        let Some(contact) = &self.contact else {
-            return vec![0.0; z.len()];
-        };
-        let field = contact.pressure(u);
-        let at = |z: &f64| field.at(face, place_of(&self.tube, *z));
-        z.iter().map(at).collect()
+    /// Returns the pressure of contact in a state; none of a problem without contact.
+    pub fn contact_pressure(&self, u: &[f64]) -> Option<PressureField<'_>> {
+        let contact = self.contact.as_ref()?;
+        Some(contact.pressure(&self.tube, u))
     }
 
     /// Assembles the tangent of one ring, with contact, for a circumferential mode at a state without twist. Friction, which
@@ -194,7 +197,8 @@ impl TubeProblem {
                 .add_friction_tangent(friction, load, u, &mut tangent);
         }
         let mut tangent = self.with_self_contact(u, 0, tangent);
-        if let (Some(contact), Some(own)) = (&self.contact, step.and_then(FrictionStep::own)) {
+        let own = step.and_then(FrictionStep::own);
+        if let (Some(contact), Some(own)) = (self.meridian_contact(), own) {
             contact.add_friction_tangent(own, u, |row, column, value| {
                 tangent.add_at(row, column, value);
             });
@@ -204,7 +208,7 @@ impl TubeProblem {
 
     fn with_self_contact(&self, u: &[f64], mode: usize, tangent: BlockBanded) -> CoupledBanded {
         let mut tangent = CoupledBanded::from(tangent);
-        if let Some(contact) = &self.contact {
+        if let Some(contact) = self.meridian_contact() {
             contact.add_tangent(&contact.at(u), mode, |row, column, value| {
                 tangent.add_at(row, column, value);
             });
@@ -223,7 +227,7 @@ impl Equilibrium for TubeProblem {
     }
     fn apply_prescribed(&self, load: &Load, u: &mut [f64]) {
         self.tube.apply_prescribed(load, u);
-        if self.contact.is_some() {
+        if self.meridian_contact().is_some() {
             u.iter_mut().skip(2).step_by(3).for_each(|u| *u = 0.0);
         }
     }
@@ -234,10 +238,11 @@ impl Equilibrium for TubeProblem {
         let mut forces = self.forces_on_tube(load, u)?;
         forces.potential += forces.contact + forces.friction;
         if let Some(contact) = &self.contact {
-            let of_contact = contact.add_forces(&contact.at(u), &mut forces.residual);
+            let of_contact = contact.add_forces(u, &mut forces.residual);
             forces.potential += self.tube.sector.repeats() * of_contact.energy;
             forces.residual_scale = forces.residual_scale.hypot(of_contact.squares.sqrt());
-            if let Some(own) = self.friction.as_ref().and_then(|step| step.own()) {
+            let own = self.friction.as_ref().and_then(|step| step.own());
+            if let (Some(contact), Some(own)) = (self.meridian_contact(), own) {
                 let of_friction = contact.add_friction(own, u, &mut forces.residual);
                 forces.potential += self.tube.sector.repeats() * of_friction.energy;
                 forces.residual_scale = forces.residual_scale.hypot(of_friction.squares.sqrt());
@@ -269,20 +274,22 @@ impl Equilibrium for TubeProblem {
         }
     }
     fn begin_step(&mut self, load: &Load, u: &[f64], history: &[f64]) {
-        let contact = self.contact.as_deref();
+        let contact = self.meridian_contact();
         let step = FrictionStep::begin(&self.tube, contact, (load, u), history);
         self.friction = step.map(Arc::new);
     }
     fn update(&mut self, load: &Load, u: &[f64]) -> bool {
-        let Some(step) = &mut self.friction else {
+        let Some(mut step) = self.friction.take() else {
             return false;
         };
-        Arc::make_mut(step).update(&self.tube, self.contact.as_deref(), (load, u));
+        let contact = self.meridian_contact();
+        Arc::make_mut(&mut step).update(&self.tube, contact, (load, u));
+        self.friction = Some(step);
         true
     }
     fn history(&self, load: &Load, u: &[f64]) -> Vec<f64> {
         let step = self.friction.as_ref();
-        let contact = self.contact.as_deref();
+        let contact = self.meridian_contact();
         step.map_or(vec![], |step| step.history(&self.tube, contact, (load, u)))
     }
     fn longest_step(&self, u: &[f64], step: &[f64]) -> f64 {

@@ -95,7 +95,13 @@ pub fn test_stability(
     };
     let known = known.unwrap_or(&[]).to_vec();
     // The blocks of an axisymmetric state are those of its ring alone.
-    let ring = (k > 1).then(|| TubeProblem::new(tube.axisymmetric()));
+    let ring = (k > 1).then(|| {
+        let ring = TubeProblem::new(tube.axisymmetric());
+        match problem.contact {
+            Some(_) => ring.with_contact(),
+            None => ring,
+        }
+    });
     let ring = ring.as_ref().unwrap_or(problem);
     let load = &path.state().load;
     let negative = |n: usize| {

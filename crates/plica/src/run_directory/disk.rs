@@ -35,7 +35,7 @@ impl DiskUse {
         let rings = mesh.rings(plan.symmetry);
         let unknowns = 3 * (mesh.axial * mesh.thickness * rings) as u64;
         let meridians = if rings == 1 { 1 } else { 2 };
-        let contact = if plan.contact { 2 } else { 0 };
+        let contact = if plan.contact { 2 * meridians } else { 0 };
         let columns = 1 + 4 * meridians + contact;
         let profile = output.wall_points as f64 * columns as f64 * PROFILE_NUMBER;
         // Unknowns, control points and knots.

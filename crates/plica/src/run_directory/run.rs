@@ -6,7 +6,7 @@ use super::{
     Checkpoint, Record, RunDirectory, RunError, START, Snapshot, Summary, imperfection,
     name_of_profile, name_of_temporary_state,
 };
-use crate::contact;
+use crate::contact::{self, PressureField};
 use crate::measure::{Face, Meridians};
 use crate::monitor::Monitor;
 use crate::saved_state::{Array, FRICTION, SavedState};
@@ -372,26 +372,22 @@ impl<'a> Run<'a> {
         let [outer, inner] =
             [Face::Outer, Face::Inner].map(|face| meridians.walls(face, angles, &z));
         let (length, stress) = (self.scale.length, self.scale.stress);
-        let contact = [contact::Face::Outer, contact::Face::Inner].map(|face| {
-            let contact = self.plan.contact;
-            contact.then(|| {
-                self.study
-                    .problem()
-                    .contact_pressures(&state.unknowns, face, &z)
-            })
-        });
+        let pressure = self.study.problem().contact_pressure(&state.unknowns);
+        let faces = [contact::Face::Outer, contact::Face::Inner];
+        let pressures = |z: f64| -> Vec<f64> {
+            let places = angles.iter().flat_map(|angle| faces.map(|face| (face, *angle)));
+            let of = |field: &PressureField<'_>| {
+                places.map(|(face, angle)| stress * field.at(face, z, angle)).collect()
+            };
+            pressure.as_ref().map(of).unwrap_or_default()
+        };
         let rows = (0..z.len()).map(|i| {
             let mut row = vec![length * z[i]];
             for (outer, inner) in outer.iter().zip(&inner) {
                 let (a, b) = (outer.points[i], inner.points[i]);
                 row.extend([a.0, a.1, b.0, b.1].map(|x| length * x));
             }
-            row.extend(
-                contact
-                    .iter()
-                    .flatten()
-                    .map(|pressures| stress * pressures[i]),
-            );
+            row.extend(pressures(z[i]));
             row
         });
         let header = [
@@ -407,7 +403,13 @@ impl<'a> Run<'a> {
         ];
         let mut header = header[..1 + 4 * angles.len()].to_vec();
         if self.plan.contact {
-            header.extend(["outer_contact_pressure", "inner_contact_pressure"]);
+            let names = [
+                "outer_contact_pressure",
+                "inner_contact_pressure",
+                "trough_outer_contact_pressure",
+                "trough_inner_contact_pressure",
+            ];
+            header.extend(&names[..2 * angles.len()]);
         }
         self.directory.table(name, &header, rows)
     }

@@ -4,7 +4,7 @@ use crate::assembly::tests::{
     TubeAndLoad, direction, dot, largest, linearised, mesh, repeated, tube_and_load, unknowns, wavy,
 };
 use crate::assembly::{Barrier, LowHarmonics, SplineTube};
-use crate::matrix::{BlockBanded, lowest_eigenpairs};
+use crate::matrix::{BlockBanded, CoupledFactor, lowest_eigenpairs};
 use crate::rings::{HarmonicSolver, LowHarmonicCorrection, Transform};
 use crate::tube::{Load, Obstacle, ObstacleShape, Placement, Support, Tube};
 use std::f64::consts::TAU;
@@ -105,7 +105,7 @@ fn harmonic_solver_inverts_the_tangent_at_an_axisymmetric_state() {
         let block = |n: usize| {
             let mut block = average.harmonic(n * repeats);
             block.constrain(one.prescribed());
-            block.factor().unwrap()
+            block.factor().unwrap().into()
         };
         let solver = HarmonicSolver::new(rings, (0..=rings / 2).map(block).collect());
         let x: Vec<f64> = direction(&tube)
@@ -323,11 +323,11 @@ fn a_correction_by_the_average_itself_changes_nothing() {
     whole.constrain(&low.prescribed(&tube));
     let u = vec![0.0; tube.unknowns()];
     let average = linearised(&tube, &tube.tube.rest(), &u).average;
-    let factors = || -> Vec<_> {
+    let factors = || -> Vec<CoupledFactor> {
         let block = |n: usize| {
             let mut block = average.harmonic(n);
             block.constrain(&tube.prescribed_in_harmonic(n));
-            block.factor().unwrap()
+            block.factor().unwrap().into()
         };
         (0..=6).map(block).collect()
     };
@@ -335,11 +335,11 @@ fn a_correction_by_the_average_itself_changes_nothing() {
     let corrected = HarmonicSolver::new(12, factors()).with_correction(LowHarmonicCorrection {
         highest: low.highest,
         through: low.through.clone(),
-        coupled: whole.factor().unwrap(),
+        coupled: whole.factor().unwrap().into(),
         prescribed: low.prescribed(&tube),
         averaged: blocks
             .into_iter()
-            .map(|block| block.factor().unwrap())
+            .map(|block| block.factor().unwrap().into())
             .collect(),
     });
     let b = direction(&tube);
@@ -369,7 +369,7 @@ fn ring_damping_equals_the_assembled_damping_matrix() {
         let block = |n: usize| {
             let mut block = BlockBanded::zeros(one.axial.functions(), one.row_size(), degree);
             damping.add_harmonic(1.0, n * (elements[2] / rings), &mut block);
-            block.factor().unwrap()
+            block.factor().unwrap().into()
         };
         let solver = HarmonicSolver::new(rings, (0..=rings / 2).map(block).collect());
         let solved = solver.solve(&assembled);

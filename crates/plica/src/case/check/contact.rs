@@ -7,7 +7,7 @@ use crate::tube::{Symmetry, Tube, WallLayer};
 
 const CONTACT: &str = "contact";
 
-/// Checks that a tube with contact is axisymmetric without twist, and that its splines are smooth.
+/// Checks that the splines of a tube with contact are smooth, and that it is not twisted if it is axisymmetric.
 pub(super) fn check(
     case: &Case,
     symmetry: Symmetry,
@@ -22,15 +22,6 @@ pub(super) fn check(
         }
         return;
     }
-    if symmetry != Symmetry::Axisymmetric && problems.are_sound(&["symmetry"]) {
-        let help = "set `contact = false`, or `symmetry = \"axisymmetric\"`";
-        problems.value(
-            CONTACT,
-            "must be false unless `symmetry` is \"axisymmetric\"",
-            help,
-        );
-        return;
-    }
     if case.mesh.degree < 2 && problems.are_sound(&["mesh.degree"]) {
         let help = "set `mesh.degree` to 2 or more, or `contact = false`";
         problems.value(
@@ -38,6 +29,9 @@ pub(super) fn check(
             "must be false if `mesh.degree` is 1, where a wall has corners",
             help,
         );
+    }
+    if symmetry != Symmetry::Axisymmetric {
+        return;
     }
     let symmetric = |layer: &WallLayer| layer.material.is_mirror_symmetric();
     if !tube.layers.iter().all(symmetric) && problems.are_sound(&["layers"]) {
@@ -47,7 +41,7 @@ pub(super) fn check(
     }
     let twists = |stage: &Stage| stage.load.ends.iter().any(|end| end.twist != 0.0);
     if stages.iter().any(twists) {
-        let help = "set `contact = false`, or leave the ends untwisted";
-        problems.value(CONTACT, "must be false if an end is twisted", help);
+        let help = "set `contact = false`, leave the ends untwisted, or set `symmetry = \"none\"`";
+        problems.value(CONTACT, "must be false if an end of an axisymmetric tube is twisted", help);
     }
 }

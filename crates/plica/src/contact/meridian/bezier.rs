@@ -118,6 +118,7 @@ fn between(a: Point, b: Point, xi: f64) -> Point {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::bernstein::{bernstein, bernstein_slopes};
 
     fn curves() -> impl Iterator<Item = Bezier> {
         let points = [

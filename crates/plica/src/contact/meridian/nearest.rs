@@ -1,6 +1,7 @@
 //! Local minima of the distance of a point from a Bézier curve.
 
-use super::bezier::{Bezier, MAX_POINTS, Point, dot, minus};
+use super::bezier::{Bezier, Point, dot, minus};
+use crate::contact::bernstein::MAX_POINTS;
 
 /// Most coefficients of the polynomial (y − x) · y′ of degree 2p − 1.
 const MAX_COEFFICIENTS: usize = 2 * MAX_POINTS - 2;

@@ -145,12 +145,7 @@ fn flanks_press_with_the_slope_of_the_barrier() {
     // Flat flanks at the gap g feel the pressure −b′(g) on their area at rest.
     let (tube, u) = hairpin(0.01);
     let contact = contact(&tube);
-    let position = |e: usize, xi: f64| {
-        let (from, to) = tube.axial.element(e);
-        from + xi * (to - from)
-    };
-    let surfaces = contact.surfaces(&tube, &tube.tube.rest(), &u);
-    let report = contact.report(&contact.at(&u), surfaces, position);
+    let report = contact.report(&tube, &tube.tube.rest(), &u);
     let outer = report.faces[0].unwrap();
     assert!(report.energy > 0.0 && outer.force > 0.0);
     let pressure = |gap: f64| -contact.barrier().at(gap).slope;
@@ -171,8 +166,7 @@ fn pressures_carry_the_forces_of_the_flanks() {
         .iter()
         .map(|point| point.pressure * point.area)
         .sum();
-    let surfaces = contact.surfaces(&tube, &tube.tube.rest(), &u);
-    let report = contact.report(&contact.at(&u), surfaces, |_, xi| xi);
+    let report = contact.report(&tube, &tube.tube.rest(), &u);
     let force = report.faces[0].unwrap().force;
     assert!(
         (carried / (2.0 * force) - 1.0).abs() < 0.02,

@@ -178,7 +178,6 @@ impl<'a> FaceState<'a> {
         quadrature: &Quadrature,
         barrier: &Barrier,
     ) -> Vec<Pair> {
-        let net = self.net;
         let mut pairs = vec![];
         let area = self.area(own);
         for (along, (v, weight_v)) in quadrature.points[0].iter().enumerate() {

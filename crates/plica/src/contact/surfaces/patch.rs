@@ -102,6 +102,7 @@ impl Patch {
     }
 
     /// Returns the point at (v, w).
+    #[cfg(test)]
     pub fn position(&self, [v, w]: [f64; 2]) -> Vector {
         let n = self.degree + 1;
         let [along, around] = [v, w].map(|xi| bernstein(self.degree, xi));
