@@ -31,6 +31,11 @@ pub(super) fn check(
         );
     }
     if symmetry != Symmetry::Axisymmetric {
+        if case.friction > 0.0 && problems.are_sound(&["friction", "symmetry"]) {
+            let help = "set `friction = 0.0`, or `symmetry = \"axisymmetric\"`";
+            let rule = "must be 0 unless `symmetry` is \"axisymmetric\"";
+            problems.value("friction", rule, help);
+        }
         return;
     }
     let symmetric = |layer: &WallLayer| layer.material.is_mirror_symmetric();
