@@ -28,6 +28,7 @@ use crate::tube::Load;
 use average::AverageContact;
 use net::FaceNet;
 use pairs::{FaceState, Pair, Quadrature};
+use std::sync::{Arc, Mutex, PoisonError};
 use tree::Tree;
 
 /// Quadrature points of an element, along and around.
@@ -45,11 +46,13 @@ pub struct SurfaceContact {
     row_size: usize,
     /// Sectors of the whole tube.
     repeats: f64,
+    /// The last state whose pairs were found, and these: forces and tangent of a state follow each other.
+    last: Arc<Mutex<Option<(Vec<f64>, SurfacePairs)>>>,
 }
 
 /// The pairs of a state, by face.
 #[derive(Clone, Debug)]
-pub struct SurfacePairs(Vec<Vec<Pair>>);
+pub struct SurfacePairs(Arc<Vec<Vec<Pair>>>);
 
 /// The tangent of contact at a state.
 #[derive(Clone, Debug)]
@@ -76,6 +79,7 @@ impl SurfaceContact {
             quadrature: Quadrature::new(POINTS),
             row_size: 3 * tube.wall.functions(),
             repeats: tube.sector.repeats(),
+            last: Arc::default(),
         }
     }
 
@@ -86,20 +90,28 @@ impl SurfaceContact {
 
     /// Finds the pairs of a state.
     pub fn at(&self, u: &[f64]) -> SurfacePairs {
-        self.pairs(u, &self.quadrature)
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((state, pairs)) = &*last
+            && state == u
+        {
+            return pairs.clone();
+        }
+        let pairs = self.pairs(u, &self.quadrature);
+        *last = Some((u.to_vec(), pairs.clone()));
+        pairs
     }
 
     fn pairs(&self, u: &[f64], quadrature: &Quadrature) -> SurfacePairs {
         let of_face = |(net, tree): &(FaceNet, Tree)| {
             FaceState::new(net, tree, u).pairs(quadrature, &self.barrier)
         };
-        SurfacePairs(self.faces.iter().map(of_face).collect())
+        SurfacePairs(Arc::new(self.faces.iter().map(of_face).collect()))
     }
 
     /// Adds the forces of a state to a residual.
     pub fn add_forces(&self, at: &SurfacePairs, residual: &mut [f64]) -> ContactForces {
         let mut forces = ContactForces::default();
-        for ((net, _), pairs) in self.faces.iter().zip(&at.0) {
+        for ((net, _), pairs) in self.faces.iter().zip(&*at.0) {
             if !pairs.is_empty() {
                 forces.energy += energy::energy(pairs);
                 forces.squares += energy::add_forces(net, pairs, residual);
@@ -118,14 +130,14 @@ impl SurfaceContact {
             AverageContact::new(net, pairs, self.row_size)
         };
         Some(SurfaceTangent {
-            average: self.faces.iter().zip(&pairs.0).map(average).collect(),
+            average: self.faces.iter().zip(&*pairs.0).map(average).collect(),
             pairs,
         })
     }
 
     /// Adds `factor` times the tangent times v to y.
     pub fn add_product(&self, tangent: &SurfaceTangent, factor: f64, v: &[f64], y: &mut [f64]) {
-        for ((net, _), pairs) in self.faces.iter().zip(&tangent.pairs.0) {
+        for ((net, _), pairs) in self.faces.iter().zip(&*tangent.pairs.0) {
             energy::add_product(net, pairs, factor, v, y);
         }
     }
@@ -133,7 +145,7 @@ impl SurfaceContact {
     /// Adds the stiffness against approach, at points of a coarser quadrature, to the tangent on low harmonics.
     pub fn add_low_harmonics(&self, u: &[f64], low: &LowHarmonics, matrix: &mut CoupledBanded) {
         let pairs = self.pairs(u, &Quadrature::new(POINTS_OF_LOW));
-        for ((net, _), pairs) in self.faces.iter().zip(&pairs.0) {
+        for ((net, _), pairs) in self.faces.iter().zip(&*pairs.0) {
             low_harmonics::add_approach(net, pairs, low, matrix);
         }
     }
@@ -166,7 +178,7 @@ impl SurfaceContact {
             surfaces: self.surfaces(tube, load, u),
             friction: None,
         };
-        for ((net, _), pairs) in self.faces.iter().zip(&self.at(u).0) {
+        for ((net, _), pairs) in self.faces.iter().zip(&*self.at(u).0) {
             let face = &mut report.faces[usize::from(net.face == Face::Inner)];
             // A point may belong to several pairs; its area counts once.
             let mut last = None;

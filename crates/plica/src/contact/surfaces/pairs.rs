@@ -62,6 +62,8 @@ pub struct FaceState<'a> {
     pub patches: Vec<Patch>,
     tree: &'a Tree,
     bounds: NodeBounds,
+    /// Boxes around the points and the normals of each patch.
+    boxes: Vec<[Box3; 2]>,
 }
 
 impl<'a> FaceState<'a> {
@@ -73,12 +75,13 @@ impl<'a> FaceState<'a> {
             .enumerate()
             .map(|(i, patch)| Bounds::of(patch, [net.lengths[i / net.around], net.element_angle()]))
             .collect();
-        let bounds = tree.bounds(net.around, &of_patch);
+        let boxes = |bounds: &Bounds| [bounds.points, bounds.normals()];
         Self {
             net,
             patches,
             tree,
-            bounds,
+            bounds: tree.bounds(net.around, &of_patch),
+            boxes: of_patch.iter().map(boxes).collect(),
         }
     }
 
@@ -206,7 +209,12 @@ impl<'a> FaceState<'a> {
         let normal = |at: &PatchPoint| cross(at.slopes[0], at.slopes[1]);
         let own_normal = normal(&x);
         let mut seen: Vec<(usize, [f64; 2])> = vec![];
+        let own_box = Box3::around([own_normal]);
         for &other in others {
+            let [points, normals] = &self.boxes[other];
+            if points.distance(x.position) >= barrier.range || normals.least_product(&own_box) > 0.0 {
+                continue;
+            }
             let patch = &self.patches[other];
             local_minima(patch, x.position, barrier.range, &mut |place| {
                 let y = patch.at(place);

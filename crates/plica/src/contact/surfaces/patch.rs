@@ -1,7 +1,7 @@
 //! Bézier patches in three dimensions: one element of a spline surface, or a part of it.
 
-use super::vector::{Vector, between, minus};
-use crate::contact::bernstein::{MAX_POINTS, bernstein, bernstein_slopes};
+use super::vector::{Vector, between, minus, plus};
+use crate::contact::bernstein::{MAX_POINTS, bernstein};
 
 /// A Bézier patch over (v, w) from 0 to 1: v along the tube, w around it. Points are (z, x, y), in D.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,25 +73,25 @@ impl Patch {
     }
 
     /// Returns the point at (v, w) with its derivatives.
-    pub fn at(&self, [v, w]: [f64; 2]) -> PatchPoint {
+    pub fn at(&self, place: [f64; 2]) -> PatchPoint {
         let n = self.degree + 1;
-        let [along, around] = [v, w].map(|xi| jet(self.degree, xi));
+        let along = jet(self.degree, place[0]);
+        let around = jet(self.degree, place[1]);
         let mut sums = [[0.0; 3]; 6];
-        for i in 0..n {
+        for (i, row) in self.points[..n].iter().enumerate() {
             // Value, first and second derivative around.
-            let mut row = [[0.0; 3]; 3];
-            for (j, point) in self.points[i][..n].iter().enumerate() {
-                for (sum, of) in row.iter_mut().zip(&around) {
-                    for c in 0..3 {
-                        sum[c] += of[j] * point[c];
-                    }
-                }
+            let (mut value, mut first, mut second) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+            for (j, point) in row[..n].iter().enumerate() {
+                value = plus(value, around[0][j], *point);
+                first = plus(first, around[1][j], *point);
+                second = plus(second, around[2][j], *point);
             }
-            for (sum, [a, b]) in sums.iter_mut().zip([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]]) {
-                for c in 0..3 {
-                    sum[c] += along[a][i] * row[b][c];
-                }
-            }
+            sums[0] = plus(sums[0], along[0][i], value);
+            sums[1] = plus(sums[1], along[1][i], value);
+            sums[2] = plus(sums[2], along[0][i], first);
+            sums[3] = plus(sums[3], along[2][i], value);
+            sums[4] = plus(sums[4], along[1][i], first);
+            sums[5] = plus(sums[5], along[0][i], second);
         }
         let [position, dv, dw, dvv, dvw, dww] = sums;
         PatchPoint {
@@ -140,19 +140,35 @@ impl Patch {
 }
 
 /// Returns the Bernstein polynomials of degree p at ξ with their first and second derivatives.
+#[inline]
 fn jet(degree: usize, xi: f64) -> [[f64; MAX_POINTS]; 3] {
     let p = degree as f64;
-    let mut second = [0.0; MAX_POINTS];
+    // Those of degree p − 2, from which one level up gives those of degree p − 1, and another of degree p.
+    let mut values = bernstein(degree.saturating_sub(2), xi);
+    let mut jet = [[0.0; MAX_POINTS]; 3];
     if degree >= 2 {
-        let lower = bernstein(degree - 2, xi);
-        let at = |i: usize, back: usize| {
-            if i >= back && i - back <= degree - 2 { lower[i - back] } else { 0.0 }
-        };
-        for (i, second) in second.iter_mut().enumerate().take(degree + 1) {
-            *second = p * (p - 1.0) * (at(i, 2) - 2.0 * at(i, 1) + at(i, 0));
+        for i in 0..=degree {
+            let at = |back: usize| if i >= back { values[i - back] } else { 0.0 };
+            jet[2][i] = p * (p - 1.0) * (at(2) - 2.0 * at(1) + at(0));
         }
+        raise(&mut values, degree - 1, xi);
     }
-    [bernstein(degree, xi), bernstein_slopes(degree, xi), second]
+    for i in 0..=degree {
+        let left = if i > 0 { values[i - 1] } else { 0.0 };
+        jet[1][i] = p * (left - values[i]);
+    }
+    raise(&mut values, degree, xi);
+    jet[0] = values;
+    jet
+}
+
+/// Turns the Bernstein polynomials of the degree below into those of a degree.
+#[inline]
+fn raise(values: &mut [f64; MAX_POINTS], degree: usize, xi: f64) {
+    for i in (0..=degree).rev() {
+        let left = if i > 0 { values[i - 1] } else { 0.0 };
+        values[i] = xi * left + (1.0 - xi) * values[i];
+    }
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use super::net::FaceNet;
 use super::patch::Patch;
 use super::tree::{Bounds, Box3, Node, NodeBounds, Tree};
 use super::vector::{Vector, cross, dot, length, minus, plus};
+use crate::contact::bernstein::MAX_POINTS;
 use rayon::prelude::*;
 
 /// Share of their distance that two parts must keep.
@@ -47,10 +48,15 @@ struct Part {
 }
 
 impl Part {
-    fn new(patch: Patch, motion: Patch, [from, to]: [[f64; 2]; 2], sides: [f64; 2]) -> Self {
+    fn new(
+        [patch, motion]: [Patch; 2],
+        [from, to]: [[f64; 2]; 2],
+        sides: [f64; 2],
+        [bounds, moves]: [Bounds; 2],
+    ) -> Self {
         Self {
-            bounds: Bounds::of(&patch, sides),
-            moves: Bounds::of(&motion, sides),
+            bounds,
+            moves,
             patch,
             motion,
             from,
@@ -69,7 +75,8 @@ impl Part {
         [0, 1].map(|i| {
             let mut ends = [self.from, self.to];
             ends[1 - i][direction] = middle;
-            Self::new(patches[i], motions[i], ends, sides)
+            let both = [patches[i], motions[i]];
+            Self::new(both, ends, sides, [0, 1].map(|k| Bounds::of(&both[k], sides)))
         })
     }
 
@@ -149,10 +156,10 @@ impl Walk<'_> {
         let from = [row as f64, column as f64];
         let to = from.map(|x| x + 1.0);
         Part::new(
-            self.patches[index],
-            self.motions[index],
+            [self.patches[index], self.motions[index]],
             [from, to],
             sides(self.net, index),
+            [*self.bounds.of(node), *self.moves.of(node)],
         )
     }
 
@@ -359,17 +366,46 @@ struct Separation {
     stays: bool,
 }
 
+/// The control points of a part at some time.
+struct Points {
+    all: [Vector; MAX_POINTS * MAX_POINTS],
+    count: usize,
+}
+
+impl Points {
+    fn of(part: &Part, t: f64) -> Self {
+        let mut points = Self {
+            all: [[0.0; 3]; MAX_POINTS * MAX_POINTS],
+            count: 0,
+        };
+        for (x, v) in part.patch.all_points().zip(part.motion.all_points()) {
+            points.all[points.count] = plus(x, t, v);
+            points.count += 1;
+        }
+        points
+    }
+
+    fn middle(&self) -> Vector {
+        let all = &self.all[..self.count];
+        let sum = all.iter().fold([0.0; 3], |sum, x| plus(sum, 1.0, *x));
+        sum.map(|x| x / self.count as f64)
+    }
+
+    /// Returns the smallest and the largest component along a direction.
+    fn along(&self, direction: Vector) -> (f64, f64) {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for x in &self.all[..self.count] {
+            let x = dot(*x, direction);
+            (low, high) = (low.min(x), high.max(x));
+        }
+        (low, high)
+    }
+}
+
 fn separation(a: &Part, b: &Part, t: f64) -> Separation {
-    let points = |part: &Part, t: f64| -> Vec<Vector> {
-        let points = part.patch.all_points().zip(part.motion.all_points());
-        points.map(|(x, v)| plus(x, t, v)).collect()
-    };
-    let [start, end] = [0.0, t].map(|t| [points(a, t), points(b, t)]);
-    let middle = |points: &[Vector]| {
-        let sum = points.iter().fold([0.0; 3], |sum, x| plus(sum, 1.0, *x));
-        sum.map(|x| x / points.len() as f64)
-    };
-    let towards = minus(middle(&start[1]), middle(&start[0]));
+    let (start_a, start_b) = (Points::of(a, 0.0), Points::of(b, 0.0));
+    let (end_a, end_b) = (Points::of(a, t), Points::of(b, t));
+    let towards = minus(start_b.middle(), start_a.middle());
     let normal = |part: &Part, t: f64| {
         let [along, around] = [0, 1].map(|direction| part.moving().slopes(direction, t).middle());
         cross(along, around)
@@ -395,18 +431,12 @@ fn separation(a: &Part, b: &Part, t: f64) -> Separation {
         }
         let sign = if dot(direction, towards) < 0.0 { -1.0 } else { 1.0 };
         let unit = direction.map(|d| sign * d / size);
-        let along = |[a, b]: &[Vec<Vector>; 2]| {
-            let places = |points: &[Vector]| {
-                points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                    let x = dot(*x, unit);
-                    (low.min(x), high.max(x))
-                })
-            };
-            places(b).0 - places(a).1
-        };
-        let at_start = along(&start);
+        let at_start = start_b.along(unit).0 - start_a.along(unit).1;
         best.at_start = best.at_start.max(at_start);
-        best.stays |= at_start > 0.0 && along(&end) >= KEPT * at_start;
+        if at_start > 0.0 && end_b.along(unit).0 - end_a.along(unit).1 >= KEPT * at_start {
+            best.stays = true;
+            break;
+        }
     }
     best
 }
