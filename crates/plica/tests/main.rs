@@ -4,6 +4,7 @@ mod common;
 
 mod contact;
 mod contact_cases;
+mod contact_surfaces;
 mod equilibrium;
 mod examples;
 mod fuzz;

@@ -32,6 +32,7 @@ mod manufactured;
 pub mod one_dimension;
 mod report;
 mod rings;
+mod self_contact;
 pub mod row;
 mod tube_model;
 
@@ -140,6 +141,16 @@ pub const CHECKS: &[Check] = &[
         "contact-symmetries",
         "contact of one ring and of the whole tube",
         contact::symmetries,
+    ),
+    quick(
+        "flat-ring",
+        "a ring whose opposite walls touch under pressure",
+        self_contact::flat_ring,
+    ),
+    quick(
+        "fold-symmetries",
+        "a fold that touches itself, of one ring and of many",
+        self_contact::symmetries,
     ),
     quick(
         "friction",

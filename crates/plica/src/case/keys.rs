@@ -39,11 +39,11 @@ table! {
         ends: Ends = default("{}");
         /// The control points of the splines, and their degree.
         mesh: Mesh = default("{}");
-        /// Contact of the wall with itself: folds touch but do not pass through each other. For
-        /// axisymmetric tubes without twist, of degree 2 or more. `false` is the formulation of the paper.
+        /// Contact of the wall with itself: folds touch but do not pass through each other. For degree 2 or more,
+        /// and not for axisymmetric tubes that are twisted. `false` is the formulation of the paper.
         contact: bool = default("false");
-        /// The coefficient of friction of the wall with itself (Coulomb's law), with `contact = true`. The stability test
-        /// leaves friction out.
+        /// The coefficient of friction of the wall with itself (Coulomb's law), with `contact = true`, in an axisymmetric
+        /// tube. The stability test leaves friction out.
         friction: f64 = default("0.0").from(0.0).to(2.0);
         /// A saved state to begin from, instead of the tube at rest. The state may have another mesh, and
         /// a higher symmetry: it is interpolated and brought to equilibrium first.

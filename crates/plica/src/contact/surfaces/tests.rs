@@ -5,9 +5,9 @@ use crate::study::fixture::short;
 use crate::tube::{Mesh, Tube};
 use random::Random;
 use std::f64::consts::TAU;
-use vector::{Vector, cross, plus};
+use vector::{cross, plus};
 
-const RANGE: f64 = 0.02;
+const RANGE: f64 = 0.08;
 
 fn tube(rings: usize, axial: usize, around: usize) -> SplineTube {
     let mesh = Mesh {
@@ -34,7 +34,7 @@ fn tube(rings: usize, axial: usize, around: usize) -> SplineTube {
 
 /// Returns a state whose faces have a narrow hairpin, wavy around the sector by `wave`.
 fn hairpin(tube: &SplineTube, wave: f64) -> Vec<f64> {
-    let (length, gap) = (tube.tube.length, 0.01);
+    let (length, gap) = (tube.tube.length, 0.04);
     let repeats = tube.sector.repeats();
     tube.control_values_from(|z, radius, ring| {
         let s = 3.0 * z / length;
@@ -63,10 +63,10 @@ fn flattened(tube: &SplineTube) -> Vec<f64> {
         let phi = tube.sector.ring_angle(ring);
         let w = (0.6 * (z - 1.5)).powi(4);
         // Pressed onto a plane, with rounded sides.
-        let press = (-w).exp() * (1.0 - 0.004 / inner);
+        let press = (-w).exp() * (1.0 - 0.016 / inner);
         let (sin, cos) = phi.sin_cos();
         let across = -(press * inner * sin);
-        let slant = 0.002 * (3.0 * z).sin() * cos;
+        let slant = 0.008 * (3.0 * z).sin() * cos;
         [slant, (across + slant) * sin, (across + slant) * cos]
     })
 }
@@ -87,7 +87,7 @@ fn dot_of(a: &[f64], b: &[f64]) -> f64 {
 /// States of several symmetries that touch.
 fn states() -> Vec<(&'static str, SplineTube, Vec<f64>)> {
     let mut all = vec![];
-    for (name, rings, wave) in [("round", 12, 0.0), ("wavy", 12, 5e-4), ("fold 3", 4, 5e-4), ("twisted", 1, 5e-4)] {
+    for (name, rings, wave) in [("round", 12, 0.0), ("wavy", 12, 2e-3), ("fold 3", 4, 2e-3), ("twisted", 1, 2e-3)] {
         let tube = tube(rings, 43, 12);
         let u = hairpin(&tube, wave);
         all.push((name, tube, u));
@@ -144,12 +144,6 @@ fn a_round_fold_has_the_contact_of_its_meridian() {
 fn forces_are_the_derivative_of_the_energy_and_balance() {
     for (name, tube, u) in states() {
         let contact = SurfaceContact::new(&tube);
-        let begin = std::time::Instant::now();
-        let pairs = contact.at(&u);
-        println!("{name}: {} {} pairs, {:?}", pairs.0[0].len(), pairs.0[1].len(), begin.elapsed());
-        let begin = std::time::Instant::now();
-        contact.longest_step(&u, &u);
-        println!("{name}: step {:?}", begin.elapsed());
         let energy = |u: &[f64]| {
             contact.add_forces(&contact.at(u), &mut vec![0.0; u.len()]).energy
         };
@@ -161,10 +155,10 @@ fn forces_are_the_derivative_of_the_energy_and_balance() {
             let difference = energy(&moved(&u, &v, h)) - energy(&moved(&u, &v, -h));
             (difference / (2.0 * h) - slope).abs() / slope.abs()
         };
-        let order = (error(2e-4) / error(1e-4)).log2();
+        let order = (error(8e-4) / error(4e-4)).log2();
         println!("{name}: energy {:.3e}, errors {:.1e} {:.1e}, order {order}", energy(&u), error(2e-4), error(1e-5));
         assert!((order - 2.0).abs() < 0.3, "{name}: order {order}");
-        assert!(error(1e-5) < 1e-4, "{name}: {}", error(1e-5));
+        assert!(error(4e-5) < 1e-4, "{name}: {}", error(4e-5));
         // Forces and moments on the whole tube.
         let (mut force, mut moment, mut size) = ([0.0; 3], [0.0; 3], 0.0);
         for (net, _) in &contact.faces {
@@ -219,10 +213,10 @@ fn the_product_is_the_derivative_of_the_forces() {
             let errors = pairs.map(|((low, high), p)| ((high - low) / (2.0 * h) - p).abs());
             errors.fold(0.0, f64::max) / size
         };
-        let order = (error(8e-5) / error(4e-5)).log2();
-        println!("{name}: errors {:.1e} {:.1e}, order {order}", error(8e-5), error(1e-5));
+        let order = (error(4e-4) / error(2e-4)).log2();
+        println!("{name}: errors {:.1e} {:.1e}, order {order}", error(4e-4), error(4e-5));
         assert!((order - 2.0).abs() < 0.3, "{name}: order {order}");
-        assert!(error(1e-5) < 1e-4, "{name}: {}", error(1e-5));
+        assert!(error(4e-5) < 1e-4, "{name}: {}", error(4e-5));
         let w = random(u.len(), 3);
         let mut other = vec![0.0; u.len()];
         contact.add_product(&tangent, 1.0, &w, &mut other);
@@ -316,5 +310,4 @@ fn wrinkled_faces_that_do_not_meet_are_free() {
         let u: Vec<f64> = random(tube.unknowns(), 7).iter().map(|x| size * x).collect();
         assert_eq!(contact.crossing(&u), None, "{size}");
     }
-    let _: Vector = [0.0; 3];
 }
