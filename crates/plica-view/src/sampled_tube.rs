@@ -66,7 +66,10 @@ impl SampledTube {
     /// Prepares a state for sampling.
     pub fn state<'a>(&'a self, load: &'a Load, u: &'a [f64]) -> SampledState<'a> {
         SampledState {
-            pressure: self.contact.as_ref().map(|contact| contact.pressure(&self.tube, u)),
+            pressure: self
+                .contact
+                .as_ref()
+                .map(|contact| contact.pressure(&self.tube, u)),
             ..SampledState::without_contact(&self.tube, load, u)
         }
     }

@@ -86,7 +86,8 @@ fn a_fold_that_touches_itself_is_carried_onto_a_finer_graded_mesh_and_range() {
     let mut plan = main_case([100, 16, 5]);
     plan.mesh.grading = 4.0;
     let mut problem = TubeProblem::new(SplineTube::new(&plan.tube, &plan.mesh, 1));
-    let contact = SelfContact::Meridian(MeridianContact::new(&problem.tube).with_range(0.5 * RANGE));
+    let contact =
+        SelfContact::Meridian(MeridianContact::new(&problem.tube).with_range(0.5 * RANGE));
     problem.contact = Some(Arc::new(contact.clone()));
     let (load, u) = (&coarse.path.state().load, &coarse.path.state().u);
     let u = prolong(&coarse.problem.tube, &problem.tube, u);

@@ -73,12 +73,17 @@ fn a_touching_fold_of_many_rings_is_that_of_one_ring() {
         let pressure = |problem: &TubeProblem, u: &[f64], angle: f64| {
             let field = problem.contact_pressure(u).unwrap();
             let places = (0..200).map(|i| z * (1.0 + 0.005 * f64::from(i)));
-            places.map(|z| field.at(Face::Outer, z, angle)).fold(0.0, f64::max)
+            places
+                .map(|z| field.at(Face::Outer, z, angle))
+                .fold(0.0, f64::max)
         };
         let expected = pressure(&ring, &exact.u, 0.0);
         for angle in [0.0, 1.0, -2.5] {
             let found = pressure(&whole, &state.u, angle);
-            assert!(expected > 0.0 && (found / expected - 1.0).abs() < 1e-2, "{found} {expected}");
+            assert!(
+                expected > 0.0 && (found / expected - 1.0).abs() < 1e-2,
+                "{found} {expected}"
+            );
         }
     }
 }
@@ -124,7 +129,11 @@ fn a_ring_that_flattens_closes_its_lumen_and_goes_no_further() {
                 let sample = tube.sample(&state.load, &state.unknowns, point(angle));
                 sample.position[2]
             };
-            assert!(height(angle) > 0.0 && height(-angle) < 0.0, "{}", state.number);
+            assert!(
+                height(angle) > 0.0 && height(-angle) < 0.0,
+                "{}",
+                state.number
+            );
         }
         let contact = state.contact.unwrap();
         let touches = contact.faces[1].is_some();

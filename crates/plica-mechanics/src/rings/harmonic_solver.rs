@@ -31,7 +31,12 @@ impl HarmonicSolver {
     }
 
     /// Returns the factors of all harmonics, and the correction.
-    pub fn into_factors(self) -> (impl Iterator<Item = CoupledFactor>, Option<LowHarmonicCorrection>) {
+    pub fn into_factors(
+        self,
+    ) -> (
+        impl Iterator<Item = CoupledFactor>,
+        Option<LowHarmonicCorrection>,
+    ) {
         (
             self.factors.into_iter().map(|(_, factor)| factor),
             self.correction,

@@ -32,8 +32,8 @@ mod manufactured;
 pub mod one_dimension;
 mod report;
 mod rings;
-mod self_contact;
 pub mod row;
+mod self_contact;
 mod tube_model;
 
 pub use error::VerificationError;

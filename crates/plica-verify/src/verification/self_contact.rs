@@ -100,17 +100,19 @@ pub fn symmetries(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> 
         let tube = SplineTube::new(&plan.tube, &plan.mesh, rings);
         touching(&TubeProblem::new(tube), 0.03)
     };
-    let fold = |problem: &TubeProblem, path: &Path<TubeProblem>| -> Result<Fold, VerificationError> {
-        let (load, u) = (path.state().load.clone(), path.state().u.clone());
-        let report = problem.contact_report(&load, &u);
-        let contact = report.and_then(|report| report.faces[0]);
-        Ok(Fold {
-            energy: problem.tube.forces(&load, &u)?.energy,
-            contact: contact.ok_or_else(|| VerificationError::Solve("the fold touches nowhere".into()))?,
-            load,
-            u,
-        })
-    };
+    let fold =
+        |problem: &TubeProblem, path: &Path<TubeProblem>| -> Result<Fold, VerificationError> {
+            let (load, u) = (path.state().load.clone(), path.state().u.clone());
+            let report = problem.contact_report(&load, &u);
+            let contact = report.and_then(|report| report.faces[0]);
+            Ok(Fold {
+                energy: problem.tube.forces(&load, &u)?.energy,
+                contact: contact
+                    .ok_or_else(|| VerificationError::Solve("the fold touches nowhere".into()))?,
+                load,
+                u,
+            })
+        };
     let ring = problem(1);
     let rest = vec![0.0; ring.tube.unknowns()];
     let mut path = Path::begin(ring.clone(), plan.tube.rest(), rest, tight_settings())?;
@@ -124,7 +126,9 @@ pub fn symmetries(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> 
     }
     let one = fold(&ring, &path)?;
     for rings in [4, 32] {
-        recorder.case(format!("fold that touches itself, {rings} of 32 control rings"))?;
+        recorder.case(format!(
+            "fold that touches itself, {rings} of 32 control rings"
+        ))?;
         let problem = problem(rings);
         let of_ring = one.u.iter().flat_map(|x| std::iter::repeat_n(*x, rings));
         let start = of_ring.collect();

@@ -238,7 +238,11 @@ impl Tangent for HarmonicTangent {
 
 impl HarmonicTangent {
     /// Prepares K + α C for solving, with the tangent on low harmonics if they are coupled.
-    fn system(&self, alpha: f64, coupled: Option<CoupledBanded>) -> Result<HarmonicSystem, Singular> {
+    fn system(
+        &self,
+        alpha: f64,
+        coupled: Option<CoupledBanded>,
+    ) -> Result<HarmonicSystem, Singular> {
         let tube = &self.state.tube;
         let rings = tube.tube.sector.rings;
         let blocks: Vec<Block> = (0..=rings / 2)

@@ -375,9 +375,13 @@ impl<'a> Run<'a> {
         let pressure = self.study.problem().contact_pressure(&state.unknowns);
         let faces = [contact::Face::Outer, contact::Face::Inner];
         let pressures = |z: f64| -> Vec<f64> {
-            let places = angles.iter().flat_map(|angle| faces.map(|face| (face, *angle)));
+            let places = angles
+                .iter()
+                .flat_map(|angle| faces.map(|face| (face, *angle)));
             let of = |field: &PressureField<'_>| {
-                places.map(|(face, angle)| stress * field.at(face, z, angle)).collect()
+                places
+                    .map(|(face, angle)| stress * field.at(face, z, angle))
+                    .collect()
             };
             pressure.as_ref().map(of).unwrap_or_default()
         };

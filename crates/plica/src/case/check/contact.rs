@@ -47,6 +47,10 @@ pub(super) fn check(
     let twists = |stage: &Stage| stage.load.ends.iter().any(|end| end.twist != 0.0);
     if stages.iter().any(twists) {
         let help = "set `contact = false`, leave the ends untwisted, or set `symmetry = \"none\"`";
-        problems.value(CONTACT, "must be false if an end of an axisymmetric tube is twisted", help);
+        problems.value(
+            CONTACT,
+            "must be false if an end of an axisymmetric tube is twisted",
+            help,
+        );
     }
 }

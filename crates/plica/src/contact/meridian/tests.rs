@@ -221,8 +221,8 @@ fn the_tangent_of_a_mode_is_the_second_derivative_of_the_energy_of_its_wave() {
 mod wave {
     use super::super::bezier::Point;
     use super::super::curve::FaceCurve;
+    use super::super::{MeridianContact, MeridianPairs};
     use crate::contact::bernstein::MAX_POINTS;
-    use super::super::{MeridianPairs, MeridianContact};
     use std::f64::consts::TAU;
 
     /// Angles around the tube at which the energy is evaluated.

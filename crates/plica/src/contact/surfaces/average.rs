@@ -102,7 +102,11 @@ impl AverageContact {
                         for (own, factor) in own.iter().zip(factors) {
                             add(&mut block, factor, &own[d]);
                         }
-                        average.add_block((y[0] + a, y[0] + b), (d + net.around - p) % net.rings, &block);
+                        average.add_block(
+                            (y[0] + a, y[0] + b),
+                            (d + net.around - p) % net.rings,
+                            &block,
+                        );
                     }
                 }
             }
@@ -126,7 +130,11 @@ impl AverageContact {
     fn add_block(&mut self, rows: (usize, usize), d: usize, block: &Block) {
         let rings = self.rings;
         let blocks = self.blocks.entry(rows);
-        add(&mut blocks.or_insert_with(|| vec![[[0.0; 3]; 3]; rings])[d], 1.0, block);
+        add(
+            &mut blocks.or_insert_with(|| vec![[[0.0; 3]; 3]; rings])[d],
+            1.0,
+            block,
+        );
     }
 
     /// Adds a block that couples any two rows, d rings apart, and its mirror image.
@@ -196,7 +204,8 @@ impl Columns {
                 columns.at_x[b][i] = [z, x, y, 0.0, 0.0];
             }
             for (i, axis) in axes(net, y, b).into_iter().enumerate() {
-                let (value, slope, along) = (around[1][0][b], around[1][1][b], dot(pair.normal, axis));
+                let (value, slope, along) =
+                    (around[1][0][b], around[1][1][b], dot(pair.normal, axis));
                 let [z, x, y] = axis.map(|d| -value * d);
                 columns.of_values[b][i] = [z, x, y, 0.0, slope * along];
                 columns.of_slopes[b][i] = [0.0, 0.0, 0.0, value * along, 0.0];

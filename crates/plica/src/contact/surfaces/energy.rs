@@ -46,10 +46,16 @@ pub fn add_product(net: &FaceNet, pairs: &[Pair], factor: f64, v: &[f64], y: &mu
         let [x, ..] = motion(net, pair, 0, &motions);
         let [y, along, around] = motion(net, pair, 1, &motions);
         let a = minus(x, y);
-        let moved = [a[0], a[1], a[2], dot(pair.normal, along), dot(pair.normal, around)];
-        let force = pair.stiffness.map(|row| {
-            row.iter().zip(&moved).map(|(k, x)| k * x).sum::<f64>()
-        });
+        let moved = [
+            a[0],
+            a[1],
+            a[2],
+            dot(pair.normal, along),
+            dot(pair.normal, around),
+        ];
+        let force = pair
+            .stiffness
+            .map(|row| row.iter().zip(&moved).map(|(k, x)| k * x).sum::<f64>());
         let on_x = [force[0], force[1], force[2]];
         let turns = [3, 4].map(|i| pair.normal.map(|n| force[i] * n));
         add_at(net, pair, 0, [on_x, [0.0; 3], [0.0; 3]], forces);
@@ -79,7 +85,13 @@ fn motion(net: &FaceNet, pair: &Pair, point: usize, motions: &[Vector]) -> [Vect
 }
 
 /// Adds the forces that work on the displacement of a point of a pair, and on its derivatives along and around.
-fn add_at(net: &FaceNet, pair: &Pair, point: usize, [f, along, turned]: [Vector; 3], forces: &mut [Vector]) {
+fn add_at(
+    net: &FaceNet,
+    pair: &Pair,
+    point: usize,
+    [f, along, turned]: [Vector; 3],
+    forces: &mut [Vector],
+) {
     let [e, element] = net.elements_of(pair.patches[point]);
     let [[values, slopes], [around, around_slopes]] = pair.functions[point];
     for a in 0..=net.degree {

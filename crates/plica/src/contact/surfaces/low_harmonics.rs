@@ -11,12 +11,7 @@ use std::f64::consts::TAU;
 
 /// Adds the stiffness of pairs against approach, Σ ½ A b″ (n · a)², to the tangent on low harmonics. The tangent there is that of
 /// a preconditioner: the parts of a contact force that turns are left out, and what is added is positive.
-pub fn add_approach(
-    net: &FaceNet,
-    pairs: &[Pair],
-    low: &LowHarmonics,
-    matrix: &mut CoupledBanded,
-) {
+pub fn add_approach(net: &FaceNet, pairs: &[Pair], low: &LowHarmonics, matrix: &mut CoupledBanded) {
     let columns = 3 * low.modes();
     let waves = control_waves(net.rings, low.modes());
     let mut blocks: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
@@ -73,7 +68,8 @@ pub fn add_approach(
             for (d, g) in through.iter().enumerate() {
                 for (x, line) in block.chunks_exact(columns).enumerate() {
                     for (y, value) in line.iter().enumerate() {
-                        let (row, column) = (i * size + c * columns + x, j * size + d * columns + y);
+                        let (row, column) =
+                            (i * size + c * columns + x, j * size + d * columns + y);
                         if row >= column {
                             matrix.add_at(row, column, f * g * value);
                         }

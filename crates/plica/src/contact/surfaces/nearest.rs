@@ -81,9 +81,9 @@ struct Spread {
 
 impl Spread {
     fn of(vectors: impl Iterator<Item = Vector> + Clone) -> Self {
-        let (sum, count) = vectors
-            .clone()
-            .fold(([0.0; 3], 0.0), |(sum, count), v| (plus(sum, 1.0, v), count + 1.0));
+        let (sum, count) = vectors.clone().fold(([0.0; 3], 0.0), |(sum, count), v| {
+            (plus(sum, 1.0, v), count + 1.0)
+        });
         let mean = sum.map(|s| s / count);
         let size = length(mean).max(f64::MIN_POSITIVE);
         let (mut radius, mut least) = (0.0_f64, f64::INFINITY);
@@ -91,7 +91,11 @@ impl Spread {
             radius = radius.max(length(minus(v, mean)));
             least = least.min(dot(v, mean) / size);
         }
-        Self { mean, radius, least }
+        Self {
+            mean,
+            radius,
+            least,
+        }
     }
 }
 
@@ -106,7 +110,10 @@ fn has_one_sign(towards: &Spread, slopes: &Spread) -> bool {
 /// Returns whether half the square of the distance from x is surely a convex function of the place: its second derivatives
 /// are y_α · y_β + (y − x) · y_αβ.
 fn is_convex(part: &Patch, [along, around]: &[Spread; 2], x: Vector) -> bool {
-    let farthest = part.all_points().map(|y| length(minus(y, x))).fold(0.0, f64::max);
+    let farthest = part
+        .all_points()
+        .map(|y| length(minus(y, x)))
+        .fold(0.0, f64::max);
     let [vv, vw, ww] = part.largest_curvatures().map(|c| farthest * c);
     if along.least <= 0.0 || around.least <= 0.0 {
         return false;
@@ -116,7 +123,10 @@ fn is_convex(part: &Patch, [along, around]: &[Spread; 2], x: Vector) -> bool {
         + length(around.mean) * along.radius
         + along.radius * around.radius
         + vw;
-    let (a, b) = (along.least * along.least - vv, around.least * around.least - ww);
+    let (a, b) = (
+        along.least * along.least - vv,
+        around.least * around.least - ww,
+    );
     a > 0.0 && b > 0.0 && a * b > mixed * mixed
 }
 
@@ -195,7 +205,11 @@ mod tests {
                 for (j, point) in row.iter_mut().enumerate() {
                     let place = [i, j].map(|i| i as f64 / degree as f64);
                     let rough = [(); 3].map(|()| random.next() - 0.5);
-                    *point = [place[0] + 0.1 * rough[0], place[1] + 0.1 * rough[1], 2.0 * rough[2]];
+                    *point = [
+                        place[0] + 0.1 * rough[0],
+                        place[1] + 0.1 * rough[1],
+                        2.0 * rough[2],
+                    ];
                 }
             }
             let patch = Patch { points, degree };
@@ -210,7 +224,9 @@ mod tests {
             for i in 1..count {
                 for j in 1..count {
                     let own = at(i, j);
-                    let around = (0..9).filter(|n| *n != 4).map(|n| at(i + n / 3 - 1, j + n % 3 - 1));
+                    let around = (0..9)
+                        .filter(|n| *n != 4)
+                        .map(|n| at(i + n / 3 - 1, j + n % 3 - 1));
                     if own < 0.99 * range && around.into_iter().all(|other| own <= other) {
                         sampled.push([i, j].map(|i| i as f64 / count as f64));
                     }

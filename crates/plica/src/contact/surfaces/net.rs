@@ -111,7 +111,11 @@ impl FaceNet {
         let mut net = self.motions(u);
         for (row, points) in net.chunks_exact_mut(self.around).enumerate() {
             for (point, &(sin, cos)) in points.iter_mut().zip(&self.turns) {
-                let at_rest = [self.at_rest[row], self.control_radius * cos, self.control_radius * sin];
+                let at_rest = [
+                    self.at_rest[row],
+                    self.control_radius * cos,
+                    self.control_radius * sin,
+                ];
                 *point = plus(*point, 1.0, at_rest);
             }
         }
@@ -186,7 +190,11 @@ impl FaceNet {
     #[inline(always)]
     pub fn ring(&self, element: usize, b: usize) -> usize {
         let ring = element + b;
-        if ring < self.around { ring } else { ring % self.around }
+        if ring < self.around {
+            ring
+        } else {
+            ring % self.around
+        }
     }
 
     /// Returns the elements along and around of a patch.
@@ -213,11 +221,7 @@ fn factors(basis: &Basis, element: usize) -> Factors {
 }
 
 fn combined(degree: usize, factors: &Factors, xi: f64) -> Functions {
-    [
-        bernstein(degree, xi),
-        bernstein_slopes(degree, xi),
-    ]
-    .map(|polynomials| {
+    [bernstein(degree, xi), bernstein_slopes(degree, xi)].map(|polynomials| {
         let mut values = [0.0; MAX_POINTS];
         for (factors, b) in factors.iter().zip(polynomials) {
             for (value, factor) in values.iter_mut().zip(factors) {

@@ -133,7 +133,9 @@ impl<'a> FaceState<'a> {
             self.add_near(b, a, near);
             return;
         }
-        let (whole, other) = match a.is_patch() || (!b.is_patch() && bounds[1].points.size() > bounds[0].points.size()) {
+        let (whole, other) = match a.is_patch()
+            || (!b.is_patch() && bounds[1].points.size() > bounds[0].points.size())
+        {
             true => (b, a),
             false => (a, b),
         };
@@ -188,7 +190,8 @@ impl<'a> FaceState<'a> {
                 let place = [*v, *w];
                 let weight = weight_v * weight_w * area;
                 self.pairs_of_point((own, place), others, barrier, &mut |y, own_point, other| {
-                    let mut pair = self.pair([(own, place), y], [own_point, other], weight, barrier);
+                    let mut pair =
+                        self.pair([(own, place), y], [own_point, other], weight, barrier);
                     pair.along = along;
                     pairs.push(pair);
                 });
@@ -212,7 +215,8 @@ impl<'a> FaceState<'a> {
         let own_box = Box3::around([own_normal]);
         for &other in others {
             let [points, normals] = &self.boxes[other];
-            if points.distance(x.position) >= barrier.range || normals.least_product(&own_box) > 0.0 {
+            if points.distance(x.position) >= barrier.range || normals.least_product(&own_box) > 0.0
+            {
                 continue;
             }
             let patch = &self.patches[other];
@@ -220,12 +224,15 @@ impl<'a> FaceState<'a> {
                 let y = patch.at(place);
                 let (from_y, facing) = (minus(x.position, y.position), normal(&y));
                 let gap = length(from_y);
-                let faces = dot(own_normal, facing) < 0.0
-                    && self.net.free_side * dot(facing, from_y) > 0.0;
+                let faces =
+                    dot(own_normal, facing) < 0.0 && self.net.free_side * dot(facing, from_y) > 0.0;
                 if !(faces && gap < barrier.range && gap > 0.0) {
                     return;
                 }
-                if seen.iter().any(|found| self.is_same(*found, (other, place))) {
+                if seen
+                    .iter()
+                    .any(|found| self.is_same(*found, (other, place)))
+                {
                     return;
                 }
                 seen.push((other, place));
@@ -288,8 +295,8 @@ impl<'a> FaceState<'a> {
                         tangential -= symmetric * slope[i] * other[j];
                     }
                 }
-                stiffness[i][j] = share
-                    * (jet.curvature * normal[i] * normal[j] + jet.slope * tangential);
+                stiffness[i][j] =
+                    share * (jet.curvature * normal[i] * normal[j] + jet.slope * tangential);
             }
             for beta in 0..2 {
                 let mixed = slopes[0][i] * big[0][beta] + slopes[1][i] * big[1][beta];

@@ -27,7 +27,9 @@ impl Patch {
     /// Returns the control points, row by row.
     pub fn all_points(&self) -> impl Iterator<Item = Vector> + Clone + '_ {
         let n = self.degree + 1;
-        self.points[..n].iter().flat_map(move |row| row[..n].iter().copied())
+        self.points[..n]
+            .iter()
+            .flat_map(move |row| row[..n].iter().copied())
     }
 
     /// Returns the differences of successive control points in a direction (0 along, 1 around), times the degree. The
@@ -55,15 +57,24 @@ impl Patch {
         for i in 0..n {
             for j in 0..n {
                 if i + 2 < n {
-                    let d = minus(minus(at(i + 2, j), at(i + 1, j)), minus(at(i + 1, j), at(i, j)));
+                    let d = minus(
+                        minus(at(i + 2, j), at(i + 1, j)),
+                        minus(at(i + 1, j), at(i, j)),
+                    );
                     largest[0] = largest[0].max(super::vector::dot(d, d));
                 }
                 if i + 1 < n && j + 1 < n {
-                    let d = minus(minus(at(i + 1, j + 1), at(i + 1, j)), minus(at(i, j + 1), at(i, j)));
+                    let d = minus(
+                        minus(at(i + 1, j + 1), at(i + 1, j)),
+                        minus(at(i, j + 1), at(i, j)),
+                    );
                     largest[1] = largest[1].max(super::vector::dot(d, d));
                 }
                 if j + 2 < n {
-                    let d = minus(minus(at(i, j + 2), at(i, j + 1)), minus(at(i, j + 1), at(i, j)));
+                    let d = minus(
+                        minus(at(i, j + 2), at(i, j + 1)),
+                        minus(at(i, j + 1), at(i, j)),
+                    );
                     largest[2] = largest[2].max(super::vector::dot(d, d));
                 }
             }
@@ -129,7 +140,8 @@ impl Patch {
             for level in (1..n).rev() {
                 for i in 0..level {
                     let (a, b) = (place(i), place(i + 1));
-                    right.points[a.0][a.1] = between(right.points[a.0][a.1], right.points[b.0][b.1], 0.5);
+                    right.points[a.0][a.1] =
+                        between(right.points[a.0][a.1], right.points[b.0][b.1], 0.5);
                 }
                 let (to, first) = (place(n - level), place(0));
                 left.points[to.0][to.1] = right.points[first.0][first.1];
@@ -174,15 +186,19 @@ fn raise(values: &mut [f64; MAX_POINTS], degree: usize, xi: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::surfaces::vector::length;
     use crate::contact::surfaces::random::Random;
+    use crate::contact::surfaces::vector::length;
 
     fn patch(degree: usize, random: &mut Random) -> Patch {
         let mut points = [[[0.0; 3]; MAX_POINTS]; MAX_POINTS];
         for (i, row) in points.iter_mut().enumerate() {
             for (j, point) in row.iter_mut().enumerate() {
                 let rough = [(); 3].map(|()| random.next() - 0.5);
-                *point = [i as f64 + 0.5 * rough[0], j as f64 + 0.5 * rough[1], rough[2]];
+                *point = [
+                    i as f64 + 0.5 * rough[0],
+                    j as f64 + 0.5 * rough[1],
+                    rough[2],
+                ];
             }
         }
         Patch { points, degree }

@@ -19,11 +19,16 @@ impl SurfacePressure<'_> {
         let x = (e * state.net.around + f, place);
         let barrier = &self.contact.barrier;
         let mut sum = 0.0;
-        state.pairs_of_point(x, &state.near_point(x, barrier.range), barrier, &mut |y, at_x, at_y| {
-            let gap = length(minus(at_x.position, at_y.position));
-            let areas = rest_area(state, x.0, at_x) + rest_area(state, y.0, at_y);
-            sum -= 0.5 * barrier.at(gap).slope * areas;
-        });
+        state.pairs_of_point(
+            x,
+            &state.near_point(x, barrier.range),
+            barrier,
+            &mut |y, at_x, at_y| {
+                let gap = length(minus(at_x.position, at_y.position));
+                let areas = rest_area(state, x.0, at_x) + rest_area(state, y.0, at_y);
+                sum -= 0.5 * barrier.at(gap).slope * areas;
+            },
+        );
         sum
     }
 }
@@ -38,7 +43,11 @@ impl SurfaceContact {
     pub fn pressure(&self, u: &[f64]) -> SurfacePressure<'_> {
         SurfacePressure {
             contact: self,
-            faces: self.faces.iter().map(|(net, tree)| FaceState::new(net, tree, u)).collect(),
+            faces: self
+                .faces
+                .iter()
+                .map(|(net, tree)| FaceState::new(net, tree, u))
+                .collect(),
         }
     }
 

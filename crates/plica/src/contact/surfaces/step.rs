@@ -76,7 +76,12 @@ impl Part {
             let mut ends = [self.from, self.to];
             ends[1 - i][direction] = middle;
             let both = [patches[i], motions[i]];
-            Self::new(both, ends, sides, [0, 1].map(|k| Bounds::of(&both[k], sides)))
+            Self::new(
+                both,
+                ends,
+                sides,
+                [0, 1].map(|k| Bounds::of(&both[k], sides)),
+            )
         })
     }
 
@@ -302,8 +307,12 @@ fn frame(slopes: [Box3; 2]) -> Option<([Vector; 2], [f64; 2])> {
         return None;
     }
     let half = std::f64::consts::FRAC_1_SQRT_2;
-    let [sum, difference] = [(sum, long), (difference, short)].map(|(v, l)| v.map(|x| half * x / l));
-    Some(([plus(sum, 1.0, difference), plus(sum, -1.0, difference)], sizes))
+    let [sum, difference] =
+        [(sum, long), (difference, short)].map(|(v, l)| v.map(|x| half * x / l));
+    Some((
+        [plus(sum, 1.0, difference), plus(sum, -1.0, difference)],
+        sizes,
+    ))
 }
 
 /// Returns whether parts together run forward at the start and at t.
@@ -319,10 +328,14 @@ fn run_forward(parts: &[Moving<'_>], t: f64) -> bool {
         return false;
     };
     ends.iter().all(|[along, around]| {
-        let (a, b) = (along.along(units[0]).0 / sizes[0], around.along(units[1]).0 / sizes[1]);
+        let (a, b) = (
+            along.along(units[0]).0 / sizes[0],
+            around.along(units[1]).0 / sizes[1],
+        );
         let largest = |(low, high): (f64, f64)| low.abs().max(high.abs());
         let c = 0.5
-            * (largest(along.along(units[1])) / sizes[0] + largest(around.along(units[0])) / sizes[1]);
+            * (largest(along.along(units[1])) / sizes[0]
+                + largest(around.along(units[0])) / sizes[1]);
         a > 0.0 && b > 0.0 && a * b > c * c
     })
 }
@@ -333,14 +346,18 @@ const FLAT: f64 = 0.98;
 /// Returns whether the derivatives of parts at the start hardly differ in direction.
 fn are_nearly_flat(parts: &[&Part]) -> bool {
     (0..2).all(|direction| {
-        let all = parts.iter().flat_map(|part| part.patch.differences(direction));
+        let all = parts
+            .iter()
+            .flat_map(|part| part.patch.differences(direction));
         let directions: Vec<Vector> = all
             .map(|d| {
                 let size = length(d).max(f64::MIN_POSITIVE);
                 d.map(|d| d / size)
             })
             .collect();
-        let mean = directions.iter().fold([0.0; 3], |sum, d| plus(sum, 1.0, *d));
+        let mean = directions
+            .iter()
+            .fold([0.0; 3], |sum, d| plus(sum, 1.0, *d));
         let limit = FLAT * length(mean);
         directions.iter().all(|d| dot(*d, mean) > limit)
     })
@@ -429,7 +446,11 @@ fn separation(a: &Part, b: &Part, t: f64) -> Separation {
         if size == 0.0 {
             continue;
         }
-        let sign = if dot(direction, towards) < 0.0 { -1.0 } else { 1.0 };
+        let sign = if dot(direction, towards) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
         let unit = direction.map(|d| sign * d / size);
         let at_start = start_b.along(unit).0 - start_a.along(unit).1;
         best.at_start = best.at_start.max(at_start);

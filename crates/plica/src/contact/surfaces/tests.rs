@@ -15,6 +15,7 @@ fn tube(rings: usize, axial: usize, around: usize) -> SplineTube {
         around,
         thickness: 4,
         degree: 3,
+        layers: vec![],
         refinements: vec![],
         grading: 1.0,
         contact_range: 0.25,
@@ -87,7 +88,12 @@ fn dot_of(a: &[f64], b: &[f64]) -> f64 {
 /// States of several symmetries that touch.
 fn states() -> Vec<(&'static str, SplineTube, Vec<f64>)> {
     let mut all = vec![];
-    for (name, rings, wave) in [("round", 8, 0.0), ("wavy", 8, 1e-3), ("fold 2", 4, 1e-3), ("twisted", 1, 1e-3)] {
+    for (name, rings, wave) in [
+        ("round", 8, 0.0),
+        ("wavy", 8, 1e-3),
+        ("fold 2", 4, 1e-3),
+        ("twisted", 1, 1e-3),
+    ] {
         let tube = tube(rings, 31, 8);
         let u = hairpin(&tube, wave);
         all.push((name, tube, u));
@@ -107,7 +113,10 @@ fn a_tube_at_rest_touches_nowhere() {
         assert!(contact.at(&rest).is_empty());
         assert_eq!(contact.crossing(&rest), None);
         let narrow = tube.control_values_from(|z, _, ring| {
-            let (w, phi) = (z - 1.5, tube.sector.ring_angle(ring) * tube.sector.repeats());
+            let (w, phi) = (
+                z - 1.5,
+                tube.sector.ring_angle(ring) * tube.sector.repeats(),
+            );
             [0.0, -(0.2 + 0.05 * phi.cos()) * (-30.0 * w * w).exp(), 0.0]
         });
         assert!(contact.at(&narrow).is_empty());
@@ -134,7 +143,10 @@ fn a_round_fold_has_the_contact_of_its_meridian() {
         let size = residual.iter().fold(0.0_f64, |most, r| most.max(r.abs()));
         for (i, of_ring) in residual.iter().enumerate() {
             for ring in 0..rings {
-                assert!((forces[i * rings + ring] - of_ring).abs() < 1e-4 * size, "{rings}: {i}");
+                assert!(
+                    (forces[i * rings + ring] - of_ring).abs() < 1e-4 * size,
+                    "{rings}: {i}"
+                );
             }
         }
     }
@@ -145,7 +157,9 @@ fn forces_are_the_derivative_of_the_energy_and_balance() {
     for (name, tube, u) in states() {
         let contact = SurfaceContact::new(&tube);
         let energy = |u: &[f64]| {
-            contact.add_forces(&contact.at(u), &mut vec![0.0; u.len()]).energy
+            contact
+                .add_forces(&contact.at(u), &mut vec![0.0; u.len()])
+                .energy
         };
         let mut residual = vec![0.0; u.len()];
         contact.add_forces(&contact.at(&u), &mut residual);
@@ -156,7 +170,12 @@ fn forces_are_the_derivative_of_the_energy_and_balance() {
             (difference / (2.0 * h) - slope).abs() / slope.abs()
         };
         let order = (error(4e-4) / error(2e-4)).log2();
-        println!("{name}: energy {:.3e}, errors {:.1e} {:.1e}, order {order}", energy(&u), error(2e-4), error(1e-5));
+        println!(
+            "{name}: energy {:.3e}, errors {:.1e} {:.1e}, order {order}",
+            energy(&u),
+            error(2e-4),
+            error(1e-5)
+        );
         assert!((order - 2.0).abs() < 0.3, "{name}: order {order}");
         assert!(error(4e-5) < 1e-4, "{name}: {}", error(4e-5));
         // Forces and moments on the whole tube.
@@ -188,7 +207,10 @@ fn forces_are_the_derivative_of_the_energy_and_balance() {
         }
         assert!(size > 0.0);
         for sum in [force, moment] {
-            assert!(vector::length(sum) < 1e-12 * size, "{name}: {sum:?} of {size}");
+            assert!(
+                vector::length(sum) < 1e-12 * size,
+                "{name}: {sum:?} of {size}"
+            );
         }
     }
 }
@@ -214,7 +236,11 @@ fn the_product_is_the_derivative_of_the_forces() {
             errors.fold(0.0, f64::max) / size
         };
         let order = (error(2e-4) / error(1e-4)).log2();
-        println!("{name}: errors {:.1e} {:.1e}, order {order}", error(4e-4), error(4e-5));
+        println!(
+            "{name}: errors {:.1e} {:.1e}, order {order}",
+            error(4e-4),
+            error(4e-5)
+        );
         assert!((order - 2.0).abs() < 0.3, "{name}: order {order}");
         assert!(error(4e-5) < 1e-4, "{name}: {}", error(4e-5));
         let w = random(u.len(), 3);
@@ -258,7 +284,10 @@ fn the_average_is_that_of_all_rotations_and_mirror_images() {
                 contact.add_product(&tangent, 1.0, &wave, &mut product);
                 mean += dot_of(&product, &wave) / k as f64;
             }
-            assert!((own / mean - 1.0).abs() < 1e-11, "{name}, {n}: {own} {mean}");
+            assert!(
+                (own / mean - 1.0).abs() < 1e-11,
+                "{name}, {n}: {own} {mean}"
+            );
         }
     }
 }
@@ -278,7 +307,10 @@ fn steps_stop_before_faces_meet() {
     // The sides meet at 0.34.
     assert!((0.1..0.34).contains(&t), "{t}");
     assert_eq!(contact.crossing(&moved(&rest, &step, t)), None);
-    assert_eq!(contact.crossing(&moved(&rest, &step, 0.36)), Some(Face::Inner));
+    assert_eq!(
+        contact.crossing(&moved(&rest, &step, 0.36)),
+        Some(Face::Inner)
+    );
     // A motion of the whole tube is free, and so is a uniform stretch.
     let shift = tube.control_values_from(|z, _, ring| {
         let (sin, cos) = tube.sector.ring_angle(ring).sin_cos();
@@ -295,7 +327,9 @@ fn steps_stop_before_faces_meet() {
         let tube = super::tests::tube(rings, 31, 12);
         let contact = SurfaceContact::new(&tube);
         let all = |v: &[f64]| -> Vec<f64> {
-            v.iter().flat_map(|x| std::iter::repeat_n(*x, rings)).collect()
+            v.iter()
+                .flat_map(|x| std::iter::repeat_n(*x, rings))
+                .collect()
         };
         let t = contact.longest_step(&all(&u), &all(&push));
         assert!(t <= 1.01 * of_ring && t > 0.4 * of_ring, "{t} {of_ring}");
@@ -307,7 +341,10 @@ fn wrinkled_faces_that_do_not_meet_are_free() {
     let tube = tube(12, 12, 12);
     let contact = SurfaceContact::new(&tube);
     for size in [0.02, 0.08] {
-        let u: Vec<f64> = random(tube.unknowns(), 7).iter().map(|x| size * x).collect();
+        let u: Vec<f64> = random(tube.unknowns(), 7)
+            .iter()
+            .map(|x| size * x)
+            .collect();
         assert_eq!(contact.crossing(&u), None, "{size}");
     }
 }

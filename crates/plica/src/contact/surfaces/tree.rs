@@ -62,11 +62,15 @@ impl Box3 {
 
     /// Returns the smallest a · b for points a of this box and b of another.
     pub fn least_product(&self, other: &Self) -> f64 {
-        (0..3).map(|i| {
-            let (a, b) = ([self.low[i], self.high[i]], [other.low[i], other.high[i]]);
-            (a[0] * b[0]).min(a[0] * b[1]).min(a[1] * b[0]).min(a[1] * b[1])
-        })
-        .sum()
+        (0..3)
+            .map(|i| {
+                let (a, b) = ([self.low[i], self.high[i]], [other.low[i], other.high[i]]);
+                (a[0] * b[0])
+                    .min(a[0] * b[1])
+                    .min(a[1] * b[0])
+                    .min(a[1] * b[1])
+            })
+            .sum()
     }
 
     /// Returns a box around a × b for points a of this box and b of another.
@@ -74,9 +78,10 @@ impl Box3 {
         let product = |i: usize, j: usize| {
             let (a, b) = ([self.low[i], self.high[i]], [other.low[j], other.high[j]]);
             let all = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
-            all.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            })
+            all.into_iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                    (low.min(x), high.max(x))
+                })
         };
         let component = |i: usize, j: usize| {
             let (first, second) = (product(i, j), product(j, i));
