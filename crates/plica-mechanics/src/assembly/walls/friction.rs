@@ -114,16 +114,19 @@ impl SplineTube {
                     first.push(contacts.len());
                     let place = number * self.points_of_wall() + point.number;
                     for (copy, (before, now)) in before.iter().zip(&now).enumerate() {
-                        let (Some(own), normal) = limit(*now, x) else {
+                        let ((own, normal), (at_start, _)) =
+                            (limit(*now, x), limit(*before, x_at_start));
+                        // A point that parts from the obstacle has dissipated energy, too.
+                        if own.is_none() && at_start.is_none() {
                             continue;
-                        };
+                        }
                         let slip = slips.get(&[place, copy]).copied().unwrap_or_default();
                         let from = before.1.placement.position;
                         contacts.push(FrictionContact {
                             copy,
                             normal,
-                            limit: own,
-                            limit_at_start: limit(*before, x_at_start).0.unwrap_or(0.0),
+                            limit: own.unwrap_or(0.0),
+                            limit_at_start: at_start.unwrap_or(0.0),
                             anchor: std::array::from_fn(|i| x_at_start[i] - from[i] - slip[i]),
                         });
                     }
@@ -154,7 +157,7 @@ impl SplineTube {
                     let slip = friction.slip(contact, x);
                     let size = length(slip);
                     let kept = (friction.friction.elastic / size).min(1.0);
-                    if size > 0.0 {
+                    if size > 0.0 && contact.limit > 0.0 {
                         let place = number * self.points_of_wall() + point.number;
                         slips.extend([place as f64, contact.copy as f64]);
                         slips.extend(slip.map(|s| kept * s));
