@@ -79,7 +79,7 @@ impl Shape {
             Self::Collapsed
         } else if depth.max(bulge) < Self::MIN_DEPTH {
             Self::Straight
-        } else if !contracted && depth < Self::MIN_DEPTH && bulges_once(outer) {
+        } else if !contracted && depth < Self::MIN_DEPTH && bulges_once(outer, bulge) {
             Self::Swollen
         } else if !contracted && !is_one_neck {
             Self::Collapsed
@@ -122,24 +122,29 @@ impl fmt::Display for Side {
 /// Rise of the radius after a fall, in D, from which a wall rises again.
 const MIN_RISE: f64 = 1e-3;
 
-/// Returns whether the radius rises along the wall at most once before it falls for good.
-fn bulges_once(wall: &Wall) -> bool {
-    rises_once(wall.points.iter().map(|p| p.1))
+/// The same, in heights of the largest bulge: beside a bulge a thin wall dips below its radius and rises back.
+const SECOND_BULGE: f64 = 0.1;
+
+/// Returns whether the radius rises along the wall at most once before it falls for good, to a bulge of that height.
+fn bulges_once(wall: &Wall, bulge: f64) -> bool {
+    let rise = MIN_RISE.max(SECOND_BULGE * bulge);
+    rises_once(wall.points.iter().map(|p| p.1), rise)
 }
 
 /// Returns whether the radius falls along the wall at most once before it rises for good.
 fn narrows_once(wall: &Wall) -> bool {
-    rises_once(wall.points.iter().map(|p| -p.1))
+    rises_once(wall.points.iter().map(|p| -p.1), MIN_RISE)
 }
 
-fn rises_once(mut values: impl Iterator<Item = f64>) -> bool {
+/// Returns whether values rise at most once, but for rises below a limit, before they fall for good.
+fn rises_once(mut values: impl Iterator<Item = f64>, rise: f64) -> bool {
     let (mut highest, mut lowest_since) = (f64::NEG_INFINITY, f64::INFINITY);
     values.all(|r| {
         if r > highest {
             (highest, lowest_since) = (r, r);
         }
         lowest_since = lowest_since.min(r);
-        r <= lowest_since + MIN_RISE
+        r <= lowest_since + rise
     })
 }
 
@@ -305,7 +310,7 @@ mod tests {
         let swollen = [(0.0, 0.5), (0.5, 0.56), (1.5, 0.7), (2.5, 0.56), (3.0, 0.5)];
         assert_eq!(shape(&swollen, 1.0), Shape::Swollen);
         assert_eq!(shape(&[(0.0, 0.6), (3.0, 0.6)], 1.0), Shape::Swollen);
-        for (rise, expected) in [(0.9e-3, Shape::Swollen), (1.1e-3, Shape::Collapsed)] {
+        for (rise, expected) in [(5.9e-3, Shape::Swollen), (6.1e-3, Shape::Collapsed)] {
             let rings = [
                 (0.0, 0.5),
                 (0.5, 0.56),
