@@ -15,28 +15,52 @@ impl MeridianContact {
         [0, 1].map(|i| {
             let curve = &self.faces[i].0;
             let mut surface = FaceSurface::FLAT;
-            for (e, of_element) in curve.curves(u).iter().enumerate() {
+            let mut see = |z: f64| {
+                let at = MaterialPoint {
+                    z,
+                    radius: curve.radius,
+                    angle: 0.0,
+                };
+                let s = stretch(tube, load, u, at);
+                if s < surface.stretch {
+                    (surface.stretch, surface.stretch_at) = (s, z);
+                }
+                s
+            };
+            let curves = curve.curves(u);
+            let middle = |e: usize| {
                 let (from, to) = tube.axial.element(e);
+                f64::midpoint(from, to)
+            };
+            let middles: Vec<f64> = (0..curves.len()).map(|e| see(middle(e))).collect();
+            for e in may_be_lowest(&middles) {
+                let (from, to) = tube.axial.element(e);
+                for j in 0..POINTS {
+                    see(from + (to - from) * j as f64 / (POINTS - 1) as f64);
+                }
+            }
+            for (e, of_element) in curves.iter().enumerate() {
                 let turn = turn(of_element);
                 if turn > surface.turn {
-                    (surface.turn, surface.turn_at) = (turn, f64::midpoint(from, to));
-                }
-                for j in 0..POINTS {
-                    let z = from + (to - from) * j as f64 / (POINTS - 1) as f64;
-                    let at = MaterialPoint {
-                        z,
-                        radius: curve.radius,
-                        angle: 0.0,
-                    };
-                    let s = stretch(tube, load, u, at);
-                    if s < surface.stretch {
-                        (surface.stretch, surface.stretch_at) = (s, z);
-                    }
+                    (surface.turn, surface.turn_at) = (turn, middle(e));
                 }
             }
             surface
         })
     }
+}
+
+/// Returns the elements that may hold the lowest value along a curve, from the values in their middles: that with the
+/// lowest, and all whose value less twice the difference from a neighbour is lower.
+fn may_be_lowest(middles: &[f64]) -> Vec<usize> {
+    let lowest = middles.iter().copied().fold(f64::INFINITY, f64::min);
+    let difference = |e: usize, other: Option<&f64>| other.map_or(0.0, |x| (x - middles[e]).abs());
+    let may = |e: &usize| {
+        let before = e.checked_sub(1).and_then(|i| middles.get(i));
+        let most = difference(*e, before).max(difference(*e, middles.get(e + 1)));
+        middles[*e] == lowest || middles[*e] - 2.0 * most < lowest - 1e-9
+    };
+    (0..middles.len()).filter(may).collect()
 }
 
 /// Returns λ₁² λ₂ of the elastic stretches along and around, which are principal without twist.
@@ -62,6 +86,15 @@ fn turn(curve: &Bezier) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn elements_near_the_lowest_and_steep_ones_may_hold_the_lowest_value() {
+        assert_eq!(may_be_lowest(&[1.0; 5]), [0, 1, 2, 3, 4]);
+        assert_eq!(
+            may_be_lowest(&[1.0, 1.0, 0.5, 0.6, 0.9, 0.91, 1.0]),
+            [1, 2, 3, 4]
+        );
+    }
 
     #[test]
     fn a_parabola_turns_by_the_angle_between_its_ends() {

@@ -9,7 +9,7 @@ use crate::contact::FaceSurface;
 use crate::tube::Load;
 use rayon::prelude::*;
 
-/// Points along an element at which a face is looked at, its ends included; around, in the middle.
+/// Points along an element at which its turning is looked at, its ends included; around, in the middle.
 const POINTS: usize = 5;
 
 impl SurfaceContact {
@@ -56,9 +56,9 @@ fn of_row(
         if turn > surface.turn {
             (surface.turn, surface.turn_at) = (turn, f64::midpoint(from, to));
         }
-        for j in 0..POINTS {
+        for z in [from, f64::midpoint(from, to), to] {
             let at = Point {
-                z: from + (to - from) * j as f64 / (POINTS - 1) as f64,
+                z,
                 radius: net.radius,
                 angle: around as f64 * net.element_angle(),
             };
