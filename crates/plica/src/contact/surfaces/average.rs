@@ -1,7 +1,7 @@
 //! The tangent of pairs, averaged around the tube.
 //!
 //! Averaged over the rotations of the tube by a ring and its mirror images, the tangent is block-circulant: see
-//! [`Circulant`](crate::rings::Circulant). Contact couples any two rows and any two rings.
+//! `rings::Circulant`. Contact couples any two rows and any two rings.
 
 use super::net::FaceNet;
 use super::pairs::Pair;
