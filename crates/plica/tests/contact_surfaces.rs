@@ -138,12 +138,16 @@ fn a_ring_that_flattens_closes_its_lumen_and_goes_no_further() {
         let contact = state.contact.unwrap();
         let touches = contact.faces[1].is_some();
         touching += usize::from(touches);
+        if state.energy < 1e-5 {
+            // Nearly round.
+            continue;
+        }
         let (solves, iterations) = &mut effort[usize::from(touches)];
         *solves += state.linear_solves;
         *iterations += state.inner_iterations;
     }
     assert!(touching >= 3, "{touching}");
-    // Iterations for a solve.
+    // Iterations for a solve of a flat ring.
     let [apart, together] = effort.map(|(solves, iterations)| iterations as f64 / solves as f64);
-    assert!(together < 3.0 * apart, "{apart} {together}");
+    assert!(apart > 0.0 && together < 3.0 * apart, "{apart} {together}");
 }

@@ -4,10 +4,8 @@ use super::MeridianContact;
 use super::bezier::{Bezier, Point, dot};
 use crate::assembly::{Point as MaterialPoint, SplineTube};
 use crate::contact::FaceSurface;
+use crate::contact::stretch::{POINTS, may_be_lowest};
 use crate::tube::Load;
-
-/// Points of an element at which a face is looked at, its ends included.
-const POINTS: usize = 9;
 
 impl MeridianContact {
     /// Returns stretch and turning of each face, outer and inner, of a state of a tube of one ring without twist.
@@ -50,19 +48,6 @@ impl MeridianContact {
     }
 }
 
-/// Returns the elements that may hold the lowest value along a curve, from the values in their middles: that with the
-/// lowest, and all whose value less twice the difference from a neighbour is lower.
-fn may_be_lowest(middles: &[f64]) -> Vec<usize> {
-    let lowest = middles.iter().copied().fold(f64::INFINITY, f64::min);
-    let difference = |e: usize, other: Option<&f64>| other.map_or(0.0, |x| (x - middles[e]).abs());
-    let may = |e: &usize| {
-        let before = e.checked_sub(1).and_then(|i| middles.get(i));
-        let most = difference(*e, before).max(difference(*e, middles.get(e + 1)));
-        middles[*e] == lowest || middles[*e] - 2.0 * most < lowest - 1e-9
-    };
-    (0..middles.len()).filter(may).collect()
-}
-
 /// Returns λ₁² λ₂ of the elastic stretches along and around, which are principal without twist.
 fn stretch(tube: &SplineTube, load: &Load, u: &[f64], at: MaterialPoint) -> f64 {
     let elastic = tube.sample(load, u, at).elastic.0;
@@ -86,15 +71,6 @@ fn turn(curve: &Bezier) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn elements_near_the_lowest_and_steep_ones_may_hold_the_lowest_value() {
-        assert_eq!(may_be_lowest(&[1.0; 5]), [0, 1, 2, 3, 4]);
-        assert_eq!(
-            may_be_lowest(&[1.0, 1.0, 0.5, 0.6, 0.9, 0.91, 1.0]),
-            [1, 2, 3, 4]
-        );
-    }
 
     #[test]
     fn a_parabola_turns_by_the_angle_between_its_ends() {

@@ -6,11 +6,9 @@ use super::patch::Patch;
 use super::vector::{Vector, cross, dot, length};
 use crate::assembly::{Point, SplineTube};
 use crate::contact::FaceSurface;
+use crate::contact::stretch::{POINTS, may_be_lowest};
 use crate::tube::Load;
 use rayon::prelude::*;
-
-/// Points along an element at which its turning is looked at, its ends included; around, in the middle.
-const POINTS: usize = 5;
 
 impl SurfaceContact {
     /// Returns stretch and turning of each face, outer and inner, of a state.
@@ -18,8 +16,9 @@ impl SurfaceContact {
         [0, 1].map(|i| {
             let net = &self.faces[i].0;
             let patches = net.patches(&net.positions(u));
-            let of_row = |e: usize| of_row(tube, net, (load, u), e, &patches[e * net.around..]);
-            let rows: Vec<FaceSurface> = (0..net.elements()).into_par_iter().map(of_row).collect();
+            let of_column = |around: usize| of_column(tube, net, (load, u), around, &patches);
+            let columns = (0..net.rings).into_par_iter().map(of_column);
+            let columns: Vec<FaceSurface> = columns.collect();
             let more = |a: FaceSurface, b: FaceSurface| {
                 let (stretch, stretch_at) = match b.stretch < a.stretch {
                     true => (b.stretch, b.stretch_at),
@@ -36,36 +35,47 @@ impl SurfaceContact {
                     turn_at,
                 }
             };
-            rows.into_iter().fold(FaceSurface::FLAT, more)
+            columns.into_iter().fold(FaceSurface::FLAT, more)
         })
     }
 }
 
-/// Returns the surface of the elements of the sector at one axial position.
-fn of_row(
+/// Returns the surface of the elements of the sector at one place around, in their middles.
+fn of_column(
     tube: &SplineTube,
     net: &FaceNet,
     (load, u): (&Load, &[f64]),
-    e: usize,
+    around: usize,
     patches: &[Patch],
 ) -> FaceSurface {
-    let (from, to) = tube.axial.element(e);
     let mut surface = FaceSurface::FLAT;
-    for (around, patch) in patches[..net.rings].iter().enumerate() {
-        let turn = turn(patch);
-        if turn > surface.turn {
-            (surface.turn, surface.turn_at) = (turn, f64::midpoint(from, to));
+    let mut see = |z: f64| {
+        let at = Point {
+            z,
+            radius: net.radius,
+            angle: around as f64 * net.element_angle(),
+        };
+        let stretch = stretch(tube, load, u, at);
+        if stretch < surface.stretch {
+            (surface.stretch, surface.stretch_at) = (stretch, z);
         }
-        for z in [from, f64::midpoint(from, to), to] {
-            let at = Point {
-                z,
-                radius: net.radius,
-                angle: around as f64 * net.element_angle(),
-            };
-            let stretch = stretch(tube, load, u, at);
-            if stretch < surface.stretch {
-                (surface.stretch, surface.stretch_at) = (stretch, at.z);
-            }
+        stretch
+    };
+    let middle = |e: usize| {
+        let (from, to) = tube.axial.element(e);
+        f64::midpoint(from, to)
+    };
+    let middles: Vec<f64> = (0..net.elements()).map(|e| see(middle(e))).collect();
+    for e in may_be_lowest(&middles) {
+        let (from, to) = tube.axial.element(e);
+        for j in 0..POINTS {
+            see(from + (to - from) * j as f64 / (POINTS - 1) as f64);
+        }
+    }
+    for e in 0..net.elements() {
+        let turn = turn(&patches[e * net.around + around]);
+        if turn > surface.turn {
+            (surface.turn, surface.turn_at) = (turn, middle(e));
         }
     }
     surface
