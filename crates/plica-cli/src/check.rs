@@ -171,6 +171,9 @@ fn layer_row(tube: &Tube, layer: &WallLayer, elements: usize) -> String {
         1 => text += ", 1 family of fibres",
         n => text += &format!(", {n} families of fibres"),
     }
+    if layer.material.has_tone() {
+        text += ", an active tension";
+    }
     for (name, [inner, outer]) in [
         ("around", layer.residual.around),
         ("along", layer.residual.along),

@@ -1,10 +1,10 @@
-//! A matrix with fibres: the sum of an isotropic law and of any number of families of fibres.
+//! A matrix with fibres: the sum of an isotropic law, of any number of families of fibres, and of an active tension.
 //!
 //! Evaluated eight numbers at a time through memory, like a custom law: the element kernels are not compiled for it again.
 
 use super::first_invariant::FirstInvariant;
 use super::{Demiray, Fibres, Gent, Law, Moduli, ModuliData, MooneyRivlin, NeoHookean};
-use super::{Volumetric, Yeoh};
+use super::{Tone, Volumetric, Yeoh};
 use crate::tensor::{Real, Tensor2};
 
 /// A matrix with fibres.
@@ -14,6 +14,8 @@ pub struct Composite {
     pub matrix: Matrix,
     /// The families of fibres.
     pub fibres: Vec<Fibres>,
+    /// A constant active tension.
+    pub tone: Option<Tone>,
 }
 
 /// An isotropic law.
@@ -97,10 +99,12 @@ impl Composite {
             Self {
                 matrix: shape,
                 fibres: self.fibres.clone(),
+                tone: self.tone,
             },
             Self {
                 matrix: volume,
                 fibres: vec![],
+                tone: None,
             },
         ]
     }
@@ -114,9 +118,9 @@ impl Composite {
             parallel && (a.k1, a.k2, a.dispersion) == (b.k1, b.k2, b.dispersion)
         };
         let count = |family: &Fibres| self.fibres.iter().filter(|f| same(f, family)).count();
-        self.fibres
-            .iter()
-            .all(|family| count(family) == count(&family.mirrored()))
+        let pairs = |family: &Fibres| count(family) == count(&family.mirrored());
+        let tone = self.tone.is_none_or(|tone| tone.is_mirror_symmetric());
+        tone && self.fibres.iter().all(pairs)
     }
 }
 
@@ -126,9 +130,14 @@ impl Law for Composite {
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {
         let matrix = with_matrix!(&self.matrix, law => law.energy(F));
-        self.fibres
+        let w = self
+            .fibres
             .iter()
-            .fold(matrix, |w, family| w + family.energy(F))
+            .fold(matrix, |w, family| w + family.energy(F));
+        match &self.tone {
+            Some(tone) => w + tone.energy(F),
+            None => w,
+        }
     }
 
     #[inline(always)]
@@ -136,6 +145,9 @@ impl Law for Composite {
         let mut P = with_matrix!(&self.matrix, law => law.stress(F));
         for family in &self.fibres {
             family.add_stress(F, &mut P);
+        }
+        if let Some(tone) = &self.tone {
+            tone.add_stress(F, &mut P);
         }
         P
     }
@@ -145,6 +157,9 @@ impl Law for Composite {
         let mut A = with_matrix!(&self.matrix, law => law.moduli(F));
         for family in &self.fibres {
             family.add_moduli(F, &mut A);
+        }
+        if let Some(tone) = &self.tone {
+            tone.add_moduli(F, &mut A);
         }
         A
     }

@@ -27,6 +27,7 @@ mod gent;
 mod mooney_rivlin;
 mod neo_hookean;
 mod tangent_data;
+mod tone;
 mod yeoh;
 
 pub use check::{LawError, check_law};
@@ -38,6 +39,7 @@ pub use gent::Gent;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::{NeoHookean, Volumetric};
 pub use tangent_data::{ModuliData, TangentData};
+pub use tone::Tone;
 pub use yeoh::Yeoh;
 
 use custom::ByLanes;
@@ -110,6 +112,11 @@ impl Material {
             Self::Composite(law) => law.is_mirror_symmetric(),
             Self::Custom(_) => false,
         }
+    }
+
+    /// Returns whether the law has an active tension, so that it is not free of stress at rest.
+    pub fn has_tone(&self) -> bool {
+        matches!(self, Self::Composite(law) if law.tone.is_some())
     }
 
     /// Splits the law into the part without and the part with its volumetric constant λ, to which

@@ -20,7 +20,12 @@ fn laws() -> Vec<Material> {
 }
 
 fn composite(matrix: Matrix, fibres: Vec<Fibres>) -> Material {
-    Material::Composite(Composite { matrix, fibres })
+    let tone = None;
+    Material::Composite(Composite {
+        matrix,
+        fibres,
+        tone,
+    })
 }
 
 fn yeoh() -> Matrix {
@@ -105,6 +110,56 @@ fn laws_without_fibres_along_a_plane_are_mirror_symmetric() {
         let same = (law.energy(&F) / law.energy(&DEFORMED) - 1.0).abs() < 1e-13;
         assert_eq!(same, expected, "{law:?}");
     }
+}
+
+#[test]
+fn stress_and_moduli_of_a_tone_are_the_derivatives_of_its_energy() {
+    let matrix = Matrix::NeoHookean(quadratic(0.45));
+    for (tone, symmetric) in [
+        (Tone::new(0.7, None, 0.0), true),
+        (Tone::new(0.7, Some([1.4, 0.8]), 0.0), true),
+        (Tone::new(0.7, Some([1.1, 0.6]), 0.4), false),
+        // Beyond its range there is no tension.
+        (Tone::new(0.7, Some([0.6, 0.5]), 0.4), false),
+    ] {
+        let law = Material::Composite(Composite {
+            matrix,
+            fibres: vec![],
+            tone: Some(tone),
+        });
+        assert!(law.has_tone() && law.is_mirror_symmetric() == symmetric);
+        assert!(law.energy(&Tensor2::IDENTITY).abs() < 1e-14);
+        let (P, A) = (law.stress(&DEFORMED), law.moduli(&DEFORMED));
+        let moved = |i: usize, j: usize, h: f64| {
+            let mut F = DEFORMED;
+            F.0[i][j] += h;
+            F
+        };
+        for j in 0..3 {
+            for k in 0..3 {
+                let h = 1e-5;
+                let slope = law.energy(&moved(j, k, h)) - law.energy(&moved(j, k, -h));
+                assert!((slope / (2.0 * h) - P.0[j][k]).abs() < 1e-8, "{tone:?}");
+                let (above, below) = (law.stress(&moved(j, k, h)), law.stress(&moved(j, k, -h)));
+                for i in 0..3 {
+                    for l in k..3 {
+                        let slope = (above.0[i][l] - below.0[i][l]) / (2.0 * h);
+                        assert!((slope - A[3 * k + j][3 * l + i]).abs() < 1e-7, "{tone:?}");
+                    }
+                }
+            }
+        }
+        let none = composite(matrix, vec![]).stress(&DEFORMED);
+        let is_none = none.0 == P.0;
+        assert_eq!(is_none, tone.stretches == Some([0.6, 0.5]), "{tone:?}");
+    }
+    // The nominal stress along the fibres is T at λM.
+    let tone = Tone::new(0.7, Some([1.2, 0.8]), 0.0);
+    let mut F = Tensor2::IDENTITY;
+    F.0[2][2] = 1.2;
+    let mut P = Tensor2([[0.0; 3]; 3]);
+    tone.add_stress(&F, &mut P);
+    assert!((P.0[2][2] - 0.7).abs() < 1e-14);
 }
 
 #[test]

@@ -90,10 +90,10 @@ impl Tube {
         residual.at((radius - inner) / (outer - inner))
     }
 
-    /// Returns true if a layer has residual stretches, so that the tube is not free of stress at rest.
-    pub fn has_residual_stretch(&self) -> bool {
-        let mut residual = self.layers.iter().map(|layer| &layer.residual);
-        residual.any(|residual| !residual.is_none())
+    /// Returns true if a layer has residual stretches or an active tension, so that the tube is not free of stress at rest.
+    pub fn is_stressed_at_rest(&self) -> bool {
+        let stressed = |layer: &WallLayer| !layer.residual.is_none() || layer.material.has_tone();
+        self.layers.iter().any(stressed)
     }
 
     /// Returns the largest stiffness under uniaxial strain of the layers, at small strains.

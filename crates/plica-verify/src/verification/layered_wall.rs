@@ -65,6 +65,8 @@ pub struct Layer {
     pub around: [f64; 2],
     /// θ along, likewise.
     pub along: [f64; 2],
+    /// T, λM and λ0 of a tension around the tube, T (1 − ((λM − λ)/(λM − λ0))²) where that is positive.
+    pub tone: Option<[f64; 3]>,
 }
 
 /// A tube.
@@ -113,6 +115,7 @@ impl Layer {
             fibres: vec![],
             around: [1.0; 2],
             along: [1.0; 2],
+            tone: None,
         }
     }
 
@@ -148,6 +151,10 @@ impl Layer {
             for i in 0..4 {
                 tau[i] += 2.0 * slope * (kappa * left[i] + (1.0 - 3.0 * kappa) * fibre[i]);
             }
+        }
+        if let Some([tension, most, least]) = self.tone {
+            let x = (most - st) / (most - least);
+            tau[1] += st * tension * (1.0 - x * x).max(0.0);
         }
         tau.map(|t| t / J)
     }
@@ -327,6 +334,20 @@ mod tests {
         let state = wall.inflate(13.33, 8).unwrap();
         near(state.radii[0], 1.27455486);
         near(state.radii[2], 1.42755714);
+    }
+
+    #[test]
+    fn an_active_media_has_the_radius_of_an_incompressible_one() {
+        let mut wall = carotid([0.71, 0.97, 1.10]);
+        wall.layers[0].tone = Some([50.0, 1.4, 0.8]);
+        let radius = |bulk: f64| {
+            let mut wall = wall.clone();
+            wall.layers.iter_mut().for_each(|layer| layer.bulk = bulk);
+            wall.inflate(13.33, 8).unwrap().radii[0]
+        };
+        // The error of the compressible wall is linear in 1/K.
+        let limit = 2.0 * radius(2e5) - radius(1e5);
+        assert!((limit / 1.1095284 - 1.0).abs() < 1e-7, "{limit}");
     }
 
     #[test]

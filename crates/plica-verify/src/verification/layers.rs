@@ -7,7 +7,7 @@ use super::tube_model::{TubeModel, radial_displacement, solve_from_rest};
 use plica::assembly::Point;
 use plica::equilibrium::TubeProblem;
 use plica::material::{
-    Composite, Demiray, Fibres, Gent, Material, Matrix, NeoHookean, Volumetric, Yeoh,
+    Composite, Demiray, Fibres, Gent, Material, Matrix, NeoHookean, Tone, Volumetric, Yeoh,
 };
 use plica::solve::State;
 use plica::tube::{Load, MeshLayer, ResidualStretch, WallLayer};
@@ -41,6 +41,9 @@ fn material(layer: &Layer) -> Material {
     Material::Composite(Composite {
         matrix,
         fibres: fibres.collect(),
+        tone: layer
+            .tone
+            .map(|[tension, most, least]| Tone::new(tension, Some([most, least]), 0.0)),
     })
 }
 
@@ -148,6 +151,15 @@ pub fn artery(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     for layer in &mut opened.layers {
         layer.around = [5.0 / 9.0; 2];
     }
+    let mut active = carotid([0.71, 0.97, 1.10]);
+    active.layers[0].tone = Some([50.0, 1.4, 0.8]);
+    let one = active.inflate(13.33, 8)?;
+    let (problem, state) = inflated(&model(&active, &[6, 4]), &active, 13.33, 16)?;
+    recorder.case(
+        "carotid artery, active media (T = 50 kPa, λM = 1.4, λ0 = 0.8), ℓ = 1.7, p = 13.33 kPa",
+    )?;
+    let expected = ([one.radii[0], one.radii[2]], ONE);
+    radii(recorder, 1e-7, (&problem, &state), &active, expected);
     for (wall, p, expected, name) in [
         (&wall, 5.0, [1.06225501, 1.24248370], "no residual stress"),
         (&wall, 13.33, [1.18939766, 1.35261592], "no residual stress"),

@@ -205,6 +205,8 @@ table! {
         material: Option<Material> = described("that of the whole wall", "{ neo-hookean = {} }");
         /// Families of fibres, which stiffen the law in their directions.
         fibres: Vec<Fibres> = default("[]");
+        /// A constant active tension of its muscle cells.
+        tone: Option<Tone> = described("none", "{ tension = 0.1 }");
         /// The stretches that make it free of stress when it is cut out of the tube at rest.
         residual: Residual = default("{}");
     }
@@ -223,6 +225,20 @@ table! {
         pair: bool = default("true");
         /// The dispersion κ: 0 for fibres of one direction, 1/3 for all directions alike.
         dispersion: f64 = default("0.0").from(0.0).to(0.333_333_333_333_333_3);
+    }
+}
+
+table! {
+    Tone {
+        /// The nominal stress T along the muscle cells, from rest on. It does not depend on the stages.
+        tension: f64 = required("0.1").unit(STRESS).from(0.0).to(1e15);
+        /// The angle of the cells from the circumference toward the axis.
+        angle_degrees: f64 = default("0.0").unit("degrees").from(-90.0).to(90.0);
+        /// The stretch λM of the cells at which their stress is T. It is T (1 − ((λM − λ)/(λM − λ0))²) at another stretch λ,
+        /// where that is positive.
+        best_stretch: Option<f64> = described("T at any stretch", "1.4").from(0.1).to(10.0);
+        /// The stretch λ0 below which the cells have no stress.
+        least_stretch: Option<f64> = described("T at any stretch", "0.8").from(0.0).to(10.0);
     }
 }
 

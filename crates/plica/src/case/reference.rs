@@ -33,7 +33,7 @@ const CLOSING: &str = "
   one. A muscle with a `layer` acts in that layer only; its zone may overlap those of muscles in other layers.
 - `shear_modulus` and `bulk` of the neo-Hookean law are given together, without `youngs_modulus` and `poisson_ratio`. A
   pair of families of fibres is not at 0° or 90°, where it would count one family twice. Residual stretches lie between
-  0.1 and 10. With `contact`, every family of a layer has a mirror image.
+  0.1 and 10. The two stretches of a tone are given together, `best_stretch` above `least_stretch`. With `contact`, every family of a layer has a mirror image.
 - A pressure is at most 10 E. A follower pressure needs both ends held; an axial imperfection of an end then needs that
   end to be fixed. (Where an end moves freely, the work of a follower pressure depends on the path and on the closure of
   the end. A dead load has no such restriction.)

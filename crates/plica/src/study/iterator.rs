@@ -266,8 +266,8 @@ impl Study {
                 limit_point: None,
                 step,
             })?;
-        let residual = self.plan.tube.has_residual_stretch();
-        if self.plan.tube.imperfections.is_empty() && !residual {
+        let stressed = self.plan.tube.is_stressed_at_rest();
+        if self.plan.tube.imperfections.is_empty() && !stressed {
             return Ok((path, step));
         }
         path.begin_segment(rest);

@@ -6,7 +6,7 @@ use super::{
     tube_and_load, wavy,
 };
 use crate::assembly::{Point, ReferenceTube, SplineTube};
-use crate::material::{Composite, Fibres, Law, Material, Matrix, MooneyRivlin, NeoHookean};
+use crate::material::{Composite, Fibres, Law, Material, Matrix, MooneyRivlin, NeoHookean, Tone};
 use crate::spline::transfer;
 use crate::tube::{Integration, Mesh, MeshLayer, ResidualStretch, WallLayer};
 
@@ -30,7 +30,11 @@ fn layers() -> Vec<WallLayer> {
                 around: [0.7, 0.8],
             },
             idle_muscles: vec![1],
-            ..WallLayer::of(Material::Composite(Composite { matrix, fibres }))
+            ..WallLayer::of(Material::Composite(Composite {
+                matrix,
+                fibres,
+                tone: Some(Tone::new(0.2, Some([1.5, 0.5]), 0.2)),
+            }))
         },
         WallLayer {
             share: 0.25,

@@ -2,7 +2,7 @@
 
 use super::super::keys::{self, Case};
 use super::super::problem::Problems;
-use super::material::{fibres, matrix, with_fibres};
+use super::material::{fibres, matrix, tone, with_fibres};
 use super::muscles::is_name;
 use super::zone::length;
 use crate::activation::Muscle;
@@ -47,7 +47,7 @@ pub(super) fn layers(
     if case.layers.is_empty() {
         let law = matrix(&case.material, "material", case, problems);
         check_places(case, &[], problems);
-        return vec![WallLayer::of(with_fibres(law, vec![]))];
+        return vec![WallLayer::of(with_fibres(law, vec![], None))];
     }
     let names: Vec<String> = (0..case.layers.len()).map(|i| name(case, i)).collect();
     check_names(&names, problems);
@@ -60,6 +60,10 @@ pub(super) fn layers(
             None => matrix(&case.material, "material", case, problems),
         };
         let fibres = fibres(&layer.fibres, &format!("{path}.fibres"), case, problems);
+        let tone = layer
+            .tone
+            .as_ref()
+            .and_then(|own| tone(own, &format!("{path}.tone"), case, problems));
         let key = format!("{path}.thickness");
         if share(layer) < THINNEST && problems.are_sound(&["layers"]) {
             let rule = "must be at least a thousandth of that of the wall";
@@ -68,7 +72,7 @@ pub(super) fn layers(
         WallLayer {
             name: names[i].clone(),
             share: share(layer),
-            material: with_fibres(law, fibres),
+            material: with_fibres(law, fibres, tone),
             residual: residual(&layer.residual, &path, problems),
             idle_muscles: idle(case, muscles, &names[i]),
         }

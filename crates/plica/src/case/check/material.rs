@@ -4,7 +4,8 @@ use super::super::keys::{self, Case};
 use super::super::problem::Problems;
 use super::zone::tidy;
 use crate::material::{
-    Composite, Demiray, Fibres, Gent, Material, Matrix, MooneyRivlin, NeoHookean, Volumetric, Yeoh,
+    Composite, Demiray, Fibres, Gent, Material, Matrix, MooneyRivlin, NeoHookean, Tone, Volumetric,
+    Yeoh,
 };
 
 /// Returns Young's modulus E in the units of the case, in which stresses are measured: of several layers the largest.
@@ -60,13 +61,49 @@ pub(super) fn matrix(
     }
 }
 
-/// Returns the law of a matrix with families of fibres.
-pub(super) fn with_fibres(matrix: Matrix, fibres: Vec<Fibres>) -> Material {
-    match (matrix, &fibres[..]) {
-        (Matrix::NeoHookean(law), []) => Material::NeoHookean(law),
-        (Matrix::MooneyRivlin(law), []) => Material::MooneyRivlin(law),
-        _ => Material::Composite(Composite { matrix, fibres }),
+/// Returns the law of a matrix with families of fibres and an active tension.
+pub(super) fn with_fibres(matrix: Matrix, fibres: Vec<Fibres>, tone: Option<Tone>) -> Material {
+    match (matrix, &fibres[..], tone) {
+        (Matrix::NeoHookean(law), [], None) => Material::NeoHookean(law),
+        (Matrix::MooneyRivlin(law), [], None) => Material::MooneyRivlin(law),
+        _ => Material::Composite(Composite {
+            matrix,
+            fibres,
+            tone,
+        }),
     }
+}
+
+/// Returns an active tension in E. `path` is its place in the case.
+pub(super) fn tone(
+    tone: &keys::Tone,
+    path: &str,
+    case: &Case,
+    problems: &mut Problems,
+) -> Option<Tone> {
+    let [best, least] = ["best_stretch", "least_stretch"].map(|key| format!("{path}.{key}"));
+    let is_sound = problems.are_sound(&[&best, &least]);
+    let stretches = match (tone.best_stretch, tone.least_stretch) {
+        (None, None) => None,
+        (Some(most), Some(less)) => {
+            if most < less + 1e-3 && is_sound {
+                problems.value(&best, "must be above least_stretch by 0.001 or more", "");
+            }
+            Some([most, less])
+        }
+        (Some(_), None) | (None, Some(_)) => {
+            let (given, other) = match tone.best_stretch {
+                Some(_) => (&best, "least_stretch"),
+                None => (&least, "best_stretch"),
+            };
+            if is_sound {
+                problems.key(given, format!("needs {other}"), format!("add {other}"));
+            }
+            None
+        }
+    };
+    let tension = tone.tension / youngs_modulus(case);
+    (tension > 0.0).then(|| Tone::new(tension, stretches, tone.angle_degrees.to_radians()))
 }
 
 /// Returns families of fibres with their stresses in E.

@@ -57,8 +57,19 @@ fn base(pattern: &str) -> String {
             true => "fibres = [{ k1 = 0.5, k2 = 0.8, angle_degrees = 29.0 }]\n",
             false => "",
         };
+        // One of them needs the other.
+        let tone = match pattern {
+            _ if pattern.ends_with("best_stretch") => {
+                "tone = { tension = 0.1, least_stretch = 0.8 }\n"
+            }
+            _ if pattern.ends_with("least_stretch") => {
+                "tone = { tension = 0.1, best_stretch = 1.4 }\n"
+            }
+            _ if pattern.contains(".tone.") => "tone = { tension = 0.1 }\n",
+            _ => "",
+        };
         text += &format!(
-            "[[layers]]\nname = 'media'\nthickness = 0.03\n{law}{fibres}\
+            "[[layers]]\nname = 'media'\nthickness = 0.03\n{law}{fibres}{tone}\
              [[layers]]\nname = 'adventitia'\nthickness = 0.03\n"
         );
     } else if !law.is_empty() {

@@ -36,6 +36,7 @@ elements = 1
 material = { yeoh = { c1 = 4.0, c2 = 2.0, c3 = 1.0, bulk = 512.0 } }
 fibres = [{ k1 = 8.0, k2 = 0.5, angle_degrees = 30.0, dispersion = 0.125 }]
 residual = { around = [0.875, 1.125] }
+tone = { tension = 2.0, best_stretch = 1.5, least_stretch = 0.75 }
 [muscles.ring]
 direction = "circular"
 zone = [56.0, 72.0]

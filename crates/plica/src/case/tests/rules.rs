@@ -157,6 +157,12 @@ const OF_RING: &[Rule] = &[
         &["[0.0999, 1.0]", "[1.0, 10.01]", "[-1.0, 1.0]"],
     ),
     rule(
+        "layers[1].tone.best_stretch",
+        "layers = [{ thickness = 0.06, tone = { tension = 0.1, least_stretch = 0.8, best_stretch = @ } }]",
+        &["0.802", "1.4"],
+        &["0.8", "0.7"],
+    ),
+    rule(
         "layers[1].fibres[1].angle_degrees",
         "layers = [{ thickness = 0.06, fibres = [{ k1 = 1.0, k2 = 1.0, angle_degrees = @ }] }]",
         &["0.1", "-89.9", "45.0"],
