@@ -135,7 +135,7 @@ impl Fibres {
                         let entry = &mut A[3 * k + j][3 * l + i];
                         *entry = (curvature * H.0[j][k]).mul_add(H.0[i][l], *entry);
                         if i == j {
-                            *entry = *entry + same;
+                            *entry += same;
                         }
                     }
                 }

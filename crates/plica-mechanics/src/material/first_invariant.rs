@@ -79,7 +79,7 @@ pub(super) fn moduli<S: Real>(law: &impl FirstInvariant, F: &Tensor2<S>) -> Modu
                     let entry = &mut A[3 * k + j][3 * l + i];
                     *entry = (curvature * F.0[j][k]).mul_add(F.0[i][l], *entry);
                     if i == j && k == l {
-                        *entry = *entry + excess;
+                        *entry += excess;
                     }
                 }
             }

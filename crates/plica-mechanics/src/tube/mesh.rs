@@ -84,7 +84,7 @@ impl Mesh {
             from..first
         };
         match &self.layers[..] {
-            [] => vec![0..self.elements()[2]],
+            [] => std::iter::once(0..self.elements()[2]).collect(),
             layers => layers.iter().map(range).collect(),
         }
     }

@@ -248,11 +248,11 @@ impl LayeredWall {
                 secant(guess, guess * 1.0001, outside)
             };
             if of_one_hand {
-                let torque = |twist: f64| {
+                let torque = |twist: f64| -> Result<f64, NoEquilibrium> {
                     let r = radius(twist, r)?;
                     Ok(self.integrate(r, twist, p)?.1[1])
                 };
-                let torque = |twist| torque(twist).unwrap_or_else(|_: NoEquilibrium| f64::NAN);
+                let torque = |twist| torque(twist).unwrap_or(f64::NAN);
                 twist = secant(twist, twist + 1e-4 / self.inner, torque)?;
             }
             r = radius(twist, r)?;
