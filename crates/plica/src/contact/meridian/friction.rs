@@ -99,7 +99,26 @@ impl MeridianContact {
                     limit_at_start: nearest(limits.get(&number), place(pair)),
                 }
             };
-            now.0[f].iter().map(of_pair).collect()
+            // Pairs that part have dissipated energy, too.
+            let mut places: BTreeMap<usize, Vec<[f64; 2]>> = BTreeMap::new();
+            for pair in &now.0[f] {
+                let of_pair = [place(pair), 1.0];
+                places
+                    .entry(number(quadrature, pair))
+                    .or_default()
+                    .push(of_pair);
+            }
+            let parted = then.0[f].iter().filter(|pair| {
+                let own = places.get(&number(quadrature, pair));
+                nearest(own, place(pair)) == 0.0
+            });
+            let curves_now = curve.curves(u);
+            let parted = parted.map(|pair| FrictionPair {
+                tangent: unit(curves_now[pair.y.0].at(pair.places[1]).slope),
+                limit: 0.0,
+                ..of_pair(pair)
+            });
+            now.0[f].iter().map(of_pair).chain(parted).collect()
         };
         SelfFriction {
             faces: faces.map(of_face).collect(),
@@ -116,7 +135,7 @@ impl MeridianContact {
                 let slip = pair
                     .slip(&curves)
                     .clamp(-friction.elastic, friction.elastic);
-                if slip != 0.0 {
+                if slip != 0.0 && pair.limit > 0.0 {
                     slips.extend([
                         f as f64,
                         pair.number as f64,
