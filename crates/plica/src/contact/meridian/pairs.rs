@@ -109,6 +109,9 @@ pub fn pairs_of_point(
 ) {
     let at = a.at(xi);
     let x = at.position;
+    if b.differences().all(|d| dot(at.slope, d) > 0.0) || is_beyond(b, x, barrier.range) {
+        return;
+    }
     local_minima(b, x, &mut |eta| {
         let y = b.at(eta);
         let from_y = minus(x, y.position);
@@ -131,6 +134,14 @@ pub fn pairs_of_point(
             barrier: barrier.at(gap),
         });
     });
+}
+
+/// Returns whether the box around the control points of a curve is farther from x than a range.
+fn is_beyond(curve: &Bezier, x: Point, range: f64) -> bool {
+    (0..2).any(|i| {
+        let points = || curve.points().iter().map(|p| p[i]);
+        points().all(|p| p > x[i] + range) || points().all(|p| p < x[i] - range)
+    })
 }
 
 /// Returns whether all normals of two curves are less than 90° apart, judged by their control points.
