@@ -47,8 +47,11 @@ pub struct SurfaceContact {
     /// Sectors of the whole tube.
     repeats: f64,
     /// The last state whose pairs were found, and these: forces and tangent of a state follow each other.
-    last: Arc<Mutex<Option<(Vec<f64>, SurfacePairs)>>>,
+    last: Arc<Mutex<Option<Found>>>,
 }
+
+/// A state and its pairs.
+type Found = (Vec<f64>, SurfacePairs);
 
 /// The pairs of a state, by face.
 #[derive(Clone, Debug)]
