@@ -35,9 +35,9 @@ pub struct WallContactRow {
     pub from: Option<f64>,
     /// Axial position at rest of the last point in contact.
     pub to: Option<f64>,
-    /// Smallest surface stretch s = λ₁² λ₂: [`FaceSurface::stretch`].
+    /// Smallest surface stretch s = λ₁² λ₂: [`FaceSurface::stretch`](crate::contact::FaceSurface::stretch).
     pub surface_stretch: Option<f64>,
-    /// Largest angle by which the wall turns within one element: [`FaceSurface::turn`].
+    /// Largest angle by which the wall turns within one element: [`FaceSurface::turn`](crate::contact::FaceSurface::turn).
     pub element_turn_deg: Option<f64>,
     /// Sum of the sizes of the friction forces between the two sides; this and the next column exist only with friction.
     pub friction_force: Option<f64>,
