@@ -88,7 +88,8 @@ fn table() -> (Vec<String>, Uses) {
 
 /// Returns the modules that a file names in paths from the root of a library, except in tests and comments.
 fn used_by(file: &Path) -> BTreeSet<String> {
-    let is_tests = file.ends_with("tests.rs") || file.parent().unwrap().ends_with("tests");
+    let name = file.file_name().unwrap().to_str().unwrap();
+    let is_tests = name.ends_with("tests.rs") || file.parent().unwrap().ends_with("tests");
     if is_tests {
         return BTreeSet::new();
     }

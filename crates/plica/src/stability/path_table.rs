@@ -41,17 +41,23 @@ impl PathStability {
         let states = self.coverage().states.len();
         let numbers = self.coverage().list();
         let highest = self.highest;
+        let line = |page: &mut String, name: &str, value: &str| {
+            let _ = writeln!(page, "  {name:<22} {value}");
+        };
         if self.changes.is_empty() {
             let unstable = |s: &TestedState| s.modes.iter().any(|mode| mode.negative > 0);
-            return if self.states.iter().any(unstable) {
-                format!(
-                    "  all {states} states ({numbers}) are unstable to the same of the circumferential modes 0 to {highest}\n"
-                )
-            } else {
-                format!(
-                    "  all {states} states ({numbers}) are stable to circumferential modes 0 to {highest}\n"
-                )
+            let verdict = match self.states.iter().any(unstable) {
+                true => "unstable to the same of the circumferential modes",
+                false => "stable to circumferential modes",
             };
+            let _ = writeln!(
+                page,
+                "  all {states} states ({numbers}) are {verdict} 0 to {highest}"
+            );
+            if self.leaves_out_friction {
+                line(&mut page, "left out", "friction");
+            }
+            return page;
         }
         let stage = |change: &StabilityChange| change.stage.chars().count();
         let width = self.changes.iter().map(stage).max().unwrap_or(0).max(5);
@@ -101,9 +107,6 @@ impl PathStability {
                 UnstableMode::Circumferential(n).describe()
             )
         });
-        let line = |page: &mut String, name: &str, value: &str| {
-            let _ = writeln!(page, "  {name:<22} {value}");
-        };
         line(&mut page, "first loss", &first);
         let tested = format!("{states} states ({numbers}), circumferential modes 0 to {highest}");
         line(&mut page, "tested", &tested);
