@@ -221,7 +221,7 @@ table! {
         k2: f64 = required("0.8").from(0.0).to(1e6);
         /// The angle from the circumference toward the axis: 0 is around the tube, 90 along it.
         angle_degrees: f64 = required("30.0").unit("degrees").from(-90.0).to(90.0);
-        /// Whether there is a second family at minus this angle. One family alone twists the tube.
+        /// True if there is a second family at minus this angle. One family alone twists the tube.
         pair: bool = default("true");
         /// The dispersion κ: 0 for fibres of one direction, 1/3 for all directions alike.
         dispersion: f64 = default("0.0").from(0.0).to(0.333_333_333_333_333_3);

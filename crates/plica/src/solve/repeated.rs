@@ -19,7 +19,7 @@ const REDUCTION: (usize, f64) = (4, 0.8);
 ///
 /// # Errors
 ///
-/// That of `again`, or [`Failure::Friction`] after 20 repetitions, or if they do not reduce the residual.
+/// The error of `again`; [`Failure::Friction`] after 20 repetitions, or if they do not reduce the residual.
 pub(super) fn repeated<P: Equilibrium>(
     problem: &mut P,
     load: &P::Load,

@@ -84,7 +84,7 @@ pub struct PathStability {
     pub states: Vec<TestedState>,
     /// Changes in the order of the path.
     pub changes: Vec<StabilityChange>,
-    /// Whether the run has friction, which the verdicts leave out.
+    /// True if the run has friction, which the verdicts leave out.
     pub leaves_out_friction: bool,
 }
 

@@ -42,7 +42,7 @@ pub struct Spectra {
     pub shown: Option<StateWithModes>,
     /// Files of the modes, relative to the run directory.
     pub modes: Vec<String>,
-    /// Whether the run has friction, which the eigenvalues leave out.
+    /// True if the run has friction, which the eigenvalues leave out.
     pub leaves_out_friction: bool,
 }
 

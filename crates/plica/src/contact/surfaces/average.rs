@@ -180,7 +180,7 @@ impl AverageContact {
     }
 }
 
-/// How the displacements of the rings of both elements around enter a pair: by function around and component.
+/// Contributions of the rings of both elements around to the five numbers of a pair: by function around and component.
 struct Columns {
     at_x: [[Column; 3]; 6],
     /// With the values of the functions along the tube at y, and with their slopes.
