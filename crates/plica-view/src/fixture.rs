@@ -18,6 +18,8 @@ pub fn short() -> Tube {
         ends: [Support::Free; 2],
         imperfections: vec![],
         obstacles: vec![],
+        patches: vec![],
+        foundations: vec![],
     }
 }
 

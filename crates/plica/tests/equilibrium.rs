@@ -20,6 +20,7 @@ fn muscle(direction: Direction, zone: [f64; 2], profile: Profile) -> Muscle {
         direction,
         zone,
         profile,
+        sector: None,
     }
 }
 
@@ -39,6 +40,8 @@ fn tube(length: f64, muscles: Vec<Muscle>, ends: Support) -> Tube {
         ends: [ends; 2],
         imperfections: vec![],
         obstacles: vec![],
+        patches: vec![],
+        foundations: vec![],
     }
 }
 

@@ -22,6 +22,8 @@ fn tube(length: f64, poisson_ratio: f64) -> Tube {
         ends: [Support::Sliding; 2],
         imperfections: vec![],
         obstacles: vec![],
+        patches: vec![],
+        foundations: vec![],
     }
 }
 

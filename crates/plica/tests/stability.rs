@@ -25,6 +25,8 @@ fn passive(
         imperfections: vec![],
         obstacles: vec![],
         ends: [ends; 2],
+        patches: vec![],
+        foundations: vec![],
     };
     let mesh = Mesh {
         axial,

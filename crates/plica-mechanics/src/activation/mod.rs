@@ -14,8 +14,10 @@
 //! | s | profile, 0 to 1 | – | [`Profile::value`] |
 //! | a, b | ends of the zone | D | [`Muscle::zone`] |
 
+mod angular_sector;
 mod profile;
 
+pub use angular_sector::{AngularSector, smooth_rise};
 pub use profile::Profile;
 
 /// The direction in which a muscle shortens or lengthens the wall.
@@ -38,10 +40,12 @@ pub struct Muscle {
     pub zone: [f64; 2],
     /// Distribution of the activity over the zone.
     pub profile: Profile,
+    /// Sector of the circumference that it acts in; none for all around. Its function multiplies θ − 1.
+    pub sector: Option<AngularSector>,
 }
 
 impl Muscle {
-    /// Returns the grown stretch θ at z for a target ratio (Dmin/D or Lmax/L) and the length of the tube.
+    /// Returns the grown stretch θ at z for a target ratio (Dmin/D or Lmax/L) and the length of the tube, in its sector.
     pub fn stretch(&self, z: f64, ratio: f64, length: f64) -> f64 {
         let [a, b] = self.zone;
         if z < a || z > b {
@@ -81,6 +85,7 @@ mod tests {
             direction,
             zone: [0.5, 1.0],
             profile,
+            sector: None,
         }
     }
 

@@ -4,6 +4,7 @@ use super::SplineTube;
 use super::axial;
 use super::circumferential;
 use super::dispatch::with_degree;
+use super::modified_wall::{ElementGrowth, ModifiedWall};
 use super::stress_free::StressFreeStretch;
 use super::tables::{AxialBatch, CircumferentialPoint, Layer};
 use crate::tensor::{LANES, Lanes};
@@ -18,7 +19,7 @@ impl SplineTube {
     pub(super) fn axial_input<'a>(
         &'a self,
         batch: &'a AxialBatch,
-        (inverse_stretch, stress_free): (&'a [(Lanes, Lanes)], Option<&'a [StressFreeStretch]>),
+        (growth, stress_free): (&'a ElementGrowth, Option<&'a [StressFreeStretch]>),
         u: &'a [f64],
     ) -> axial::Input<'a> {
         let m = self.row_size();
@@ -29,8 +30,8 @@ impl SplineTube {
             around: &self.around,
             points: self.wall.functions(),
             rings: self.sector.rings,
-            inverse_stretch,
-            stress_free,
+            inverse_stretch: &growth.inverse_stretch,
+            modified: ModifiedWall::of(stress_free, &growth.patches),
             u: &u[batch.first * m..(batch.first + rows) * m],
         }
     }
@@ -40,7 +41,7 @@ impl SplineTube {
         let at = |z: &Lanes| {
             let (mut along, mut around) = (Lanes::default(), Lanes::default());
             for l in 0..z.0.len() {
-                // Angle zero represents all; axial batches neglect variation around the tube.
+                // Angle zero represents all; where muscles vary around the tube, see `growth_along`.
                 let (theta_z, theta_t) = self.tube.stretches_at(self.wall_layer, z.0[l], 0.0, load);
                 along.0[l] = 1.0 / theta_z;
                 around.0[l] = 1.0 / theta_t;
@@ -60,11 +61,16 @@ impl SplineTube {
     pub(super) fn circumferential_input<'a>(
         &'a self,
         (number, lane): (usize, usize),
-        inverse_stretch: &'a [(Lanes, Lanes)],
+        growth: &'a ElementGrowth,
         u: &'a [f64],
     ) -> circumferential::Input<'a> {
         let batch = &self.batches[number];
         let row = self.padded_row_size();
+        let stress_free = self.stress_free_shape.as_ref().map(|imperfect| {
+            let points = &imperfect.points[number];
+            let len = points.len() / batch.elements;
+            &points[lane * len..][..len]
+        });
         circumferential::Input {
             batch,
             lane,
@@ -72,17 +78,13 @@ impl SplineTube {
             around: &self.around,
             points: self.wall.functions(),
             rings: &self.padded_rings,
-            inverse_stretch,
-            stress_free: self.stress_free_shape.as_ref().map(|imperfect| {
-                let points = &imperfect.points[number];
-                let len = points.len() / batch.elements;
-                &points[lane * len..][..len]
-            }),
+            inverse_stretch: &growth.inverse_stretch,
+            modified: ModifiedWall::of(stress_free, &growth.patches),
             u: &u[(batch.first + lane) * row..][..(self.degree() + 1) * row],
         }
     }
 
-    /// Returns 1/θζ and 1/θη at the points of an element along the tube. If a muscle varies around
+    /// Returns 1/θζ and 1/θη at the points of an element along the tube. If a muscle may vary around
     /// the tube, it returns them for every point around and every vector of elements too.
     pub(super) fn inverse_stretch_around(
         &self,
@@ -100,16 +102,14 @@ impl SplineTube {
         };
         let mut stretch = vec![];
         for z in batch.z.iter().map(|z| z.0[lane]) {
-            if !self.tube.muscles_vary_around() {
+            if !self.tube.muscles_are_modified() {
                 stretch.push(inverse(&|_| self.tube.stretches(self.wall_layer, z, load)));
                 continue;
             }
             for point in around {
                 for v in 0..self.padded_rings.vectors() {
                     stretch.push(inverse(&|lane| {
-                        let element = (v * LANES + lane) % self.sector.rings;
-                        // The middle of element 0 is at angle zero.
-                        let phi = (element as f64 + point.s - 0.5) * self.sector.angle();
+                        let phi = self.angle_at(v * LANES + lane, point);
                         self.tube.stretches_at(self.wall_layer, z, phi, load)
                     }));
                 }
@@ -125,7 +125,8 @@ impl SplineTube {
         batch: &AxialBatch,
         displacement: &[f64],
     ) -> Vec<StressFreeStretch> {
-        let perfect = self.axial_input(batch, (&[], None), displacement);
+        let no_growth = ElementGrowth::default();
+        let perfect = self.axial_input(batch, (&no_growth, None), displacement);
         with_degree!(self, axial::stress_free_stretch, &perfect)
     }
 
@@ -161,7 +162,7 @@ impl SplineTube {
             points: self.wall.functions(),
             rings: &self.padded_rings,
             inverse_stretch: &[],
-            stress_free: None,
+            modified: None,
             u: &displacement[(batch.first + lane) * row..][..(self.degree() + 1) * row],
         };
         with_degree!(self, circumferential::stress_free_stretch, &perfect)

@@ -92,8 +92,10 @@ impl BoundaryConditions {
             .iter()
             .flat_map(|&z| r.iter().map(move |&r| [z, r]))
             .collect();
-        let constrained =
-            [0, 1].map(|n| constrained_unknowns(rigid_motions_in_harmonic(n, &points), &at_ends));
+        let constrained = [0, 1].map(|n| match tube.is_held_by_foundations(n) {
+            true => vec![],
+            false => constrained_unknowns(rigid_motions_in_harmonic(n, &points), &at_ends),
+        });
         let mut constraints = vec![];
         if rings == 1 {
             for &unknown in &constrained[0] {

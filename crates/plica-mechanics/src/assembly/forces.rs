@@ -17,8 +17,10 @@ pub struct Forces {
     pub energy: f64,
     /// ∫ w dV₀ of the whole tube, over the ungrown volume.
     pub energy_ungrown: f64,
-    /// Π of the whole tube: W plus the potential of the pressures, zero at rest.
+    /// Π of the whole tube: W plus the potential of the pressures, zero at rest, and the energy of the foundations.
     pub potential: f64,
+    /// Energy of the foundations, of the whole tube.
+    pub foundation: f64,
     /// Energy of contact with obstacles, of the whole tube.
     pub contact: f64,
     /// Potential of friction in a load step, of the whole tube; not part of Π.
@@ -80,9 +82,9 @@ impl SplineTube {
     fn elastic_forces(&self, load: &Load, u: &[f64]) -> Result<Forces, Inverted> {
         let batches: Vec<BatchForces> = if self.sector.rings < CIRCUMFERENTIAL_BATCH_RINGS {
             let forces = |(number, batch): (usize, &AxialBatch)| {
-                let stretch = self.inverse_stretch(batch, load);
+                let growth = self.growth_along(batch, load);
                 let shape = self.stress_free_in_axial_batch(number);
-                let input = self.axial_input(batch, (&stretch, shape.as_deref()), u);
+                let input = self.axial_input(batch, (&growth, shape.as_deref()), u);
                 with_law_and_degree!(self, self.law, axial::forces, &input)
             };
             self.batches.par_iter().enumerate().map(forces).collect()
@@ -140,8 +142,8 @@ impl SplineTube {
         let mut residual = vec![0.0; (batch.elements + self.degree()) * row];
         let mut sum = BatchForces::default();
         for lane in 0..batch.elements {
-            let stretch = self.inverse_stretch_around(batch, lane, &self.around, load);
-            let input = self.circumferential_input((number, lane), &stretch, u);
+            let growth = self.growth_around(batch, lane, &self.around, load);
+            let input = self.circumferential_input((number, lane), &growth, u);
             let residual = &mut residual[lane * row..][..(self.degree() + 1) * row];
             let part =
                 with_law_and_degree!(self, self.law, circumferential::forces, &input, residual);

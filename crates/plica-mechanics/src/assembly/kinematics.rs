@@ -16,7 +16,7 @@ pub type Vector<S> = [S; 3];
 /// - Fe around   = (∂x/∂s / (R b) − ∂x/∂R a / (b |C|)) / θη
 /// - Fe outwards = ∂x/∂R / |C|
 ///
-/// In an imperfect wall an [`ImperfectionMap`] follows.
+/// In an imperfect or patched wall an [`ImperfectionMap`] follows.
 #[derive(Clone, Copy)]
 pub struct GradientMap<S> {
     along: S,
@@ -53,11 +53,21 @@ impl<S: Real> GradientMap<S> {
         self
     }
 
-    /// Converts a volume dV₀ of the perfect tube to the stress-free shape of the wall.
+    /// Converts a volume dV₀ of the perfect tube to the stress-free shape of the wall, and multiplies it by the factor of
+    /// patches on the energy.
     #[inline(always)]
     pub fn stress_free_volume(&self, volume: S) -> S {
         match &self.imperfection_map {
             Some(map) => map.volume(volume),
+            None => volume,
+        }
+    }
+
+    /// Converts a volume grown by the muscles to that grown by patches too.
+    #[inline(always)]
+    pub fn grown_volume(&self, volume: S) -> S {
+        match &self.imperfection_map {
+            Some(map) => map.grown(volume),
             None => volume,
         }
     }

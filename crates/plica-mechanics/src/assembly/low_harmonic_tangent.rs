@@ -4,6 +4,7 @@ use super::SplineTube;
 use super::circumferential::{self, AVERAGED};
 use super::dispatch::{with_degree, with_law_and_degree};
 use super::low_harmonics::{LayerPoints, LowHarmonics, POINTS_THROUGH, THROUGH};
+use super::modified_wall::ModifiedWall;
 use super::tables::AxialBatch;
 use crate::material::Material;
 use crate::matrix::{BlockBanded, multiply};
@@ -116,7 +117,7 @@ impl SplineTube {
     ) {
         let (k, padded) = (self.sector.rings, self.padded_rings.padded);
         let row = self.wall.functions() * 3 * padded;
-        let stretch = self.inverse_stretch_around(batch, lane, &low.middle, load);
+        let growth = self.growth_around(batch, lane, &low.middle, load);
         let shape = displacement
             .map(|u| self.stress_free_around(batch, lane, &layer.points, &low.middle, u));
         let input = circumferential::Input {
@@ -126,8 +127,8 @@ impl SplineTube {
             around: &low.middle,
             points: self.wall.functions(),
             rings: &self.padded_rings,
-            inverse_stretch: &stretch,
-            stress_free: shape.as_deref(),
+            inverse_stretch: &growth.inverse_stretch,
+            modified: ModifiedWall::of(shape.as_deref(), &growth.patches),
             u: &u[(batch.first + lane) * row..][..(self.degree() + 1) * row],
         };
         let mut moduli = vec![0.0; low.points_along * POINTS_THROUGH * AVERAGED * padded];

@@ -4,20 +4,20 @@ use super::SplineTube;
 use super::axial::BatchTangent;
 use super::circumferential::{self, AVERAGED, PackedTangentData};
 use super::dispatch::{with_degree, with_law_and_degree};
+use super::modified_wall::ElementGrowth;
 use super::tables::AxialBatch;
 use super::walls::WallTangent;
 use crate::material::Material;
 use crate::matrix::BlockBanded;
 use crate::rings::Circulant;
-use crate::tensor::Lanes;
 use crate::tube::Load;
 use rayon::prelude::*;
 
 /// Tangent stiffness at a state in the form that products need, and its average around the tube.
 #[derive(Clone, Debug, Default)]
 pub struct MatrixFreeTangent {
-    /// 1/θζ and 1/θη, by element along the tube.
-    stretch: Vec<Vec<(Lanes, Lanes)>>,
+    /// Growth, by element along the tube.
+    growth: Vec<ElementGrowth>,
     /// By batch.
     tangent_data: Vec<PackedTangentData>,
     pub(super) walls: Option<WallTangent>,
@@ -49,12 +49,12 @@ impl SplineTube {
     fn linearise_elastic(&self, load: &Load, u: &[f64], at: &mut MatrixFreeTangent) {
         let u = self.padded_rings.pad(u);
         let lanes = |batch: &AxialBatch| {
-            let of = |lane| self.inverse_stretch_around(batch, lane, &self.around, load);
+            let of = |lane| self.growth_around(batch, lane, &self.around, load);
             (0..batch.elements).map(of).collect::<Vec<_>>()
         };
-        at.stretch = self.batches.iter().flat_map(lanes).collect();
+        at.growth = self.batches.iter().flat_map(lanes).collect();
         at.tangent_data.resize(self.batches.len(), vec![]);
-        let stretch = &at.stretch;
+        let growth = &at.growth;
         let functions = self.degree() + 1;
         let element = functions.pow(3) * self.layers.len() * AVERAGED;
         let offsets: Vec<Vec<BatchTangent>> = (&self.batches, &mut at.tangent_data)
@@ -72,8 +72,8 @@ impl SplineTube {
                 tangent_data.resize(len * batch.elements, [0.0; 16]);
                 let mut averaged = vec![0.0; element * batch.elements];
                 for lane in 0..batch.elements {
-                    let stretch = &stretch[batch.first + lane];
-                    let input = self.circumferential_input((number, lane), stretch, &u);
+                    let growth = &growth[batch.first + lane];
+                    let input = self.circumferential_input((number, lane), growth, &u);
                     let tangent_data = &mut tangent_data[lane * len..][..len];
                     let averaged = &mut averaged[lane * element..][..element];
                     with_law_and_degree!(
@@ -121,8 +121,8 @@ impl SplineTube {
                 let mut out = vec![0.0; (batch.elements + self.degree()) * row];
                 let len = tangent_data.len() / batch.elements;
                 for lane in 0..batch.elements {
-                    let stretch = &at.stretch[batch.first + lane];
-                    let input = self.circumferential_input((number, lane), stretch, v);
+                    let growth = &at.growth[batch.first + lane];
+                    let input = self.circumferential_input((number, lane), growth, v);
                     let tangent_data = &tangent_data[lane * len..][..len];
                     let out = &mut out[lane * row..][..(self.degree() + 1) * row];
                     with_law_and_degree!(

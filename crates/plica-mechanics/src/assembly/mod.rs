@@ -46,6 +46,7 @@ mod kinematics;
 mod low_harmonic_tangent;
 mod low_harmonics;
 mod matrix_free_tangent;
+mod modified_wall;
 mod place;
 mod positions;
 mod reference;

@@ -57,7 +57,7 @@ pub(super) struct ElementPoint {
     h: Vec<Vector>,
     /// dV per unit of (z, R, s), s the fraction of the element around.
     volume: f64,
-    /// Volume free of residual stretch over dV.
+    /// Volume free of residual stretch over dV, times the factor of patches on the energy.
     residual: f64,
     /// Fp⁻¹; of an imperfect tube B⁻¹ Fp⁻¹, see [`ReferenceTube::at`]. Its columns are directions of the wall (along,
     /// outwards, around), to which laws with fibres refer.
@@ -266,10 +266,13 @@ impl<'a> ReferenceTube<'a> {
 
         // The residual stretch is growth that is always there: dV is that of the wall free of it.
         let layer = self.wall_layer(element);
-        let (theta_z, theta_t) = spline.tube.stretches(layer, z, self.load);
+        let phi = (element[2] as f64 + s - 0.5) * spline.sector.angle();
+        let (theta_z, theta_t) = spline.tube.stretches_at(layer, z, phi, self.load);
+        let through = spline.tube.growth_through(layer, z, phi, self.load);
+        let stiffness = spline.tube.stiffness_factor(layer, z, phi);
         let residual = spline.tube.residual_stretch(layer, radius);
         let [grown_z, grown_t] = [theta_z * residual[0], theta_t * residual[1]];
-        let shrink = [1.0 / grown_z, 1.0, 1.0 / grown_t];
+        let shrink = [1.0 / grown_z, 1.0 / through, 1.0 / grown_t];
         let shrink = Tensor2([0, 1, 2].map(|i| [0, 1, 2].map(|j| polar.0[i][j] * shrink[j])));
         let B_inverse = B.cofactor().transpose().scaled(1.0 / B.determinant());
         let Fp_inverse = B_inverse.times(shrink);
@@ -281,9 +284,9 @@ impl<'a> ReferenceTube<'a> {
                 .map(|g| apply(&Fp_inverse_transpose, g))
                 .collect(),
             volume: D.determinant() * B.determinant(),
-            residual: residual[0] * residual[1],
+            residual: residual[0] * residual[1] * stiffness,
             Fp_inverse,
-            growth: theta_z * theta_t,
+            growth: theta_z * theta_t * through,
         }
     }
 

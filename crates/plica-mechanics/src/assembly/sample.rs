@@ -39,6 +39,8 @@ pub struct Sample {
     pub stress: Tensor2,
     /// Growth stretches θζ along and θη around: of the muscles, times the residual stretches.
     pub grown: [f64; 2],
+    /// Growth stretch θξ through the wall, of patches.
+    pub grown_through: f64,
     /// Angle of the middle of the point's element, in radians.
     pub element_angle: f64,
 }
@@ -154,6 +156,7 @@ impl SplineTube {
             let A = gradient_map.elastic_gradient(point, at.radius, gradients);
             ImperfectionMap::from_gradient(A, inverse_along, inverse_around)
         });
+        let (imperfection_map, [through, stiffness]) = self.with_patch(imperfection_map, load, at);
         let gradient_map =
             GradientMap::new(point, at.radius, [inverse_along, inverse_around], [1.0; 2]);
         let gradient_map = gradient_map.with_imperfection(imperfection_map);
@@ -163,7 +166,8 @@ impl SplineTube {
         // From the element's frame to the laboratory.
         let (sin, cos) = (element * alpha).sin_cos();
         let rotated = |x: [f64; 3]| [x[0], x[1] * cos - x[2] * sin, x[1] * sin + x[2] * cos];
-        let (energy_density, P) = (self.law.energy(&Fe), self.law.stress(&Fe));
+        let energy_density = stiffness * self.law.energy(&Fe);
+        let P = self.law.stress(&Fe).scaled(stiffness);
         let jacobian = Fe.determinant();
         Sample {
             reference: rotated(reference),
@@ -172,9 +176,32 @@ impl SplineTube {
             energy_density,
             stress: P.times(Fe.transpose()).scaled(1.0 / jacobian), // σ = P Feᵀ / det Fe
             grown: [theta_z, theta_t],
+            grown_through: through,
             element_angle: element * alpha,
             elastic: Fe,
         }
+    }
+}
+
+impl SplineTube {
+    /// Adds patches to the map from F Fp⁻¹ to Fe at a point, and returns their growth through the wall and their factor on
+    /// the energy.
+    #[inline(always)]
+    fn with_patch(
+        &self,
+        map: Option<ImperfectionMap<f64>>,
+        load: &Load,
+        at: Point,
+    ) -> (Option<ImperfectionMap<f64>>, [f64; 2]) {
+        let (tube, layer) = (&self.tube, self.wall_layer);
+        if !tube.has_patches(layer, load) {
+            return (map, [1.0; 2]);
+        }
+        let through = tube.growth_through(layer, at.z, at.angle, load);
+        let stiffness = tube.stiffness_factor(layer, at.z, at.angle);
+        let map = map.unwrap_or(ImperfectionMap::identity(1.0));
+        let map = map.with_patch([1.0, 1.0 / through, 1.0], stiffness);
+        (Some(map), [through, stiffness])
     }
 }
 

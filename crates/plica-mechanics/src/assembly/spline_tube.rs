@@ -304,11 +304,14 @@ impl SplineTube {
         self.ring_boundary_conditions.prescribed_at_ends()
     }
 
-    /// Returns the infinitesimal rigid motions of circumferential harmonic n that the ends permit,
+    /// Returns the infinitesimal rigid motions of circumferential harmonic n that ends and foundations permit,
     /// at an axisymmetric state without twist, as displacements like those of
     /// [`SplineTube::tangent_in_harmonic`].
     pub fn rigid_motions_in_harmonic(&self, u: &[f64], n: usize) -> Vec<Vec<f64>> {
         assert!(self.sector.rings == 1);
+        if self.tube.is_held_by_foundations(n) {
+            return vec![];
+        }
         let (rows, points) = (self.axial.greville(), self.wall.greville());
         let points: Vec<[f64; 2]> = u
             .chunks_exact(3)

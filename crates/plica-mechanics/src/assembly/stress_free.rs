@@ -33,12 +33,14 @@ const SMALL: f64 = 1e-20;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StressFreeStretch([Lanes; 6]);
 
-/// Map from F Fp⁻¹ to Fe at a point of an imperfect wall.
+/// Map from F Fp⁻¹ to Fe at a point of an imperfect or patched wall.
 #[derive(Clone, Copy)]
 pub struct ImperfectionMap<S> {
     D: Tensor2<S>,
-    /// det U.
+    /// det U, times the factor of patches on the energy.
     volume: S,
+    /// Growth of volume by patches.
+    growth: S,
 }
 
 impl StressFreeStretch {
@@ -128,7 +130,36 @@ impl<S: Real> ImperfectionMap<S> {
         Self {
             D,
             volume: one / B.determinant(),
+            growth: one,
         }
+    }
+
+    /// Returns the map of a perfect wall; `like` is any number.
+    #[inline(always)]
+    pub fn identity(like: S) -> Self {
+        Self {
+            D: Tensor2([[like.like(0.0); 3]; 3]),
+            volume: like.like(1.0),
+            growth: like.like(1.0),
+        }
+    }
+
+    /// Adds the growth of patches, from one over it along, through and around, and their factor on the energy: the columns
+    /// of Fe are divided by the growth.
+    #[inline(always)]
+    pub fn with_patch(mut self, inverse: [S; 3], stiffness: S) -> Self {
+        let one = stiffness.like(1.0);
+        for i in 0..3 {
+            for j in 0..3 {
+                self.D.0[i][j] = match i == j {
+                    true => self.D.0[i][j].mul_add(inverse[j], inverse[j] - one),
+                    false => self.D.0[i][j] * inverse[j],
+                };
+            }
+        }
+        self.volume = self.volume * stiffness;
+        self.growth = one / (inverse[0] * inverse[1] * inverse[2]);
+        self
     }
 
     /// Returns Fe from F Fp⁻¹.
@@ -143,10 +174,16 @@ impl<S: Real> ImperfectionMap<S> {
         self.times_identity_plus(P, self.D.transpose())
     }
 
-    /// Converts a volume of the perfect tube to the stress-free shape.
+    /// Converts a volume of the perfect tube to the stress-free shape, and multiplies it by the stiffness.
     #[inline(always)]
     pub fn volume(&self, volume: S) -> S {
         volume * self.volume
+    }
+
+    /// Converts a volume grown by the muscles to that grown by patches too.
+    #[inline(always)]
+    pub fn grown(&self, volume: S) -> S {
+        volume * self.growth
     }
 
     /// Maps moduli on Fe to moduli on F Fp⁻¹: multiplies both second indices by (I + D).

@@ -72,9 +72,9 @@ impl SplineTube {
                 .par_iter()
                 .enumerate()
                 .map(|(number, batch)| {
-                    let stretch = self.inverse_stretch(batch, load);
+                    let growth = self.growth_along(batch, load);
                     let shape = self.stress_free_in_axial_batch(chunk * together + number);
-                    let input = self.axial_input(batch, (&stretch, shape.as_deref()), u);
+                    let input = self.axial_input(batch, (&growth, shape.as_deref()), u);
                     (
                         batch.first,
                         with_law_and_degree!(self, self.law, axial::tangent, &input, rotations),

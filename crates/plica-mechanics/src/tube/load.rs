@@ -1,4 +1,4 @@
-//! Loads of a tube: targets of the muscles, displacements of the ends, pressures on the walls, placements of obstacles.
+//! Loads of a tube: targets of the muscles, displacements of the ends, pressures on the walls, placements of obstacles, growth of patches.
 
 use super::Placement;
 
@@ -13,6 +13,8 @@ pub struct Load {
     pub pressures: [Pressure; 2],
     /// Placement of each obstacle of the tube, in the order of the tube.
     pub obstacles: Vec<Placement>,
+    /// Stress-free thickness over the thickness at rest in the middle of each patch of the tube, in the order of the tube.
+    pub patches: Vec<f64>,
 }
 
 /// Prescribed motion of a supported end.
@@ -65,6 +67,12 @@ impl Load {
                 .zip(&other.obstacles)
                 .map(placement)
                 .collect(),
+            patches: self
+                .patches
+                .iter()
+                .zip(&other.patches)
+                .map(|(&a, &b)| mix(a, b))
+                .collect(),
         }
     }
 }
@@ -89,6 +97,7 @@ mod tests {
                 radius: 7.0 * x,
                 position: [8.0, 9.0, 10.0].map(|s| s * x),
             }],
+            patches: vec![11.0 * x],
         };
         assert_eq!(load(1.0).towards(&load(3.0), 0.25), load(1.5));
         assert_eq!(load(0.1).towards(&load(0.3), 0.0), load(0.1));

@@ -3,17 +3,21 @@
 //! Everything is dimensionless: lengths in the outer diameter D, stresses in Young's modulus E,
 //! energies in E·D³. z = 0 is the colon end, z = L the ileum end.
 
+mod foundation;
 mod imperfection;
 mod load;
 mod mesh;
 mod obstacle;
+mod patch;
 mod random;
 mod wall_layer;
 
+pub use foundation::{Foundation, SpringDirection};
 pub use imperfection::{Axial, EndDirection, Imperfection, Mode, Part, Shape, Wave};
 pub use load::{EndMotion, Load, Pressure};
 pub use mesh::{Integration, Mesh, MeshLayer, Symmetry};
 pub use obstacle::{Distance, Obstacle, ObstacleShape, Placement, turned};
+pub use patch::{Patch, Region};
 pub use random::Random;
 pub use wall_layer::{ResidualStretch, WallLayer};
 
@@ -36,6 +40,10 @@ pub struct Tube {
     pub imperfections: Vec<Imperfection>,
     /// Rigid obstacles that the walls may touch.
     pub obstacles: Vec<Obstacle>,
+    /// Patches of the wall.
+    pub patches: Vec<Patch>,
+    /// Foundations of the outer wall; they add up.
+    pub foundations: Vec<Foundation>,
 }
 
 /// One end of the tube.
@@ -106,7 +114,7 @@ impl Tube {
     }
 
     /// Returns the load at rest: all muscles at ratio one, no displacement of the ends, no pressure, obstacles at their
-    /// first placement.
+    /// first placement, no growth of patches.
     pub fn rest(&self) -> Load {
         Load {
             muscles: vec![1.0; self.muscles.len()],
@@ -117,43 +125,91 @@ impl Tube {
                 .iter()
                 .map(|obstacle| obstacle.rest)
                 .collect(),
+            patches: vec![1.0; self.patches.len()],
         }
     }
 
-    /// Returns the grown stretches (θζ, θη) of a layer at z under a load, of muscles without imperfections
-    /// (Okino et al. 2025, Eq. (3)).
+    /// Returns the grown stretches (θζ, θη) of a layer at z under a load, of muscles without imperfections, sectors and
+    /// patches (Okino et al. 2025, Eq. (3)).
     pub fn stretches(&self, layer: usize, z: f64, load: &Load) -> (f64, f64) {
         self.grown(layer, z, load, |_, theta| theta)
     }
 
     /// Returns the grown stretches (θζ, θη) of a layer at z and the angle `phi`, in radians, under a load, with
-    /// θ − 1 of each muscle multiplied by [`Tube::strength`]. Without imperfections of muscles it
-    /// equals [`Tube::stretches`] to the bit.
+    /// θ − 1 of each muscle multiplied by [`Tube::strength`]. If no muscle is modified it equals [`Tube::stretches`] to the
+    /// bit.
     pub fn stretches_at(&self, layer: usize, z: f64, phi: f64, load: &Load) -> (f64, f64) {
-        self.grown(layer, z, load, |m, theta| match self.strength(m, z, phi) {
-            1.0 => theta,
-            strength => 1.0 + strength * (theta - 1.0),
+        self.grown(layer, z, load, |m, theta| {
+            match self.strength([layer, m], z, phi) {
+                1.0 => theta,
+                strength => 1.0 + strength * (theta - 1.0),
+            }
         })
     }
 
-    /// Returns true if a muscle has an imperfection, so that its strength may depend on the angle.
-    pub fn muscles_vary_around(&self) -> bool {
-        let mut parts = self
-            .imperfections
-            .iter()
-            .map(|imperfection| imperfection.of);
-        parts.any(|part| matches!(part, Part::Muscle(_)))
+    /// Returns true if an imperfection, a sector or a patch modifies a muscle, so that its strength may depend on the angle.
+    pub fn muscles_are_modified(&self) -> bool {
+        let imperfect = |i: &Imperfection| matches!(i.of, Part::Muscle(_));
+        let patched = |patch: &Patch| patch.muscles.iter().any(|factor| *factor != 1.0);
+        self.imperfections.iter().any(imperfect)
+            || self.muscles.iter().any(|muscle| muscle.sector.is_some())
+            || self.patches.iter().any(patched)
     }
 
-    /// Returns the strength of muscle `m` at z and the angle `phi`, in radians: 1 + Σ a f(φ, z) over
-    /// its imperfections, whose shapes span its zone.
-    pub fn strength(&self, m: usize, z: f64, phi: f64) -> f64 {
+    /// Returns the strength of a muscle in a layer at z and the angle `phi`, in radians: 1 + Σ a f(φ, z) over its
+    /// imperfections, whose shapes span its zone, times the functions of its sector and of patches.
+    pub fn strength(&self, [layer, m]: [usize; 2], z: f64, phi: f64) -> f64 {
         let imperfections = self.imperfections.iter();
         let of_it = imperfections.filter(|imperfection| imperfection.of == Part::Muscle(m));
-        of_it.fold(1.0, |sum, imperfection| {
+        let strength = of_it.fold(1.0, |sum, imperfection| {
             let f = imperfection.shape.value(phi, z, self.muscles[m].zone);
             sum + imperfection.amplitude * f
+        });
+        let sector = self.muscles[m].sector;
+        let strength = strength * sector.map_or(1.0, |sector| sector.value(phi));
+        self.patches.iter().fold(strength, |strength, patch| {
+            strength * patch.factor(patch.muscles[m], layer, z, phi)
         })
+    }
+
+    /// Returns true if a patch changes the stiffness or the thickness of a layer under a load.
+    pub fn has_patches(&self, layer: usize, load: &Load) -> bool {
+        let mut patches = self.patches.iter().zip(&load.patches);
+        patches.any(|(patch, growth)| {
+            patch.layers.contains(&layer) && (patch.stiffness != 1.0 || *growth != 1.0)
+        })
+    }
+
+    /// Returns the factor of patches on the energy of a layer at z and the angle `phi`, in radians.
+    pub fn stiffness_factor(&self, layer: usize, z: f64, phi: f64) -> f64 {
+        let factor = |patch: &Patch| patch.factor(patch.stiffness, layer, z, phi);
+        self.patches.iter().map(factor).product()
+    }
+
+    /// Returns the growth through the wall θξ of a layer at z and the angle `phi`, in radians, under a load.
+    pub fn growth_through(&self, layer: usize, z: f64, phi: f64, load: &Load) -> f64 {
+        let patches = self.patches.iter().zip(&load.patches);
+        let factor = |(patch, growth): (&Patch, &f64)| patch.factor(*growth, layer, z, phi);
+        patches.map(factor).product()
+    }
+
+    /// Returns true if a muscle, a patch or a foundation acts in a sector of the circumference.
+    pub fn has_sectors(&self) -> bool {
+        self.muscles.iter().any(|muscle| muscle.sector.is_some())
+            || self.regions().any(|region| region.sector.is_some())
+    }
+
+    /// Returns true if foundations hold the tube against the rigid motions of circumferential harmonic n.
+    pub fn is_held_by_foundations(&self, n: usize) -> bool {
+        self.foundations
+            .iter()
+            .any(|foundation| foundation.holds(n))
+    }
+
+    /// Returns the regions of patches and foundations.
+    fn regions(&self) -> impl Iterator<Item = &Region> {
+        let patches = self.patches.iter().map(|patch| &patch.region);
+        patches.chain(self.foundations.iter().map(|foundation| &foundation.region))
     }
 
     /// Returns the products of the stretches of the muscles of a layer along and around, each θ changed by `change`.
@@ -226,9 +282,12 @@ mod tests {
                 direction: Direction::Circular,
                 zone: [0.5, 1.0],
                 profile: Profile::RaisedCosine,
+                sector: None,
             }],
             ends: [Support::Fixed; 2],
             obstacles: vec![],
+            patches: vec![],
+            foundations: vec![],
             imperfections: vec![Imperfection {
                 of: Part::Muscle(0),
                 amplitude: 0.1,
@@ -246,6 +305,7 @@ mod tests {
             direction,
             zone,
             profile: Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)]),
+            sector: None,
         };
         let (along, around) = (Direction::Longitudinal, Direction::Circular);
         tube.muscles = vec![

@@ -23,6 +23,7 @@ fn small_tube(around: usize) -> TubeModel {
             direction,
             zone: [0.5, 1.5],
             profile: Profile::RaisedCosine,
+            sector: None,
         });
     }
     model

@@ -113,6 +113,7 @@ pub fn contraction(recorder: &mut Recorder<'_>) -> Result<(), VerificationError>
             direction: Direction::Circular,
             zone: [0.5, 2.5],
             profile: Profile::RaisedCosine,
+            sector: None,
         });
         let load = Load {
             muscles: vec![0.6],

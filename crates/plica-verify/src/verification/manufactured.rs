@@ -50,6 +50,7 @@ fn tube() -> Tube {
         // Smooth along the whole tube.
         zone: [0.0, LENGTH],
         profile: Profile::RaisedCosine,
+        sector: None,
     };
     Tube {
         length: LENGTH,
@@ -61,6 +62,8 @@ fn tube() -> Tube {
         ends: [Support::Fixed; 2],
         imperfections: vec![],
         obstacles: vec![],
+        patches: vec![],
+        foundations: vec![],
     }
 }
 

@@ -46,6 +46,8 @@ impl TubeModel {
             ends: [Support::Sliding; 2],
             imperfections: vec![],
             obstacles: vec![],
+            patches: vec![],
+            foundations: vec![],
         };
         Self {
             tube,
@@ -68,6 +70,7 @@ impl TubeModel {
             direction,
             zone: [0.0, self.tube.length],
             profile: Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)]),
+            sector: None,
         });
         self
     }

@@ -465,6 +465,8 @@ mod tests {
             ends: [Support::Fixed; 2],
             imperfections: vec![],
             obstacles: vec![],
+            patches: vec![],
+            foundations: vec![],
         };
         let mesh = Mesh {
             axial: 8,

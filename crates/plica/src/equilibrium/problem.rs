@@ -381,6 +381,8 @@ mod tests {
                 amplitude: 3e-3,
                 shape: Shape::Wave(Wave::new(2, 0.0, Axial::Uniform)),
             }],
+            patches: vec![],
+            foundations: vec![],
         };
         let mesh = Mesh {
             axial: 4,

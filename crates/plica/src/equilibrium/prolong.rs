@@ -159,6 +159,8 @@ mod tests {
             imperfections: vec![],
             obstacles: vec![],
             ends: [Support::Free; 2],
+            patches: vec![],
+            foundations: vec![],
         }
     }
 

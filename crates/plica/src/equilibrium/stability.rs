@@ -210,6 +210,8 @@ mod tests {
             ends: [Support::Fixed, Support::Sliding],
             imperfections: vec![],
             obstacles: vec![],
+            patches: vec![],
+            foundations: vec![],
         };
         let mesh = Mesh {
             axial: 8,

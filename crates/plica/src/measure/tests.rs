@@ -17,6 +17,8 @@ fn tube(rings: usize) -> SplineTube {
         ends: [Support::Free; 2],
         imperfections: vec![],
         obstacles: vec![],
+        patches: vec![],
+        foundations: vec![],
     };
     let mesh = Mesh {
         axial: 15,

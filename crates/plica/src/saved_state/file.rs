@@ -257,6 +257,7 @@ mod tests {
                     radius: 1.0 / 13.0,
                     position: [0.1, -1e-300, 1.0 / 17.0],
                 }],
+                patches: vec![],
             },
             obstacles: vec!["a \"ball\"".into()],
             u: (0..layout.unknowns()).map(number).collect(),

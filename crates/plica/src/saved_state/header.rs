@@ -281,6 +281,7 @@ impl SavedState {
                 ends: [end(header.load.colon), end(header.load.ileum)],
                 pressures: [wall(header.load.inner_wall), wall(header.load.outer_wall)],
                 obstacles: obstacles.iter().map(placement).collect(),
+                patches: vec![],
             },
             obstacles: obstacles
                 .into_iter()

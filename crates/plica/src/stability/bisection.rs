@@ -203,6 +203,8 @@ mod tests {
             ends: [Support::Sliding; 2],
             imperfections: vec![],
             obstacles: vec![],
+            patches: vec![],
+            foundations: vec![],
         };
         let mesh = Mesh {
             axial: 4,

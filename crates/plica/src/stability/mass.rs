@@ -105,6 +105,8 @@ mod tests {
             imperfections: vec![],
             obstacles: vec![],
             ends: [Support::Fixed; 2],
+            patches: vec![],
+            foundations: vec![],
         };
         let mesh = Mesh {
             axial: 7,

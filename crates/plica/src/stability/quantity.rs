@@ -123,6 +123,7 @@ mod tests {
             direction,
             zone: [0.5, 1.0],
             profile: Profile::RaisedCosine,
+            sector: None,
         };
         let tube = Tube {
             length: 3.0,
@@ -138,6 +139,8 @@ mod tests {
             imperfections: vec![],
             obstacles: vec![],
             ends: [Support::Fixed; 2],
+            patches: vec![],
+            foundations: vec![],
         };
         let to = |muscles: [f64; 3], moved: f64| {
             let mut load = tube.rest();

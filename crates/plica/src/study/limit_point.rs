@@ -115,6 +115,7 @@ mod tests {
             direction,
             zone: [0.1, 0.8],
             profile: Profile::RaisedCosine,
+            sector: None,
         };
         plan.tube.muscles = vec![
             muscle("ring", Direction::Circular),
@@ -137,6 +138,7 @@ mod tests {
                 dead: 10.0 * sign * x,
             }),
             obstacles: vec![],
+            patches: vec![],
         };
         let found = LimitPoint::between(&plan, &load(0.1), &load(0.2));
         let texts: Vec<String> = found.iter().map(LimitPoint::to_string).collect();

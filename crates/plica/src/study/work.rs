@@ -182,6 +182,7 @@ mod tests {
             direction,
             zone: [0.1, 0.8],
             profile: Profile::RaisedCosine,
+            sector: None,
         };
         plan.tube.muscles = vec![
             muscle("circular", Direction::Circular),
@@ -206,6 +207,7 @@ mod tests {
             ],
             pressures: [pressure(0.01, 0.002), pressure(-0.005, 0.003)],
             obstacles: vec![],
+            patches: vec![],
         };
         let back = Load {
             muscles: vec![0.7, 1.0],

@@ -130,7 +130,7 @@ fn kernel<S: Simd, L: Law, const N: usize>(simd: S, law: &L, input: &Input<'_>) 
 
                         let volume = weight.times(layer.weight[qr] * point.volume(radius)); // dV₀
                         let volume = gradient_map.stress_free_volume(volume);
-                        let grown = volume * growth;
+                        let grown = gradient_map.grown_volume(volume * growth);
                         let w = law.energy(&Fe);
                         energy = Real::mul_add(w, grown, energy);
                         energy_ungrown = Real::mul_add(w, volume, energy_ungrown);

@@ -12,7 +12,7 @@ pub use stress_free::stress_free_stretch;
 pub use tangent::{BatchTangent, add_along, add_through, tangent};
 
 use super::kinematics::{GradientMap, Vector, to_element_frame};
-use super::stress_free::StressFreeStretch;
+use super::modified_wall::ModifiedWall;
 use super::tables::{AxialBatch, CircumferentialPoint, Layer};
 use crate::tensor::{LANES, Lanes, Real};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
@@ -29,9 +29,9 @@ pub struct Input<'a> {
     pub rings: usize,
     /// 1/θζ and 1/θη at the quadrature points along the batch.
     pub inverse_stretch: &'a [(Lanes, Lanes)],
-    /// The stress-free shape at every (layer, element around, point along, point through, point
-    /// around); none if the tube is perfect.
-    pub stress_free: Option<&'a [StressFreeStretch]>,
+    /// The stress-free shape at every (layer, element around, point along, point through, point around) and the factors of
+    /// patches at every (element around, point along, point around); none if the wall is plain.
+    pub modified: Option<ModifiedWall<'a>>,
     /// Displacements of the rows of the batch, one after the other; (point, component, ring) in
     /// each.
     pub u: &'a [f64],
@@ -69,13 +69,15 @@ impl Input<'_> {
         let (radius, residual) = (layer.radius[qr], layer.inverse_residual[qr]);
         let inverse = [inverse_along, inverse_around];
         let gradient_map = GradientMap::new(&self.around[qs], radius, inverse, residual);
-        gradient_map.with_imperfection(self.stress_free.map(|at| {
-            let at = &at[(((t * self.rings + element) * points + qz) * points + qr) * points + qs];
-            at.imperfection_map(
-                simd,
+        gradient_map.with_imperfection(self.modified.map(|wall| {
+            let along = (t * self.rings + element) * points + qz;
+            let shape = (along * points + qr) * points + qs;
+            let patch = (element * points + qz) * points + qs;
+            let inverse = [
                 inverse_along.times(residual[0]),
                 inverse_around.times(residual[1]),
-            )
+            ];
+            wall.map(simd, inverse, [shape, patch])
         }))
     }
 

@@ -121,7 +121,8 @@ fn kernel<S: Simd, L: Law, const N: usize>(
                             gradients(simd, point, &through),
                         );
                         let grown = weight.times(layer.weight[qr] * point.volume(radius)); // det Fp dV₀
-                        let grown = gradient_map.stress_free_volume(grown);
+                        let grown =
+                            gradient_map.grown_volume(gradient_map.stress_free_volume(grown));
                         let blocks = gradient_map.pull_back_moduli(&law.moduli(&Fe), grown);
                         for set in rotations {
                             for (rotated, &(r, s)) in rotated.iter_mut().zip(&pairs) {

@@ -14,7 +14,7 @@ pub fn forces<L: Law, const N: usize>(
     input: &Input<'_>,
     residual: &mut [f64],
 ) -> BatchForces {
-    if input.stress_free.is_none() {
+    if input.modified.is_none() {
         with_vectors!(wide if L::WIDE_VECTORS_ONLY, simd => kernel::<_, L, N, true>(simd, law, input, residual))
     } else {
         with_vectors!(wide if L::WIDE_VECTORS_ONLY, simd => kernel::<_, L, N, false>(simd, law, input, residual))

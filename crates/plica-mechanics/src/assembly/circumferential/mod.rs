@@ -30,7 +30,7 @@ pub use stress_free::stress_free_stretch;
 pub use tangent::{PackedTangentData, linearise, tangent_data_len, tangent_product};
 
 use super::kinematics::{GradientMap, Vector, to_element_frame};
-use super::stress_free::StressFreeStretch;
+use super::modified_wall::ModifiedWall;
 use super::tables::{AxialBatch, CircumferentialPoint, Layer};
 use crate::rings::RingValues;
 use crate::tensor::{LANES, Lanes, Real};
@@ -50,9 +50,9 @@ pub struct Input<'a> {
     /// 1/θζ and 1/θη of the muscles: at the quadrature points along the element or, if they vary around the tube,
     /// at every (point along, point around, vector of elements).
     pub inverse_stretch: &'a [(Lanes, Lanes)],
-    /// The stress-free shape at every (point along, layer, point through, vector of elements, point
-    /// around); none if the tube is perfect.
-    pub stress_free: Option<&'a [StressFreeStretch]>,
+    /// The stress-free shape at every (point along, layer, point through, vector of elements, point around) and the factors
+    /// of patches at every (point along, point around, vector of elements); none if the wall is plain.
+    pub modified: Option<ModifiedWall<'a>>,
     /// The p + 1 rows of control points, one after the other; (point, component) times R rings in
     /// each.
     pub u: &'a [f64],
@@ -91,8 +91,8 @@ impl Input<'_> {
     }
 
     /// Returns the map from displacement gradients to Fe at a point along, layer and point through
-    /// it, vector of elements and point around them; and dV and det Fp dV there, zero in unused
-    /// lanes. `PERFECT` excludes an imperfect wall at compile time: a branch at every point makes a
+    /// it, vector of elements and point around them; and dV and det Fp dV there, times the factor of patches, zero in unused
+    /// lanes. `PERFECT` excludes an imperfect or patched wall at compile time: a branch at every point makes a
     /// kernel up to twice as slow.
     #[inline(always)]
     fn gradient_map<S: Simd, const PERFECT: bool>(
@@ -107,22 +107,26 @@ impl Input<'_> {
         let (radius, residual) = (layer.radius[qr], layer.inverse_residual[qr]);
         let inverse = [inverse_along, inverse_around];
         let gradient_map = GradientMap::new(point, radius, inverse, residual);
-        let stress_free = self.stress_free.filter(|_| !PERFECT);
-        let gradient_map = gradient_map.with_imperfection(stress_free.map(|at| {
+        let modified = self.modified.filter(|_| !PERFECT);
+        let gradient_map = gradient_map.with_imperfection(modified.map(|wall| {
             let through = (qz * self.layers.len() + t) * layer.radius.len() + qr;
-            let at = &at[(through * self.rings.vectors() + v) * self.around.len() + qs];
-            at.imperfection_map(
-                simd,
+            let shape = (through * self.rings.vectors() + v) * self.around.len() + qs;
+            let patch = (qz * self.around.len() + qs) * self.rings.vectors() + v;
+            let inverse = [
                 inverse_along.times(residual[0]),
                 inverse_around.times(residual[1]),
-            )
+            ];
+            wall.map(simd, inverse, [shape, patch])
         }));
         let mask = self.rings.mask[v].load(simd);
         let volume = mask.times(self.weight(qz) * layer.weight[qr] * point.volume(radius));
         let volume = gradient_map.stress_free_volume(volume);
         (
             gradient_map,
-            [volume, volume / (inverse_along * inverse_around)],
+            [
+                volume,
+                gradient_map.grown_volume(volume / (inverse_along * inverse_around)),
+            ],
         )
     }
 }

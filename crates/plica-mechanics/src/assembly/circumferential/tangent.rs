@@ -29,7 +29,7 @@ pub fn linearise<L: Law, const N: usize>(
     tangent_data: &mut [[f32; 16]],
     averaged: &mut [f64],
 ) {
-    if input.stress_free.is_none() {
+    if input.modified.is_none() {
         with_vectors!(wide if L::WIDE_VECTORS_ONLY, simd => kernel_linearise::<_, L, N, true>(simd, law, input, tangent_data, averaged));
     } else {
         with_vectors!(wide if L::WIDE_VECTORS_ONLY, simd => kernel_linearise::<_, L, N, false>(simd, law, input, tangent_data, averaged));
@@ -108,7 +108,7 @@ pub fn tangent_product<L: Law, const N: usize>(
     tangent_data: &[[f32; 16]],
     out: &mut [f64],
 ) {
-    if input.stress_free.is_none() {
+    if input.modified.is_none() {
         with_vectors!(wide if L::WIDE_VECTORS_ONLY, simd => kernel_product::<_, L, N, true>(simd, law, input, tangent_data, out));
     } else {
         with_vectors!(wide if L::WIDE_VECTORS_ONLY, simd => kernel_product::<_, L, N, false>(simd, law, input, tangent_data, out));

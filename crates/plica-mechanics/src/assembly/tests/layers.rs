@@ -222,6 +222,7 @@ fn residual_stretch_is_growth() {
             direction,
             zone: [0.0, 1.5],
             profile: even.clone(),
+            sector: None,
         });
     }
     let mut load = active.rest();

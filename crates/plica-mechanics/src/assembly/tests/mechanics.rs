@@ -19,6 +19,8 @@ fn tube_at_rest_has_exact_radii_and_volume_and_no_residual() {
         ends: [Support::Fixed; 2],
         imperfections: vec![],
         obstacles: vec![],
+        patches: vec![],
+        foundations: vec![],
     };
     let spline = SplineTube::new(&tube, &mesh(3, [10, 2, 60]), 1);
     let rest = tube.rest();

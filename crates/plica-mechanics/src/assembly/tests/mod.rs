@@ -5,6 +5,7 @@ mod boundary_conditions;
 mod imperfection;
 mod layers;
 mod mechanics;
+mod patches;
 mod reduced_integration;
 mod reference;
 mod stress_free;
@@ -33,6 +34,7 @@ pub(in crate::assembly) fn tube_and_load(
         direction,
         zone,
         profile: Profile::RaisedCosine,
+        sector: None,
     };
     let tube = Tube {
         length: 1.5,
@@ -47,6 +49,8 @@ pub(in crate::assembly) fn tube_and_load(
         ends: [Support::Fixed; 2],
         imperfections: vec![],
         obstacles: vec![],
+        patches: vec![],
+        foundations: vec![],
     };
     let load = Load {
         muscles: vec![0.7, 1.15],

@@ -1,7 +1,7 @@
 //! Contribution of the walls to the tangent averaged around the tube.
 
 use super::super::SplineTube;
-use super::{WallPoint, WallTangent, rotated};
+use super::{WallTangent, rotated};
 use crate::rings::{Circulant, Rotation};
 use crate::tensor::with_vectors;
 
@@ -41,12 +41,7 @@ impl SplineTube {
                         let mut is_loaded = false;
                         for element in 0..k {
                             let moved = self.surface_displacement(&rings, element, point);
-                            let at = WallPoint {
-                                element,
-                                number: self.point_number(along, qz, [element, number]),
-                                z: batch.z[qz].0[lane],
-                                around: point,
-                            };
+                            let at = self.wall_point(wall, along, qz, [element, number], point);
                             let Some(own) = self.wall_blocks(wall, &moved, &at, weight) else {
                                 continue;
                             };

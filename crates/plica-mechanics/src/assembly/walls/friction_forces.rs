@@ -7,7 +7,7 @@ use super::super::low_harmonics::LowHarmonics;
 use super::super::{Forces, MatrixFreeTangent, SplineTube};
 use super::friction::{Friction, PlacedFriction, copies};
 use super::low_harmonics::add_form;
-use super::{LoadedWall, WallPoint, WallTangent};
+use super::{LoadedWall, WallTangent};
 use crate::matrix::BlockBanded;
 use crate::rings::Rotation;
 use crate::tube::Load;
@@ -17,7 +17,7 @@ impl SplineTube {
     pub fn add_friction(&self, friction: &Friction, load: &Load, u: &[f64], forces: &mut Forces) {
         let mut squares = forces.residual_scale * forces.residual_scale;
         for wall in self.friction_walls(Some(friction), load) {
-            for [_, energy] in self.add_wall(&wall, u, &mut squares, forces) {
+            for [_, energy, _] in self.add_wall(&wall, u, &mut squares, forces) {
                 forces.friction += self.sector.repeats() * energy;
             }
         }
@@ -84,12 +84,7 @@ impl SplineTube {
                     let mut is_loaded = false;
                     for element in 0..self.sector.rings {
                         for (a, around) in self.around.iter().enumerate() {
-                            let at = WallPoint {
-                                element,
-                                number: self.point_number(along, qz, [element, a]),
-                                z: batch.z[qz].0[lane],
-                                around,
-                            };
+                            let at = self.wall_point(wall, along, qz, [element, a], around);
                             let moved = self.surface_displacement(&rings, element, around);
                             let weight = batch.weight[qz].0[lane] * around.weight;
                             let Some(blocks) = self.wall_blocks(wall, &moved, &at, weight) else {

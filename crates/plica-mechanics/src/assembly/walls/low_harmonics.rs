@@ -3,7 +3,6 @@
 use super::super::SplineTube;
 use super::super::blocks::Block;
 use super::super::low_harmonics::LowHarmonics;
-use super::WallPoint;
 use crate::matrix::BlockBanded;
 use crate::tensor::with_vectors;
 use crate::tube::Load;
@@ -44,12 +43,7 @@ impl SplineTube {
                     let mut is_loaded = false;
                     for element in 0..self.sector.rings {
                         let moved = self.surface_displacement(&rings, element, point);
-                        let at = WallPoint {
-                            element,
-                            number: 0,
-                            z: batch.z[qz].0[lane],
-                            around: point,
-                        };
+                        let at = self.wall_point(&wall, (batch, lane), qz, [element, 0], point);
                         let Some(blocks) = self.wall_blocks(&wall, &moved, &at, weight) else {
                             continue;
                         };

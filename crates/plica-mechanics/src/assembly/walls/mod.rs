@@ -1,5 +1,5 @@
-//! Pressure on the inner and the outer wall, and their contact with obstacles and friction on them: energy, forces and
-//! tangent.
+//! Pressure on the inner and the outer wall, foundations of the outer wall, contact with obstacles and friction on them:
+//! energy, forces and tangent.
 //!
 //! A follower pressure p acts on the deformed wall, along its normal. Its work is p dV, with V the
 //! volume that the wall encloses; its potential is −p V on the inner wall and +p V on the outer
@@ -19,6 +19,9 @@
 //! multiply-add. V is computed relative to its value at rest, which avoids rounding.
 
 mod average;
+mod foundation;
+#[cfg(test)]
+mod foundation_tests;
 mod friction;
 mod friction_forces;
 #[cfg(test)]
@@ -49,7 +52,7 @@ use obstacles::{PlacedObstacle, PointContact};
 use rayon::prelude::*;
 use volume::{Surface, product, sum, volume_blocks, volume_change, volume_slopes};
 
-/// A wall under pressure, or near obstacles.
+/// A wall under pressure, on a foundation, or near obstacles.
 #[derive(Clone, Debug)]
 pub struct LoadedWall {
     /// Its control point through the wall: there its basis function is one, all others zero.
@@ -60,12 +63,14 @@ pub struct LoadedWall {
     follower: f64,
     /// Outward dead load.
     dead: f64,
+    /// True if the foundations of the tube act on it.
+    has_foundations: bool,
     obstacles: Vec<PlacedObstacle>,
     barrier: Barrier,
     friction: Option<PlacedFriction>,
 }
 
-/// Contribution of the walls to a tangent: those under follower pressure or near obstacles, and the state.
+/// Contribution of the walls to a tangent: those under follower pressure, on foundations or near obstacles, and the state.
 #[derive(Clone, Debug)]
 pub struct WallTangent {
     walls: Vec<LoadedWall>,
@@ -74,13 +79,16 @@ pub struct WallTangent {
 
 /// Contribution of the elements at one axial position to the forces on a wall.
 struct WallForces {
-    /// Potential of the pressures and energy of contact, of the sector.
-    energies: [f64; 2],
+    /// Energies of the sector.
+    energies: Energies,
     /// Sum of the squares of the element contributions.
     squares: f64,
     /// Forces on p + 1 rows of control points, by component and ring.
     force: Vec<f64>,
 }
+
+/// Potential of the pressures, energy of contact and energy of the foundations.
+type Energies = [f64; 3];
 
 /// A quadrature point of a wall.
 #[derive(Clone, Copy)]
@@ -92,32 +100,36 @@ struct WallPoint<'a> {
     /// Axial position at rest.
     z: f64,
     around: &'a CircumferentialPoint,
+    /// Displacement of the stress-free shape in the frame of the element, on a wall with foundations.
+    shape: Vector<f64>,
 }
 
 /// An element along the tube: axial batch and lane.
 type Along<'a> = (&'a AxialBatch, usize);
 
 impl SplineTube {
-    /// Adds energies and forces of pressure and contact with obstacles to those of a state.
+    /// Adds energies and forces of pressure, foundations and contact with obstacles to those of a state.
     pub(in crate::assembly) fn add_walls(&self, load: &Load, u: &[f64], forces: &mut Forces) {
         let mut squares = forces.residual_scale * forces.residual_scale;
         for wall in self.loaded_walls(load) {
-            for [potential, contact] in self.add_wall(&wall, u, &mut squares, forces) {
-                forces.potential += self.sector.repeats() * potential;
+            let energies = self.add_wall(&wall, u, &mut squares, forces);
+            for [potential, contact, foundation] in energies {
+                forces.potential += self.sector.repeats() * (potential + foundation);
                 forces.contact += self.sector.repeats() * contact;
+                forces.foundation += self.sector.repeats() * foundation;
             }
         }
     }
 
     /// Adds the forces on a wall to those of a state, and its squares to those of the residual scale. Returns the energies
-    /// of pressure and contact of the sector, by element along.
+    /// of the sector, by element along.
     fn add_wall(
         &self,
         wall: &LoadedWall,
         u: &[f64],
         squares: &mut f64,
         forces: &mut Forces,
-    ) -> Vec<[f64; 2]> {
+    ) -> Vec<Energies> {
         let parts = self.integrate_over_wall(wall, [u], |[moved], point| {
             let position = sum(&wall.at_rest(point), &moved);
             let volume = volume_slopes(&position);
@@ -135,7 +147,15 @@ impl SplineTube {
                     slopes[2][i] += area * at.slope[i];
                 }
             }
-            ([potential, contact], slopes)
+            let mut foundation = 0.0;
+            if let Some(at) = self.foundation_at(wall, moved[2], point) {
+                let area = wall.area(point);
+                foundation = area * at.energy;
+                for i in 0..3 {
+                    slopes[2][i] += area * at.slope[i];
+                }
+            }
+            ([potential, contact, foundation], slopes)
         });
         *squares = parts.iter().fold(*squares, |sum, part| sum + part.squares);
         self.add_wall_forces(wall, &parts, 1.0, &mut forces.residual);
@@ -155,7 +175,7 @@ impl SplineTube {
             };
             let work = |wall: &LoadedWall| {
                 let parts = self.integrate_over_wall(wall, [u], |[moved], point| {
-                    ([wall.potential(&moved, point), 0.0], [[0.0; 3]; 3])
+                    ([wall.potential(&moved, point), 0.0, 0.0], [[0.0; 3]; 3])
                 });
                 let potential: f64 = parts.iter().map(|part| part.energies[0]).sum();
                 -self.sector.repeats() * potential
@@ -167,7 +187,7 @@ impl SplineTube {
     }
 
     /// Returns the contribution of the walls to the tangent at a state; none without follower
-    /// pressure and obstacles.
+    /// pressure, foundations and obstacles.
     pub(in crate::assembly) fn wall_tangent(&self, load: &Load, u: &[f64]) -> Option<WallTangent> {
         let walls = self.walls_with_tangent(load);
         let u = u.to_vec();
@@ -186,7 +206,7 @@ impl SplineTube {
             let parts = self.integrate_over_wall(wall, [&at.u, v], |[moved, v], point| {
                 let blocks = self.wall_blocks(wall, &moved, point, 1.0);
                 let nil = [[0.0; 3]; 3];
-                ([0.0; 2], blocks.map_or(nil, |blocks| product(&blocks, &v)))
+                ([0.0; 3], blocks.map_or(nil, |blocks| product(&blocks, &v)))
             });
             self.add_wall_forces(wall, &parts, factor, y);
         }
@@ -232,12 +252,7 @@ impl SplineTube {
                         for (number, (point, rotations)) in points {
                             let moved = self.surface_displacement(&rings, element, point);
                             let weight = batch.weight[qz].0[lane] * point.weight;
-                            let at = WallPoint {
-                                element,
-                                number: self.point_number(along, qz, [element, number]),
-                                z: batch.z[qz].0[lane],
-                                around: point,
-                            };
+                            let at = self.wall_point(wall, along, qz, [element, number], point);
                             let Some(blocks) = self.wall_blocks(wall, &moved, &at, weight) else {
                                 continue;
                             };
@@ -268,7 +283,7 @@ impl SplineTube {
         }
     }
 
-    /// Returns the walls under any pressure, or both if there are obstacles.
+    /// Returns the walls under any pressure or on foundations, or both if there are obstacles.
     fn loaded_walls(&self, load: &Load) -> Vec<LoadedWall> {
         let [inner, outer] = load.pressures;
         let obstacles = self.placed_obstacles(load);
@@ -282,13 +297,12 @@ impl SplineTube {
             LoadedWall {
                 follower: -outer.follower,
                 dead: -outer.dead,
+                has_foundations: !self.tube.foundations.is_empty(),
                 obstacles,
                 ..self.bare_wall(1)
             },
         ];
-        let is_loaded = |wall: &LoadedWall| {
-            wall.follower != 0.0 || wall.dead != 0.0 || !wall.obstacles.is_empty()
-        };
+        let is_loaded = |wall: &LoadedWall| wall.has_tangent() || wall.dead != 0.0;
         walls.into_iter().filter(is_loaded).collect()
     }
 
@@ -303,6 +317,7 @@ impl SplineTube {
             radius,
             follower: 0.0,
             dead: 0.0,
+            has_foundations: false,
             obstacles: vec![],
             barrier: self.barrier,
             friction: None,
@@ -311,7 +326,7 @@ impl SplineTube {
 
     fn walls_with_tangent(&self, load: &Load) -> Vec<LoadedWall> {
         let mut walls = self.loaded_walls(load);
-        walls.retain(|wall| wall.follower != 0.0 || !wall.obstacles.is_empty());
+        walls.retain(LoadedWall::has_tangent);
         walls
     }
 
@@ -360,18 +375,12 @@ impl SplineTube {
         let repeats = self.sector.repeats();
         for along @ (batch, lane) in self.elements_along() {
             for qz in 0..=self.degree() {
-                let (z, weight) = (batch.z[qz].0[lane], batch.weight[qz].0[lane]);
+                let weight = batch.weight[qz].0[lane];
                 let rings = fields.map(|u| self.rings_along(wall, u, along, qz));
                 for element in 0..self.sector.rings {
                     let turn = self.element_turn(element);
                     for (point, around) in self.around.iter().enumerate() {
-                        let number = self.point_number(along, qz, [element, point]);
-                        let at = WallPoint {
-                            element,
-                            number,
-                            z,
-                            around,
-                        };
+                        let at = self.wall_point(wall, along, qz, [element, point], around);
                         let position = |f: usize| {
                             let moved = self.surface_displacement(&rings[f], element, around);
                             turned(sum(&wall.at_rest(&at), &moved)[2], turn)
@@ -395,13 +404,22 @@ impl SplineTube {
     ) -> Option<[Block<f64>; 6]> {
         let position = sum(&wall.at_rest(point), moved);
         let contact = self.contact_at(wall, &position, point);
-        if contact.is_none() && wall.follower == 0.0 {
+        let foundation = self.foundation_at(wall, moved[2], point);
+        if contact.is_none() && foundation.is_none() && wall.follower == 0.0 {
             return None;
         }
         let mut blocks = volume_blocks(&position, -wall.follower * factor);
         if let Some(contact) = contact {
             let area = factor * wall.area(point);
             blocks[5] = contact.curvature.map(|row| row.map(|x| area * x));
+        }
+        if let Some(foundation) = foundation {
+            let area = factor * wall.area(point);
+            for i in 0..3 {
+                for j in 0..3 {
+                    blocks[5][i][j] += area * foundation.curvature[i][j];
+                }
+            }
         }
         Some(blocks)
     }
@@ -418,7 +436,7 @@ impl SplineTube {
         &self,
         wall: &LoadedWall,
         fields: [&[f64]; F],
-        of: impl Fn([Surface; F], &WallPoint<'_>) -> ([f64; 2], Surface) + Sync,
+        of: impl Fn([Surface; F], &WallPoint<'_>) -> (Energies, Surface) + Sync,
     ) -> Vec<WallForces> {
         let elements: Vec<Along<'_>> = self.elements_along().collect();
         let part = |&along: &Along<'_>| with_vectors!(simd => self.integrate_around(wall, fields, &of, along));
@@ -431,7 +449,7 @@ impl SplineTube {
         &self,
         wall: &LoadedWall,
         fields: [&[f64]; F],
-        of: &(impl Fn([Surface; F], &WallPoint<'_>) -> ([f64; 2], Surface) + Sync),
+        of: &(impl Fn([Surface; F], &WallPoint<'_>) -> (Energies, Surface) + Sync),
         along: Along<'_>,
     ) -> WallForces {
         let (n, k, local_rings) = (
@@ -440,7 +458,7 @@ impl SplineTube {
             self.sector.local_rings(),
         );
         let (batch, lane) = along;
-        let mut energies = [0.0; 2];
+        let mut energies = [0.0; 3];
         // Per element around, row and local ring.
         let mut forces = vec![[0.0; 3]; k * n * local_rings];
         for qz in 0..n {
@@ -453,12 +471,7 @@ impl SplineTube {
                     let fields = std::array::from_fn(|f| {
                         self.surface_displacement(&rings[f], element, point)
                     });
-                    let at = WallPoint {
-                        element,
-                        number: self.point_number(along, qz, [element, number]),
-                        z: batch.z[qz].0[lane],
-                        around: point,
-                    };
+                    let at = self.wall_point(wall, along, qz, [element, number], point);
                     let (densities, slopes) = of(fields, &at);
                     for (energy, density) in energies.iter_mut().zip(densities) {
                         *energy += weight * density;
@@ -595,6 +608,11 @@ impl SplineTube {
 }
 
 impl LoadedWall {
+    /// Returns true if its energy is not linear in the displacement.
+    fn has_tangent(&self) -> bool {
+        self.follower != 0.0 || self.has_foundations || !self.obstacles.is_empty()
+    }
+
     /// Returns the position at rest in the frame of the element, and its slopes.
     fn at_rest(&self, point: &WallPoint<'_>) -> Surface {
         let at = |z: f64, (re, im): (f64, f64)| [z, self.radius * re, self.radius * im];

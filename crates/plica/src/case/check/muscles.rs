@@ -24,6 +24,7 @@ pub(super) fn muscles(case: &Case, length: f64, problems: &mut Problems) -> Vec<
             direction: muscle.direction,
             zone: zone(&key, case, muscle.zone, length, problems),
             profile: profile(&path, &muscle.profile, problems),
+            sector: None,
         });
     }
     check_overlaps(case, problems);

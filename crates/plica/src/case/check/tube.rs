@@ -43,5 +43,7 @@ pub(super) fn tube(case: &Case, problems: &mut Problems) -> Tube {
         ends: [case.ends.colon, case.ends.ileum],
         imperfections: vec![],
         obstacles: vec![],
+        patches: vec![],
+        foundations: vec![],
     }
 }

@@ -168,6 +168,7 @@ fn state() -> SavedState {
             ends: Default::default(),
             pressures: Default::default(),
             obstacles: vec![],
+            patches: vec![],
         },
         u: vec![0.0; layout.unknowns()],
         layout,
