@@ -3,11 +3,15 @@
 use crate::args::CaseArguments;
 use crate::failure::Failure;
 use crate::{case_file, console};
+use plica::activation::AngularSector;
 use plica::material::{Material, NeoHookean, Volumetric};
 use plica::run_directory::DiskUse;
 use plica::spline::Circle;
 use plica::study::{Plan, check_memory, forecast};
-use plica::tube::{End, Imperfection, Integration, Part, Shape, Symmetry, Tube, WallLayer};
+use plica::tube::{
+    End, Foundation, Imperfection, Integration, Part, Patch, Region, Shape, SpringDirection,
+    Symmetry, Tube, WallLayer,
+};
 
 /// Checks a case and prints its size and estimated cost.
 pub fn check(arguments: &CaseArguments) -> Result<(), Failure> {
@@ -122,6 +126,14 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
             ),
         ),
     ];
+    if !tube.patches.is_empty() {
+        let patches: Vec<String> = tube.patches.iter().map(|own| patch(tube, own)).collect();
+        rows.push(("patches", patches.join("; ")));
+    }
+    if !tube.foundations.is_empty() {
+        let all = tube.foundations.iter().map(foundation);
+        rows.push(("foundations", all.collect::<Vec<_>>().join("; ")));
+    }
     if !tube.imperfections.is_empty() {
         let imperfections = tube.imperfections.iter();
         let described: Vec<String> = imperfections.map(|i| imperfection(tube, i)).collect();
@@ -214,11 +226,56 @@ fn stretches(plan: &Plan) -> String {
             if smallest < 1.0 { smallest } else { largest }
         });
         let farther = |a: f64, b: f64| if b.ln().abs() > a.ln().abs() { b } else { a };
-        format!("{} {:.2}", muscle.name, extremes.fold(1.0, farther))
+        let own = muscle.sector.as_ref();
+        let place = own.map_or(String::new(), |own| format!(" ({})", sector(own)));
+        format!("{} {:.2}{place}", muscle.name, extremes.fold(1.0, farther))
     });
     match tube.muscles.is_empty() {
         true => "none".into(),
         false => described.collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// Describes a patch: name, place and factors.
+fn patch(tube: &Tube, patch: &Patch) -> String {
+    let mut parts = vec![format!("{} {}", patch.name, region(&patch.region))];
+    if patch.stiffness != 1.0 {
+        parts.push(format!("stiffness × {}", patch.stiffness));
+    }
+    for (muscle, factor) in tube.muscles.iter().zip(&patch.muscles) {
+        if *factor != 1.0 {
+            parts.push(format!("{} × {factor}", muscle.name));
+        }
+    }
+    parts.join(", ")
+}
+
+/// Describes a foundation: place, stiffness and direction.
+fn foundation(foundation: &Foundation) -> String {
+    let direction = match foundation.direction {
+        SpringDirection::All => "all directions",
+        SpringDirection::Normal => "normal",
+        SpringDirection::Inward => "normal, tension only",
+    };
+    let place = region(&foundation.region);
+    format!("{place}, {:.4e} E/D, {direction}", foundation.stiffness)
+}
+
+/// Describes a part of the tube.
+fn region(region: &Region) -> String {
+    let [from, to] = region.zone;
+    let around = region
+        .sector
+        .map_or(String::new(), |own| format!(", {}", sector(&own)));
+    format!("{from:.4} to {to:.4} D{around}")
+}
+
+/// Describes a sector of the circumference.
+fn sector(sector: &AngularSector) -> String {
+    let [width, centre] = [sector.width, sector.centre].map(f64::to_degrees);
+    match sector.repeats {
+        1 => format!("{width:.1}° around {centre:.1}°"),
+        n => format!("{n} times {width:.1}° from {centre:.1}°"),
     }
 }
 

@@ -66,6 +66,7 @@ pub fn state(plan: &Plan, row: usize) -> SavedState {
         row,
         along: 0.0,
         obstacles: vec![],
+        patches: vec![],
         muscles: vec![],
         load: plan.tube.rest(),
         layout: plan.layout(),

@@ -124,6 +124,7 @@ fn fibres_of_one_hand_turn_a_sliding_end_and_a_state_of_theirs_starts_a_run() {
         along: 1.0,
         muscles: vec![],
         obstacles: vec![],
+        patches: vec![],
         load: saved.load.clone(),
         layout: study.plan().layout(),
         u: saved.unknowns.clone(),

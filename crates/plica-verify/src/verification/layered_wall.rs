@@ -7,9 +7,10 @@
 //! |---|---|---|
 //! | R, r | radius of a point at rest and now | any length |
 //! | ℓ, τ | axial stretch; twist, an angle per length at rest | –, 1/length |
-//! | θ | stress-free over resting length around and along (residual stretch) | – |
+//! | θ | stress-free over resting length around and along (residual stretch), and through the layer | – |
 //! | β | angle of fibres from the circumference toward the axis | radians |
 //! | p | pressure on the inner wall | any stress |
+//! | k | stiffness of radial springs on the outer wall, per area at rest | stress/length |
 //!
 //! A point moves from (R, Φ, Z) to (r(R), Φ + τ Z, ℓ Z), so that Fe, its rows and columns outwards, around and along, is
 //! diagonal but for the shear rτ/θζ. Of the law
@@ -67,6 +68,8 @@ pub struct Layer {
     pub along: [f64; 2],
     /// T, λM and λ0 of a tension around the tube, T (1 − ((λM − λ)/(λM − λ0))²) where that is positive.
     pub tone: Option<[f64; 3]>,
+    /// θ through the layer.
+    pub through: f64,
 }
 
 /// A tube.
@@ -116,6 +119,7 @@ impl Layer {
             around: [1.0; 2],
             along: [1.0; 2],
             tone: None,
+            through: 1.0,
         }
     }
 
@@ -198,6 +202,7 @@ impl LayeredWall {
             let h = (outer - from) / STEPS as f64;
             let slope = |R: f64, [r, sigma, _]: [f64; 3]| {
                 let (s, stresses) = self.radial(layer, (R, r, twist), sigma)?;
+                let s = s * self.layers[layer].through;
                 let [_, around, _, shear] = stresses;
                 Ok([s, (around - sigma) / r * s, shear * r * r * s])
             };
@@ -233,6 +238,15 @@ impl LayeredWall {
     /// # Errors
     /// [`NoEquilibrium`] if an iteration does not converge.
     pub fn inflate(&self, p: f64, steps: usize) -> Result<Inflated, NoEquilibrium> {
+        self.inflate_on(0.0, p, steps)
+    }
+
+    /// The same with springs of stiffness k on the outer wall.
+    ///
+    /// # Errors
+    /// As [`LayeredWall::inflate`].
+    pub fn inflate_on(&self, k: f64, p: f64, steps: usize) -> Result<Inflated, NoEquilibrium> {
+        let outer = self.layers[self.layers.len() - 1].outer;
         let (mut r, mut twist) = (self.inner / self.stretch.sqrt(), 0.0);
         let of_one_hand = {
             let families = self.layers.iter().flat_map(|layer| &layer.fibres);
@@ -242,8 +256,12 @@ impl LayeredWall {
             let p = p * step as f64 / steps as f64;
             let radius = |twist: f64, guess: f64| {
                 let outside = |r: f64| {
-                    self.integrate(r, twist, p)
-                        .map_or(f64::NAN, |(_, end)| end[0])
+                    // The springs pull at the area at rest.
+                    let end = |(inflated, [sigma, _]): (Inflated, [f64; 2])| {
+                        let now = inflated.radii[inflated.radii.len() - 1];
+                        sigma + k * (now - outer) * outer / (now * self.stretch)
+                    };
+                    self.integrate(r, twist, p).map_or(f64::NAN, end)
                 };
                 secant(guess, guess * 1.0001, outside)
             };

@@ -13,7 +13,7 @@ use plica::solve::State;
 use plica::tube::{Load, MeshLayer, ResidualStretch, WallLayer};
 
 /// Source of most references.
-const ONE: &str = "one-dimensional solution";
+pub(super) const ONE: &str = "one-dimensional solution";
 
 /// Returns a law of Plica with the constants of a layer of the reference solution.
 fn material(layer: &Layer) -> Material {
@@ -48,7 +48,7 @@ fn material(layer: &Layer) -> Material {
 }
 
 /// Returns a tube of Plica like one of the reference solution, with lengths over its outer diameter.
-fn model(wall: &LayeredWall, elements: &[usize]) -> TubeModel {
+pub(super) fn model(wall: &LayeredWall, elements: &[usize]) -> TubeModel {
     let outer = wall.layers[wall.layers.len() - 1].outer;
     let thickness = outer - wall.inner;
     let mut model = TubeModel::ring(thickness / (2.0 * outer), 0.3, elements[0]);
@@ -88,7 +88,7 @@ fn inflated(
 }
 
 /// Records the current inner and outer radius, in the unit of the reference solution.
-fn radii(
+pub(super) fn radii(
     recorder: &mut Recorder<'_>,
     tolerance: f64,
     (problem, state): (&TubeProblem, &State<Load>),

@@ -101,6 +101,16 @@ pub const CHECKS: &[Check] = &[
         layers::helical_fibres,
     ),
     quick(
+        "patch-growth",
+        "growth of a patch through the wall",
+        patches::growth,
+    ),
+    quick(
+        "foundation",
+        "a ring and a tube on elastic foundations",
+        patches::foundation,
+    ),
+    quick(
         "ring-buckling",
         "buckling of rings under external pressure",
         rings::buckling,

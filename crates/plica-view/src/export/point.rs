@@ -90,6 +90,7 @@ impl PointData {
         let [theta_z, theta_t] = sample.grown;
         let mut F = Fe;
         for row in &mut F.0 {
+            row[1] *= sample.grown_through;
             (row[0], row[2]) = (theta_z * row[0], theta_t * row[2]);
         }
         let C = F.transpose().times(F).0;

@@ -34,7 +34,7 @@ const FIRST: [(&str, &str, Role); 21] = [
     ("energy", "strain energy *W*", Role::Table),
     (
         "potential",
-        "strain energy plus potential of the pressures",
+        "strain energy plus potential of the pressures and foundations",
         Role::Other,
     ),
     ("max_wall_angle_deg", "steepest wall angle", Role::Table),
@@ -85,7 +85,7 @@ const LOADS: [(&str, &str); 4] = [
 ];
 
 /// Columns of muscles and ends: prefix of the name, words before the name, words after it, use.
-const NAMED: [(&str, &str, &str, Role); 9] = [
+const NAMED: [(&str, &str, &str, Role); 10] = [
     ("displacement_", "displacement of the ", " end", Role::Load),
     ("twist_deg_", "twist of the ", " end", Role::Load),
     ("target_", "target of the muscle ", "", Role::Other),
@@ -104,6 +104,7 @@ const NAMED: [(&str, &str, &str, Role); 9] = [
         Role::Other,
     ),
     ("torque_", "torque at the ", " end", Role::Other),
+    ("growth_through_", "growth of the patch ", "", Role::Other),
     ("work_", "work of ", "", Role::Other),
 ];
 

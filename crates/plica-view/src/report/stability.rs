@@ -170,9 +170,10 @@ fn label(quantity: Quantity, plan: &Plan) -> String {
         Quantity::IleumDisplacement => moved(1),
         Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
         Quantity::DeadLoad(wall) => format!("dead load/*E* {}", ["inside", "outside"][wall]),
-        Quantity::Muscle(_) | Quantity::Radius(_) | Quantity::Position(..) => {
-            quantity.name(&plan.tube)
-        }
+        Quantity::Muscle(_)
+        | Quantity::Radius(_)
+        | Quantity::Position(..)
+        | Quantity::Growth(_) => quantity.name(&plan.tube),
     }
 }
 

@@ -32,6 +32,8 @@ pub(super) enum Kind {
     Position,
     /// `[[x, s], …]`
     Points,
+    /// `{ name = number, … }`; the user chooses the names.
+    Numbers,
     /// A table with these keys.
     Table(&'static [Key]),
     /// A list of tables with these keys.
@@ -47,7 +49,8 @@ pub(super) enum Kind {
 pub(super) struct Rule {
     /// The value of a key that is left out.
     pub default: Default,
-    /// The unit; empty if there is none. [`LENGTH`] and [`STRESS`] are those of the case.
+    /// The unit; empty if there is none. [`LENGTH`], [`STRESS`] and [`STIFFNESS`] are those of
+    /// the case.
     pub unit: &'static str,
     /// The range of a number.
     pub range: Range,
@@ -55,6 +58,7 @@ pub(super) struct Rule {
 
 pub(super) const LENGTH: &str = "length";
 pub(super) const STRESS: &str = "stress";
+pub(super) const STIFFNESS: &str = "stress per length";
 
 /// The value of a key that is left out.
 #[derive(Clone, Copy, Debug)]

@@ -1,14 +1,14 @@
 //! All keys of the case file. A key is declared here, and nowhere else: its doc comment, default, unit
 //! and range are what the reference page, the schema and the checks are made of.
 
-use super::key::{Key, Kind, LENGTH, STRESS, default, described, required};
+use super::key::{Key, Kind, LENGTH, STIFFNESS, STRESS, default, described, required};
 use super::problem::Problems;
 use super::read::{Fields, Read, Table, Value, choice, choose, table};
 use super::spelling::target;
 use crate::activation::{Direction, Profile};
 use crate::material::Volumetric;
 use crate::study::{LengthUnit, StressUnit};
-use crate::tube::{Axial, EndDirection, Integration, Support, Symmetry};
+use crate::tube::{Axial, EndDirection, Integration, SpringDirection, Support, Symmetry};
 use std::collections::BTreeMap;
 
 table! {
@@ -58,6 +58,10 @@ table! {
         /// Rigid obstacles that the walls touch: an instrument in the lumen, a stent, a bolus, a
         /// neighbouring organ. In a tube with an m-fold symmetry an obstacle beside the axis is repeated m times.
         obstacles: Vec<Obstacle> = default("[]");
+        /// Patches of the wall that differ from the rest: a scar, a polyp, a lead point.
+        patches: Vec<Patch> = default("[]");
+        /// Elastic springs between the outer wall and its surroundings, such as a mesentery. They add up.
+        foundations: Vec<Foundation> = default("[]");
         /// The settings of the nonlinear solver.
         solver: Solver = default("{}");
         /// The files that a run writes, besides its history.
@@ -269,8 +273,67 @@ table! {
         profile: Profile = default("raised-cosine");
         /// The name of the layer that it acts in.
         layer: Option<String> = described("all layers", "media");
+        /// The sector of the circumference that it acts in: half of it, or three taeniae. Its target is that of the middle of
+        /// the sector; θ − 1 falls to zero at the edges.
+        sector: Option<Sector> = described("all around", "{ width_degrees = 180.0 }");
     }
 }
+
+table! {
+    Sector {
+        /// The angle of its middle about the axis, from x toward y.
+        centre_degrees: f64 = default("0.0").unit("degrees").from(-360.0).to(360.0);
+        /// Its width, with both edges.
+        width_degrees: f64 = required("180.0").unit("degrees").from(1.0).to(360.0);
+        /// The width of an edge, over which it rises like half a cosine.
+        edge_degrees: Option<f64> = described("a quarter of the width", "20.0").unit("degrees").from(0.1).to(180.0);
+        /// The number of times that it repeats around the tube, at equal angles. In a tube with an m-fold symmetry it repeats
+        /// with the tube, too.
+        repeat: usize = default("1").from(1.0).to(360.0);
+    }
+}
+
+table! {
+    Patch {
+        /// Its name in the stages and in the results, as for a muscle.
+        name: String = required("scar");
+        /// The part of the tube that it covers, with its edges.
+        zone: [f64; 2] = required("[0.5, 1.0]").unit(LENGTH);
+        /// The length over which its effect rises like half a cosine, and falls again; 0 for a jump.
+        edge: Option<f64> = described("a quarter of the zone", "0.1").unit(LENGTH).from(0.0);
+        /// The sector of the circumference that it covers.
+        sector: Option<Sector> = described("all around", "{ width_degrees = 90.0 }");
+        /// The name of the layer that it lies in.
+        layer: Option<String> = described("all layers", "media");
+        /// The factor on the energy of the law, fibres and tone included.
+        stiffness: f64 = default("1.0").from(1e-3).to(1e4);
+        /// The factor on the activity of muscles, by their names, from 0 to 10: θ − 1 is multiplied by it.
+        muscles: BTreeMap<String, f64> = default("{}");
+    }
+}
+
+table! {
+    Foundation {
+        /// The part of the tube that it covers, with its edges.
+        zone: Option<[f64; 2]> = described("the whole tube", "[0.5, 1.0]").unit(LENGTH);
+        /// The length over which its stiffness rises like half a cosine, and falls again; 0 for a jump.
+        edge: Option<f64> = described("a quarter of the zone; 0 without one", "0.1").unit(LENGTH).from(0.0);
+        /// The sector of the circumference that it covers.
+        sector: Option<Sector> = described("all around", "{ width_degrees = 90.0 }");
+        /// The stress of the springs per displacement.
+        stiffness: f64 = required("0.01").unit(STIFFNESS).from(0.0).to(1e15);
+        /// The displacements that the springs resist: all, or those normal to the wall at rest.
+        direction: SpringDirection = default("all");
+        /// True if the springs only pull: they resist motion inwards, and leave motion outwards free. For the direction
+        /// `"normal"` only.
+        tension_only: bool = default("false");
+    }
+}
+
+choice! { SpringDirection {
+    "all" => SpringDirection::All,
+    "normal" => SpringDirection::Normal,
+} }
 
 choice! { Direction {
     "circular" => Direction::Circular,
@@ -385,7 +448,7 @@ table! {
         name: Option<String> = described("stage-1, stage-2, …", "stage-1");
         /// The number of equal load steps. Each ends in a state of the history.
         steps: usize = default("20").from(1.0).to(100_000.0);
-        /// The targets at its end: of muscles and obstacles, by their names, of the ends `colon` and `ileum`, and of
+        /// The targets at its end: of muscles, obstacles and patches, by their names, of the ends `colon` and `ileum`, and of
         /// the surfaces `inner-wall` and `outer-wall`.
         drive: BTreeMap<String, Drive> = default("{}");
     }
@@ -399,6 +462,8 @@ table! {
         /// Target of a longitudinal muscle: the stress-free length of the whole tube over its length at
         /// rest, Lmax/L.
         length_ratio: Option<f64> = described(BEFORE_1, "1.0").above(0.0).to(10.0);
+        /// Target of a patch: the stress-free thickness of the wall over its thickness at rest, in the middle of the patch.
+        growth_through: Option<f64> = described(BEFORE_1, "1.5").from(0.1).to(10.0);
         /// Target of a fixed or sliding end: its axial displacement from rest.
         displacement: Option<f64> = described(BEFORE_0, "0.0").unit(LENGTH);
         /// Target of a fixed end: its rotation about the axis.

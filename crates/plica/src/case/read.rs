@@ -360,6 +360,37 @@ impl<T: Table> Read for BTreeMap<String, T> {
     }
 }
 
+impl Read for BTreeMap<String, f64> {
+    const KIND: Kind = Kind::Numbers;
+
+    fn read(problems: &mut Problems, key: &Key, path: &str, value: &Value) -> Option<Self> {
+        let Some(table) = value.get_ref().as_table() else {
+            return wrong_type(problems, key, path, value);
+        };
+        let mut members = Self::new();
+        for (name, member) in table {
+            let own = join(path, name.get_ref());
+            problems.place(&own, [name.span(), member.span()]);
+            let read = match number(member) {
+                Some(x) => in_range(problems, key, &own, x),
+                None => {
+                    problems.value(&own, "must be a number", "");
+                    None
+                }
+            };
+            match read {
+                Some(x) => drop(members.insert(name.get_ref().clone().into_owned(), x)),
+                None => problems.replaced(own),
+            }
+        }
+        Some(members)
+    }
+
+    fn fallback(_: &Key) -> Self {
+        Self::new()
+    }
+}
+
 impl<T: Read> Read for Option<T> {
     const KIND: Kind = T::KIND;
 
@@ -516,6 +547,7 @@ fn wrong_type<T>(problems: &mut Problems, key: &Key, path: &str, value: &Value) 
         Kind::Zone => "must be [from, to], two numbers",
         Kind::Position => "must be [x, y, z], three numbers",
         Kind::Points => "must be a list of points [x, s]",
+        Kind::Numbers => "must be a table of numbers",
         Kind::List(_) => "must be a list of tables",
         Kind::Table(_) | Kind::Named(_) | Kind::Choice(..) => "must be a table",
     };

@@ -1,6 +1,6 @@
 //! The reference page of the case file, written from the declarations of its keys.
 
-use super::key::{Default, Key, Kind, LENGTH, STRESS, visit};
+use super::key::{Default, Key, Kind, LENGTH, STIFFNESS, STRESS, visit};
 use super::keys::Case;
 use super::read::Table;
 use std::fmt::Write;
@@ -47,6 +47,10 @@ const CLOSING: &str = "
 - A state to start from comes from a tube of the same length and thickness in D. The muscles that it drives are in the
   case, with the same names and directions; other muscles are at rest. It is axisymmetric, or repeats around the tube a
   multiple of as many times as the case does.
+- Sectors are not for axisymmetric tubes. An edge is at most half of its zone or its width, and all repetitions of a
+  sector, those by a fold too, fit into the circumference. A patch names muscles and a layer that exist; where it makes a
+  muscle stronger, stress-free stretches stay above 0.02. `tension_only` needs the direction `normal`, and without
+  symmetry a fixed end. Names of patches differ from each other and from those of muscles, ends and obstacles.
 - Names of stages differ.
 ";
 
@@ -83,6 +87,7 @@ fn row(path: &str, key: &Key) -> String {
         Kind::Zone => "`[from, to]`".to_owned(),
         Kind::Position => "`[x, y, z]`".to_owned(),
         Kind::Points => "`[[x, s], …]`".to_owned(),
+        Kind::Numbers => "`{ name = number, … }`".to_owned(),
         Kind::List(_) => "list of tables".to_owned(),
         Kind::Table(_) | Kind::Named(_) | Kind::Choice([], _) => "table".to_owned(),
         Kind::Choice(words, tables) => {
@@ -94,7 +99,7 @@ fn row(path: &str, key: &Key) -> String {
     let mut value = vec![kind];
     match key.rule.unit {
         "" => {}
-        unit @ (LENGTH | STRESS) => value.push(format!("a {unit}")),
+        unit @ (LENGTH | STRESS | STIFFNESS) => value.push(format!("a {unit}")),
         unit => value.push(format!("in {unit}")),
     }
     let range = key.rule.range.words();

@@ -70,6 +70,7 @@ fn value(key: &Key) -> Map<String, Value> {
         Kind::Zone => pair,
         Kind::Position => numbers(3),
         Kind::Points => json!({ "type": "array", "items": pair, "minItems": 2 }),
+        Kind::Numbers => json!({ "type": "object", "additionalProperties": { "type": "number" } }),
         Kind::Table(keys) => return table(keys),
         Kind::List(keys) => json!({ "type": "array", "items": table(keys) }),
         Kind::Named(keys) => json!({ "type": "object", "additionalProperties": table(keys) }),
@@ -87,6 +88,9 @@ fn value(key: &Key) -> Map<String, Value> {
     let Value::Object(mut value) = value else {
         return Map::new();
     };
+    if matches!(key.kind, Kind::Numbers) {
+        return value;
+    }
     let limits = [
         (key.rule.range.low, ["minimum", "exclusiveMinimum"]),
         (key.rule.range.high, ["maximum", "exclusiveMaximum"]),

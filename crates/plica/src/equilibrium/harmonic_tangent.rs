@@ -133,7 +133,9 @@ impl HarmonicTube {
         let rings = u.chunks_exact(self.tube.sector.rings);
         let difference = |u: &[f64]| u.iter().fold(0.0_f64, |most, x| most.max((x - u[0]).abs()));
         let differs = rings.map(difference).fold(0.0, f64::max);
-        let low = (differs > COUPLED).then(|| self.low_harmonics(u));
+        // Sectors couple harmonics at axisymmetric states, too.
+        let has_sectors = self.tube.tube.has_sectors();
+        let low = (differs > COUPLED || has_sectors).then(|| self.low_harmonics(u));
         let touching = self.surface_contact();
         let touching = touching.and_then(|contact| Some((contact, contact.tangent(u)?)));
         let coupled = low.as_ref().map(|low| {
@@ -154,7 +156,7 @@ impl HarmonicTube {
                 tube: self.clone(),
                 at,
                 contact: touching.map(|(_, tangent)| tangent),
-                symmetric: differs <= SYMMETRIC,
+                symmetric: differs <= SYMMETRIC && !has_sectors,
                 low,
                 coupled,
             }),

@@ -47,7 +47,8 @@ pub fn test_stability(
         let mut rings = u.chunks_exact(k);
         rings.all(|rings| rings.iter().all(|x| (x - rings[0]).abs() <= ROUND))
     };
-    let round = round(u) && tube.geometric_imperfection().is_none_or(round);
+    let round =
+        round(u) && tube.geometric_imperfection().is_none_or(round) && !tube.tube.has_sectors();
     let of_ring: Vec<f64> = u.iter().step_by(k).copied().collect();
     let twisted = of_ring.iter().skip(2).step_by(3).any(|u| u.abs() > TWISTED);
     if !round || (twisted && k > 1) {

@@ -338,6 +338,7 @@ impl<'a> Run<'a> {
     fn saved(&self, state: &State) -> SavedState {
         let muscles = self.plan.tube.muscles.iter();
         let obstacles = self.plan.tube.obstacles.iter();
+        let patches = self.plan.tube.patches.iter();
         let history = (!state.history.is_empty()).then(|| {
             let array = Array {
                 shape: vec![state.history.len()],
@@ -351,6 +352,7 @@ impl<'a> Run<'a> {
             along: state.stage_fraction,
             muscles: muscles.map(|m| (m.name.clone(), m.direction)).collect(),
             obstacles: obstacles.map(|obstacle| obstacle.name.clone()).collect(),
+            patches: patches.map(|patch| patch.name.clone()).collect(),
             load: state.load.clone(),
             layout: self.plan.layout(),
             u: state.unknowns.clone(),

@@ -35,6 +35,8 @@ struct LoadHeader {
     outer_wall: PressureHeader,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     obstacles: Vec<ObstacleHeader>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    patches: Vec<PatchHeader>,
 }
 
 #[derive(Debug, Deserialize, Serialize)]
@@ -43,6 +45,12 @@ struct ObstacleHeader {
     radius: f64,
     /// (z, x, y).
     position: [f64; 3],
+}
+
+#[derive(Debug, Deserialize, Serialize)]
+struct PatchHeader {
+    name: String,
+    growth_through: f64,
 }
 
 #[derive(Debug, Deserialize, Serialize)]
@@ -154,6 +162,10 @@ impl SavedState {
             radius: placement.radius,
             position: placement.position,
         };
+        let patch = |(name, &growth_through): (&String, &f64)| PatchHeader {
+            name: name.clone(),
+            growth_through,
+        };
         let Layout {
             length,
             thickness,
@@ -192,6 +204,12 @@ impl SavedState {
                     .iter()
                     .zip(&self.load.obstacles)
                     .map(obstacle)
+                    .collect(),
+                patches: self
+                    .patches
+                    .iter()
+                    .zip(&self.load.patches)
+                    .map(patch)
                     .collect(),
             },
             tube: TubeHeader { length, thickness },
@@ -264,6 +282,7 @@ impl SavedState {
         }
         let muscles = header.load.muscles;
         let obstacles = header.load.obstacles;
+        let patches = header.load.patches;
         let placement = |of: &ObstacleHeader| Placement {
             radius: of.radius,
             position: of.position,
@@ -281,12 +300,13 @@ impl SavedState {
                 ends: [end(header.load.colon), end(header.load.ileum)],
                 pressures: [wall(header.load.inner_wall), wall(header.load.outer_wall)],
                 obstacles: obstacles.iter().map(placement).collect(),
-                patches: vec![],
+                patches: patches.iter().map(|patch| patch.growth_through).collect(),
             },
             obstacles: obstacles
                 .into_iter()
                 .map(|obstacle| obstacle.name)
                 .collect(),
+            patches: patches.into_iter().map(|patch| patch.name).collect(),
             muscles: muscles
                 .into_iter()
                 .map(|m| (m.name, direction(m.direction)))

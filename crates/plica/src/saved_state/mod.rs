@@ -30,6 +30,8 @@ pub struct SavedState {
     pub muscles: Vec<(String, Direction)>,
     /// Name of each obstacle, in the order of the load.
     pub obstacles: Vec<String>,
+    /// Name of each patch, in the order of the load.
+    pub patches: Vec<String>,
     /// Its load.
     pub load: Load,
     /// Layout of its unknowns.
@@ -123,7 +125,7 @@ pub enum SavedStateError {
 }
 
 impl SavedState {
-    /// Checks that the state has a layout, a set of muscles and a list of obstacles.
+    /// Checks that the state has a layout, a set of muscles and lists of obstacles and patches.
     ///
     /// # Errors
     /// [`SavedStateError::Other`] with the difference.
@@ -132,6 +134,7 @@ impl SavedState {
         expected: &Layout,
         muscles: &[(String, Direction)],
         obstacles: &[String],
+        patches: &[String],
     ) -> Result<(), SavedStateError> {
         let found = &self.layout;
         let compare = |what, found: String, expected: String| {
@@ -187,6 +190,11 @@ impl SavedState {
             "list of obstacles",
             format!("{:?}", self.obstacles),
             format!("{obstacles:?}"),
+        )?;
+        compare(
+            "list of patches",
+            format!("{:?}", self.patches),
+            format!("{patches:?}"),
         )?;
         compare(
             "set of muscles",

@@ -29,6 +29,8 @@ pub enum Quantity {
     Radius(usize),
     /// A component, (z, x, y), of the position of an obstacle, in D.
     Position(usize, usize),
+    /// Growth through the wall of a patch.
+    Growth(usize),
 }
 
 impl Quantity {
@@ -55,7 +57,9 @@ impl Quantity {
             let position = (0..3).map(move |k| Self::Position(i, k));
             std::iter::once(Self::Radius(i)).chain(position)
         };
-        match most(&mut named.into_iter().chain(obstacles.flat_map(of_obstacle))) {
+        let patches = (0..tube.patches.len()).map(Self::Growth);
+        let others = obstacles.flat_map(of_obstacle).chain(patches);
+        match most(&mut named.into_iter().chain(others)) {
             Some((quantity, change)) if change > ROUNDING => quantity,
             _ => most(&mut (0..tube.muscles.len()).map(Self::Muscle))
                 .map_or(Self::LengthRatio, |(quantity, _)| quantity),
@@ -74,6 +78,7 @@ impl Quantity {
             Self::DeadLoad(wall) => load.pressures[wall].dead,
             Self::Radius(i) => load.obstacles[i].radius,
             Self::Position(i, k) => load.obstacles[i].position[k],
+            Self::Growth(i) => load.patches[i],
         }
     }
 
@@ -88,6 +93,7 @@ impl Quantity {
             Self::Pressure(wall) => format!("pressure {}/E", WALLS[wall]),
             Self::DeadLoad(wall) => format!("dead load {}/E", WALLS[wall]),
             Self::Radius(i) => format!("radius of {}/D", tube.obstacles[i].name),
+            Self::Growth(i) => format!("growth of {}", tube.patches[i].name),
             Self::Position(i, k) => {
                 format!("{} of {}/D", ["z", "x", "y"][k], tube.obstacles[i].name)
             }

@@ -114,7 +114,12 @@ fn zero(plan: &Plan) -> Row {
     }
     let obstacles = plan.tube.obstacles.iter();
     let obstacles: Vec<&str> = obstacles.map(|obstacle| obstacle.name.as_str()).collect();
-    let row = row.with_obstacles(&obstacles);
+    let patches = plan.tube.patches.iter();
+    let patches: Vec<&str> = patches.map(|patch| patch.name.as_str()).collect();
+    let mut row = row.with_obstacles(&obstacles).with_patches(&patches);
+    if !plan.tube.foundations.is_empty() {
+        row = row.with_foundations();
+    }
     if plan.has_pressures() {
         row.with_pressures()
     } else {

@@ -148,7 +148,7 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
 /// Returns the number of states at which a tube that is not perfectly axisymmetric has left the axisymmetric path.
 fn states_not_round(plan: &Plan) -> usize {
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
-    if plan.start.is_some() {
+    if plan.start.is_some() || plan.tube.has_sectors() {
         return states;
     }
     if plan.tube.imperfections.is_empty() {

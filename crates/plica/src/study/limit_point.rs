@@ -75,6 +75,10 @@ fn quantities(plan: &Plan, load: &Load) -> Vec<(String, f64, String)> {
             all.push((format!("{axis} of {name}.position"), x, unit.clone()));
         }
     }
+    for (patch, growth) in plan.tube.patches.iter().zip(&load.patches) {
+        let name = format!("{}.growth_through", patch.name);
+        all.push((name, *growth, String::new()));
+    }
     all
 }
 

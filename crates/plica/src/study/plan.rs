@@ -222,7 +222,9 @@ impl Plan {
         let muscles: Vec<_> = muscles.map(|m| (m.name.clone(), m.direction)).collect();
         let obstacles = self.tube.obstacles.iter();
         let obstacles: Vec<String> = obstacles.map(|obstacle| obstacle.name.clone()).collect();
-        state.check_layout(&self.layout(), &muscles, &obstacles)
+        let patches = self.tube.patches.iter();
+        let patches: Vec<String> = patches.map(|patch| patch.name.clone()).collect();
+        state.check_layout(&self.layout(), &muscles, &obstacles, &patches)
     }
 
     /// Returns whether there is a pressure on a wall at the start or in any stage.

@@ -1,7 +1,7 @@
 //! A state as a row of `history.csv`.
 
 use super::table::{Quantity, Visitor};
-use super::{ContactRow, ObstacleRow, Scale, State};
+use super::{ContactRow, ObstacleRow, PatchRow, Scale, State};
 use crate::equilibrium::Stability;
 use crate::measure::{Shape, Side};
 use crate::solve::Method;
@@ -31,7 +31,7 @@ pub struct Row {
     pub inner_dead_load: Option<f64>,
     /// Dead load on the outer wall, per area at rest.
     pub outer_dead_load: Option<f64>,
-    /// Strain energy plus the potential of the pressures, which is zero at rest.
+    /// Strain energy plus the potential of the pressures, which is zero at rest, and the energy of the foundations.
     pub potential: Option<f64>,
     /// Work done so far by the pressures on the inner wall; also exists only in runs with pressures.
     pub inner_wall_work: Option<f64>,
@@ -41,6 +41,10 @@ pub struct Row {
     pub contact: ContactRow,
     /// The obstacles, in the order of the tube.
     pub obstacles: Vec<ObstacleRow>,
+    /// The patches, in the order of the tube.
+    pub patches: Vec<PatchRow>,
+    /// Energy of the foundations; exists only in runs with foundations.
+    pub foundation_energy: Option<f64>,
     /// Strain energy W = ∫ w det Fp dV₀, over the grown volume.
     pub energy: f64,
     /// Strain energy ∫ w dV₀, over the ungrown volume, as some other programs report it.
@@ -49,7 +53,7 @@ pub struct Row {
     pub residual: f64,
     /// Work done against damping since the previous state.
     pub damping_work: f64,
-    /// Work done so far by muscles, pressures, ends and on obstacles, less the work of damping and friction so far and the gain of the energies of strain and contact.
+    /// Work done so far by muscles, patches, pressures, ends and on obstacles, less the work of damping and friction so far and the gain of the energies of strain, contact and foundations.
     pub released_energy: f64,
     /// Method by which the state was found: rest, newton, relaxation or pseudo-time.
     pub method: Method,
@@ -151,6 +155,11 @@ impl Row {
             stretch: muscle.stretch,
             work: 0.0,
         });
+        let patches = state.patches.iter().map(|patch| PatchRow {
+            name: patch.name.clone(),
+            growth_through: patch.growth_through,
+            work: 0.0,
+        });
         let end = |i: usize| EndRow {
             name: state.end_names[i].clone(),
             displacement: length * state.load.ends[i].displacement,
@@ -186,6 +195,8 @@ impl Row {
                 .iter()
                 .map(|obstacle| ObstacleRow::new(obstacle, scale))
                 .collect(),
+            patches: patches.collect(),
+            foundation_energy: state.foundation_energy.map(|x| energy * x),
             energy: energy * state.energy,
             energy_ungrown_volume: energy * state.energy_ungrown_volume,
             residual: state.relative_residual,
@@ -236,6 +247,9 @@ impl Row {
         for (i, obstacle) in self.obstacles.iter_mut().enumerate() {
             obstacle.work = total(previous.obstacles[i].work, work.obstacles[i]);
         }
+        for (i, patch) in self.patches.iter_mut().enumerate() {
+            patch.work = total(previous.patches[i].work, work.patches[i]);
+        }
         for (now, before, work) in [
             (
                 &mut self.inner_wall_work,
@@ -255,7 +269,8 @@ impl Row {
         let stored = |row: &Self| {
             let obstacles = row.obstacles.iter();
             let contact = obstacles.fold(0.0, |sum, obstacle| sum + obstacle.energy);
-            row.energy + row.contact.energy.unwrap_or(0.0) + contact
+            let foundation = row.foundation_energy.unwrap_or(0.0);
+            row.energy + row.contact.energy.unwrap_or(0.0) + contact + foundation
         };
         let gained = stored(&self) - stored(previous);
         let by_friction = |row: &Self| {
@@ -338,6 +353,8 @@ impl Row {
             outer_wall_work: None,
             contact: ContactRow::default(),
             obstacles: vec![],
+            patches: vec![],
+            foundation_energy: None,
             energy: 0.0,
             energy_ungrown_volume: 0.0,
             residual: 0.0,
@@ -377,6 +394,24 @@ impl Row {
             ..ObstacleRow::default()
         };
         self.obstacles = names.iter().map(row).collect();
+        self
+    }
+
+    /// Adds the columns of patches, with zeros, to a row without them.
+    #[must_use]
+    pub fn with_patches(mut self, names: &[&str]) -> Self {
+        let row = |name: &&str| PatchRow {
+            name: (*name).into(),
+            ..PatchRow::default()
+        };
+        self.patches = names.iter().map(row).collect();
+        self
+    }
+
+    /// Adds the column of foundations, with zero, to a row without it.
+    #[must_use]
+    pub fn with_foundations(mut self) -> Self {
+        self.foundation_energy.get_or_insert(0.0);
         self
     }
 
@@ -428,6 +463,11 @@ impl Row {
         for obstacle in &mut self.obstacles {
             obstacle.visit(v);
         }
+        for patch in &mut self.patches {
+            patch.visit(v);
+        }
+        let foundation = &mut self.foundation_energy;
+        v.optional("foundation_energy", Energy, foundation);
         v.cell("energy", Energy, &mut self.energy);
         let ungrown = &mut self.energy_ungrown_volume;
         v.cell("energy_ungrown_volume", Energy, ungrown);
@@ -440,6 +480,10 @@ impl Row {
         for obstacle in &mut self.obstacles {
             let name = format!("work_{}", obstacle.name);
             v.cell(&name, Energy, &mut obstacle.work);
+        }
+        for patch in &mut self.patches {
+            let name = format!("work_{}", patch.name);
+            v.cell(&name, Energy, &mut patch.work);
         }
         v.optional("work_inner-wall", Energy, &mut self.inner_wall_work);
         v.optional("work_outer-wall", Energy, &mut self.outer_wall_work);

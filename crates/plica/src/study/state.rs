@@ -8,7 +8,7 @@ use crate::contact::ContactReport;
 use crate::equilibrium::{Stability, TubeProblem};
 use crate::measure::{Dimensions, Measures, Reaction};
 use crate::solve::{Method, Step};
-use crate::tube::{Load, Obstacle, Placement};
+use crate::tube::{Load, Obstacle, Patch, Placement};
 
 /// An accepted state of a study. Lengths in D, energies in E·D³, stresses in E.
 #[derive(Clone, Debug)]
@@ -60,6 +60,10 @@ pub struct State {
     pub contact: Option<ContactReport>,
     /// The obstacles, in the order of the tube.
     pub obstacles: Vec<ObstacleState>,
+    /// The patches, in the order of the tube.
+    pub patches: Vec<PatchState>,
+    /// Energy of the foundations of the whole tube, in E·D³; none in a study without foundations.
+    pub foundation_energy: Option<f64>,
     /// Work since the previous state.
     pub work: Work,
     /// Smallest det Fe at any quadrature point.
@@ -94,6 +98,15 @@ pub struct ObstacleState {
     pub placement: Placement,
     /// Its contact with the walls.
     pub contact: ObstacleContact,
+}
+
+/// A patch in a state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchState {
+    /// Its name in the case.
+    pub name: String,
+    /// Stress-free thickness over the thickness at rest in its middle.
+    pub growth_through: f64,
 }
 
 /// A point of a stage at which a state is accepted.
@@ -166,6 +179,8 @@ impl State {
             reactions: Reaction::of(tube, load, u, &forces.residual),
             contact,
             obstacles: obstacles(plan, load, point.contacts()),
+            patches: patches(plan, load),
+            foundation_energy: (!plan.tube.foundations.is_empty()).then_some(forces.foundation),
             work,
             min_det_fe: forces.smallest_jacobian,
             stability,
@@ -210,6 +225,16 @@ fn obstacles(plan: &Plan, load: &Load, contacts: &[ObstacleContact]) -> Vec<Obst
         }
     };
     obstacles.zip(contacts).map(state).collect()
+}
+
+/// Returns the patches of a plan under a load.
+fn patches(plan: &Plan, load: &Load) -> Vec<PatchState> {
+    let patches = plan.tube.patches.iter().zip(&load.patches);
+    let state = |(patch, &growth_through): (&Patch, &f64)| PatchState {
+        name: patch.name.clone(),
+        growth_through,
+    };
+    patches.map(state).collect()
 }
 
 /// Returns the muscles of a plan under a load.

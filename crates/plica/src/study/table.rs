@@ -143,13 +143,16 @@ impl RowReader {
         };
         let muscles: Vec<&str> = named("target_").collect();
         let obstacles: Vec<&str> = named("radius_").collect();
+        let patches: Vec<&str> = named("growth_through_").collect();
         let ends: Vec<&str> = named("displacement_").collect();
         let Ok(ends) = ends.try_into() else {
             return Err("there are not two columns `displacement_` with the name of an end".into());
         };
         let reader = Self {
             columns: header.iter().copied().map(String::from).zip(0..).collect(),
-            zero: Row::zero(&muscles, ends).with_obstacles(&obstacles),
+            zero: Row::zero(&muscles, ends)
+                .with_obstacles(&obstacles)
+                .with_patches(&patches),
         };
         let missing = |name: &String| !reader.columns.contains_key(name);
         match reader.zero.header().into_iter().find(missing) {
@@ -253,7 +256,8 @@ mod tests {
 
     fn filled() -> Row {
         let mut row = Row::zero(&["circular", "long-1"], ["proximal", "distal"])
-            .with_obstacles(&["bolus", "scope"]);
+            .with_obstacles(&["bolus", "scope"])
+            .with_patches(&["scar", "polyp"]);
         let method = row.method;
         row.visit(&mut Fill(0.0));
         (row.stage, row.method, row.in_equilibrium) = ("a, \"b\"".into(), method, false);

@@ -1,12 +1,12 @@
-//! Work between two states: done by the muscles, the pressures and the supports of the ends, and on the obstacles.
+//! Work between two states: done by the muscles, the growth of patches, the pressures and the supports of the ends, and on the obstacles.
 //!
 //! Along a path of equilibria
 //!
-//! dW + dΠ_c = Σ ∂W/∂t dt + p_i dV_i − p_o dV_o + (the same of dead loads) + Σ R · du + Σ ∂Π_c/∂q dq,
+//! dW + dΠ_f + dΠ_c = Σ ∂W/∂t dt + p_i dV_i − p_o dV_o + (the same of dead loads) + Σ R · du + Σ ∂Π_c/∂q dq,
 //!
-//! where t is the target of a muscle at fixed displacements, R the residual at the prescribed displacements u of the
-//! ends, and q the radius or a coordinate of an obstacle. The work changes the strain energy W and the energy of contact
-//! Π_c. The trapezoidal rule between accepted states integrates each term with an error of second order in the step.
+//! where t is the target of a muscle or a patch at fixed displacements, R the residual at the prescribed displacements u of the
+//! ends, and q the radius or a coordinate of an obstacle. The work changes the strain energy W and the energies of
+//! foundations Π_f and of contact Π_c. The trapezoidal rule between accepted states integrates each term with an error of second order in the step.
 
 use super::Plan;
 use crate::assembly::{Forces, ObstacleContact, SplineTube};
@@ -24,6 +24,8 @@ pub struct Work {
     pub ends: [f64; 2],
     /// On each obstacle, to move it and to change its radius, in the order of the tube.
     pub obstacles: Vec<f64>,
+    /// By the growth of each patch, in the order of the tube.
+    pub patches: Vec<f64>,
 }
 
 impl Work {
@@ -32,6 +34,7 @@ impl Work {
         Self {
             muscles: vec![0.0; load.muscles.len()],
             obstacles: vec![0.0; load.obstacles.len()],
+            patches: vec![0.0; load.patches.len()],
             ..Self::default()
         }
     }
@@ -44,6 +47,8 @@ pub(super) struct WorkPoint {
     u: Vec<f64>,
     /// ∂W/∂t of each muscle whose target has changed in the step before.
     muscle_forces: Vec<Option<f64>>,
+    /// The same for each patch.
+    patch_forces: Vec<Option<f64>>,
     /// For each wall, the work of a unit follower pressure and of a unit dead load since rest.
     unit_work: [[f64; 2]; 2],
     /// Displacement and residual at the prescribed unknowns of each end, of one sector.
@@ -74,6 +79,7 @@ impl WorkPoint {
         };
         Self {
             muscle_forces: vec![None; load.muscles.len()],
+            patch_forces: vec![None; load.patches.len()],
             unit_work: match plan.has_pressures() {
                 true => tube.work_of_unit_pressures(u),
                 false => [[0.0; 2]; 2],
@@ -97,6 +103,12 @@ impl WorkPoint {
         known.unwrap_or_else(|| muscle_force(tube, &self.load, &self.u, m))
     }
 
+    /// Returns ∂W/∂t of a patch.
+    fn patch_force(&self, tube: &SplineTube, i: usize) -> f64 {
+        let known = self.patch_forces[i];
+        known.unwrap_or_else(|| patch_force(tube, &self.load, &self.u, i))
+    }
+
     /// Returns the work on the way from this state to the next.
     pub fn work_to(&self, next: &mut Self, tube: &SplineTube) -> Work {
         let trapezoid = |force: [f64; 2], change: f64| 0.5 * (force[0] + force[1]) * change;
@@ -107,6 +119,15 @@ impl WorkPoint {
                 let from = self.muscle_force(tube, m);
                 let to = next.muscle_force(tube, m);
                 next.muscle_forces[m] = Some(to);
+                *work = trapezoid([from, to], change);
+            }
+        }
+        let mut patches = vec![0.0; self.load.patches.len()];
+        for (i, work) in patches.iter_mut().enumerate() {
+            let change = next.load.patches[i] - self.load.patches[i];
+            if change != 0.0 {
+                let (from, to) = (self.patch_force(tube, i), next.patch_force(tube, i));
+                next.patch_forces[i] = Some(to);
                 *work = trapezoid([from, to], change);
             }
         }
@@ -142,6 +163,7 @@ impl WorkPoint {
         Work {
             obstacles: (0..self.contacts.len()).map(obstacle).collect(),
             muscles,
+            patches,
             walls: [0, 1].map(wall),
             ends: [0, 1].map(end),
         }
@@ -153,16 +175,32 @@ fn muscle_force(tube: &SplineTube, load: &Load, u: &[f64], m: usize) -> f64 {
     let (muscle, target, length) = (&tube.tube.muscles[m], load.muscles[m], tube.tube.length);
     let slope = muscle.extreme_stretch(1.0, length) - muscle.extreme_stretch(0.0, length);
     let h = STRETCH_STEP * muscle.smallest_stretch(target, length) / slope;
-    let energy = |target: f64| {
+    energy_slope(tube, (load, u), h, |load, h| load.muscles[m] += h)
+}
+
+/// Returns the derivative of the strain energy of the whole tube by the growth of a patch, at fixed displacements.
+fn patch_force(tube: &SplineTube, load: &Load, u: &[f64], i: usize) -> f64 {
+    let h = STRETCH_STEP * load.patches[i].min(1.0);
+    energy_slope(tube, (load, u), h, |load, h| load.patches[i] += h)
+}
+
+/// Returns the central difference of the strain energy over a step h of a target.
+fn energy_slope(
+    tube: &SplineTube,
+    (load, u): (&Load, &[f64]),
+    h: f64,
+    change: impl Fn(&mut Load, f64),
+) -> f64 {
+    let energy = |h: f64| {
         let mut load = load.clone();
-        load.muscles[m] = target;
+        change(&mut load, h);
         // Growth does not change the sign of det Fe.
         let Ok(forces) = tube.forces(&load, u) else {
             unreachable!("an accepted state is not inverted")
         };
         forces.energy
     };
-    (energy(target + h) - energy(target - h)) / (2.0 * h)
+    (energy(h) - energy(-h)) / (2.0 * h)
 }
 
 #[cfg(test)]

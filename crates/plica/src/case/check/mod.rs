@@ -11,6 +11,8 @@ mod material;
 mod mesh;
 mod muscles;
 mod obstacles;
+mod patches;
+mod region;
 mod solver;
 mod stages;
 mod start;
@@ -39,6 +41,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
     let (imperfections, modes) = imperfections::imperfections(case, &tube, run, open, problems);
     tube.imperfections = imperfections;
     imperfections::check_stretches(&tube, &stages, problems);
+    patches::check_stretches(&tube, &stages, problems);
     imperfections::check_wall(case, &tube, run, problems);
     stages::check_end_planes(&tube, &stages, problems);
     contact::check(case, symmetry, &tube, &stages, problems);

@@ -3,6 +3,7 @@
 use super::super::key::join;
 use super::super::keys::{self, Case};
 use super::super::problem::Problems;
+use super::region;
 use super::zone::{ROUNDING, zone};
 use crate::activation::{Muscle, Profile};
 use std::collections::BTreeSet;
@@ -19,12 +20,14 @@ pub(super) fn muscles(case: &Case, length: f64, problems: &mut Problems) -> Vec<
         let path = join("muscles", name);
         check_name(&path, name, problems);
         let key = format!("{path}.zone");
+        let sector = muscle.sector.as_ref();
         muscles.push(Muscle {
             name: name.clone(),
             direction: muscle.direction,
             zone: zone(&key, case, muscle.zone, length, problems),
             profile: profile(&path, &muscle.profile, problems),
-            sector: None,
+            sector: sector
+                .map(|own| region::sector(&format!("{path}.sector"), own, case, problems)),
         });
     }
     check_overlaps(case, problems);

@@ -123,6 +123,8 @@ enum Driven {
     Wall(usize),
     /// An obstacle, by its index in the tube, and whether it has a radius.
     Obstacle(usize, bool),
+    /// A patch, by its index in the tube.
+    Patch(usize),
 }
 
 impl Driven {
@@ -141,6 +143,9 @@ impl Driven {
             let is_plate = matches!(tube.obstacles[i].shape, ObstacleShape::Plate { .. });
             return Some(Self::Obstacle(i, !is_plate));
         }
+        if let Some(i) = tube.patches.iter().position(|patch| patch.name == name) {
+            return Some(Self::Patch(i));
+        }
         let m = *muscles.get(name)?;
         Some(Self::Muscle(m, tube.muscles[m].direction))
     }
@@ -153,6 +158,7 @@ impl Driven {
             Self::Wall(_) => &["pressure", "dead_load"],
             Self::Obstacle(_, true) => &["radius", "position"],
             Self::Obstacle(_, false) => &["position"],
+            Self::Patch(_) => &["growth_through"],
         }
     }
 
@@ -164,6 +170,7 @@ impl Driven {
             Self::Wall(_) => "a surface of the tube",
             Self::Obstacle(_, true) => "an obstacle",
             Self::Obstacle(_, false) => "a plate",
+            Self::Patch(_) => "a patch",
         }
     }
 }
@@ -171,7 +178,7 @@ impl Driven {
 /// Reports a name that is neither a muscle, nor an end, nor a surface.
 fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
     let muscle = join("muscles", name);
-    if !problems.are_sound(&[&muscle, "obstacles"]) {
+    if !problems.are_sound(&[&muscle, "obstacles", "patches"]) {
         return problems.replaced(path);
     }
     let names = || {
@@ -179,9 +186,11 @@ fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
         // A muscle of such a name is reported by itself.
         let is_free = |name: &&str| !ENDS.contains(name) && !WALLS.contains(name);
         let obstacles = tube.obstacles.iter().map(|obstacle| obstacle.name.as_str());
+        let patches = tube.patches.iter().map(|patch| patch.name.as_str());
         muscles
             .filter(is_free)
             .chain(obstacles)
+            .chain(patches)
             .chain(ENDS)
             .chain(WALLS)
     };
@@ -201,7 +210,11 @@ fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
             format!("add [{muscle}], or drive {}{more}", some.join(", "))
         }
     };
-    problems.key(path, "there is no muscle or obstacle of this name", help);
+    let rule = match tube.patches.is_empty() {
+        true => "there is no muscle or obstacle of this name",
+        false => "there is no muscle, obstacle or patch of this name",
+    };
+    problems.key(path, rule, help);
 }
 
 /// Applies the targets of one muscle, end or surface to the load.
@@ -232,6 +245,7 @@ fn apply(
     let written = [
         ("diameter_ratio", drive.diameter_ratio),
         ("length_ratio", drive.length_ratio),
+        ("growth_through", drive.growth_through),
         ("displacement", drive.displacement),
         ("twist_degrees", drive.twist_degrees),
         ("pressure", drive.pressure),
@@ -285,6 +299,7 @@ fn apply(
                     _ => placement.radius = value / case.tube.diameter,
                 }
             }
+            Driven::Patch(i) => load.patches[i] = value,
             Driven::Wall(w) => {
                 let modulus = youngs_modulus(case);
                 let (wall, value) = (&mut load.pressures[w], value / modulus);

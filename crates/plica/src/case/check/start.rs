@@ -9,7 +9,7 @@ use super::zone::{ROUNDING, length};
 use crate::activation::{Direction, Muscle};
 use crate::saved_state::{Layout, SavedState};
 use crate::study::Start;
-use crate::tube::{Load, Mesh, Obstacle, Symmetry, Tube};
+use crate::tube::{Load, Mesh, Obstacle, Patch, Symmetry, Tube};
 
 const KEY: &str = "start.state";
 
@@ -133,6 +133,17 @@ fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Load {
         let same = |obstacle: &Obstacle| obstacle.name == *name;
         if let Some(i) = tube.obstacles.iter().position(same) {
             load.obstacles[i] = *placement;
+        }
+    }
+    for (name, &growth) in state.patches.iter().zip(&state.load.patches) {
+        let same = |patch: &Patch| patch.name == *name;
+        if let Some(i) = tube.patches.iter().position(same) {
+            load.patches[i] = growth;
+        } else if growth != 1.0 {
+            let rule = format!(
+                "its patch {name} has grown to {growth}, and this case has no patch of that name"
+            );
+            problems.value(KEY, rule, "add it to [[patches]]");
         }
     }
     load.ends = state.load.ends;

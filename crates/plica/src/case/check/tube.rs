@@ -4,6 +4,7 @@ use super::super::keys::Case;
 use super::super::problem::Problems;
 use super::layers::{layers, whole_thickness};
 use super::muscles::muscles;
+use super::patches::{foundations, patches};
 use super::zone::{length, tidy};
 use crate::tube::Tube;
 
@@ -35,7 +36,7 @@ pub(super) fn tube(case: &Case, problems: &mut Problems) -> Tube {
         problems.value("tube.length", rule, help);
     }
     let muscles = muscles(case, length, problems);
-    Tube {
+    let tube = Tube {
         length,
         thickness,
         layers: layers(case, thickness, &muscles, problems),
@@ -45,5 +46,10 @@ pub(super) fn tube(case: &Case, problems: &mut Problems) -> Tube {
         obstacles: vec![],
         patches: vec![],
         foundations: vec![],
+    };
+    Tube {
+        patches: patches(case, &tube, problems),
+        foundations: foundations(case, &tube, problems),
+        ..tube
     }
 }

@@ -1,7 +1,7 @@
 //! Every declared key is read, with its default, its range and its unit.
 
 use super::*;
-use crate::case::key::{Default, LENGTH, Limit, STRESS, join};
+use crate::case::key::{Default, LENGTH, Limit, STIFFNESS, STRESS, join};
 use crate::case::read::Table as _;
 use crate::solve::{PseudoTime, Scheme, Settings};
 use crate::study::Output;
@@ -95,6 +95,30 @@ fn base(pattern: &str) -> String {
             "symmetry = 'none'\n{text}[[obstacles]]\nname = 'bolus'\nshape = {{ {shape} }}\n"
         );
     }
+    let is_patch = pattern.starts_with("patches[]");
+    if is_patch || pattern.ends_with("growth_through") {
+        text += "[[patches]]\nname = 'scar'\nzone = [0.5, 1.0]\n";
+    }
+    if pattern.starts_with("foundations[]") {
+        let direction = match pattern.ends_with("tension_only") {
+            true => "direction = 'normal'\n",
+            false => "",
+        };
+        let zone = match pattern.ends_with(".edge") {
+            true => "zone = [0.5, 1.0]\n",
+            false => "",
+        };
+        text += &format!("[[foundations]]\nstiffness = 0.01\n{direction}{zone}");
+    }
+    if pattern.contains(".sector") {
+        let sector = "sector.width_degrees = 180.0\n";
+        if pattern.starts_with("muscles.<name>.sector.") {
+            text = text.replace("zone", &format!("{sector}zone"));
+        } else if pattern.contains(".sector.") {
+            text += sector;
+        }
+        text = format!("symmetry = 'none'\n{text}");
+    }
     if pattern.starts_with("imperfections[]") {
         let shape = match pattern {
             "imperfections[].shape.mode" => "mode = 'mode'",
@@ -122,6 +146,7 @@ fn path(pattern: &str) -> String {
         "displacement" | "twist_degrees" => "colon",
         "pressure" | "dead_load" => "inner-wall",
         "radius" | "position" => "bolus",
+        "growth_through" => "scar",
         _ => "circular",
     };
     pattern.replace("[]", "[1]").replace("<name>", name)
@@ -254,9 +279,14 @@ fn scale(
                 scale(value, &format!("{pattern}[]"), [length, stress], seen);
             }
         }
-        value if unit == LENGTH || unit == STRESS => {
+        value if [LENGTH, STRESS, STIFFNESS].contains(&unit) => {
             seen.insert(pattern.to_owned());
-            numbers(value, if unit == LENGTH { length } else { stress });
+            let factor = match unit {
+                LENGTH => length,
+                STRESS => stress,
+                _ => stress / length,
+            };
+            numbers(value, factor);
         }
         _ => {}
     }
@@ -280,7 +310,7 @@ fn units_scale_a_case_and_change_nothing_else() {
         },
         ratios
     );
-    let has_unit = |key: &Key| key.rule.unit == LENGTH || key.rule.unit == STRESS;
+    let has_unit = |key: &Key| [LENGTH, STRESS, STIFFNESS].contains(&key.rule.unit);
     let all = keys().into_iter().filter(|(_, key)| has_unit(key));
     // A layer has only one law.
     let is_other = |pattern: &str| {

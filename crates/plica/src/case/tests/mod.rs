@@ -69,6 +69,7 @@ drive.colon.twist_degrees = 10
 drive.inner-wall.pressure = 0.5
 drive.outer-wall.dead_load = 0.25
 drive.next.diameter_ratio = 0.9
+drive.scar.growth_through = 1.5
 drive.bolus = { position = [0.0, 0.0, 4.0], radius = 3.0 }
 [[obstacles]]
 name = "bolus"
@@ -82,6 +83,20 @@ shape = { sheath = { radius = 10.0, position = [0.0, 0.25, 0.0] } }
 [[obstacles]]
 name = "spine"
 shape = { plate = { position = [0.0, -16.0, 0.0], normal = [0.0, 3.0, 4.0] } }
+[[patches]]
+name = "scar"
+zone = [16.0, 32.0]
+edge = 4.0
+layer = "media"
+stiffness = 2.0
+muscles = { ring = 0.25 }
+sector = { width_degrees = 40.0, repeat = 2 }
+[[foundations]]
+zone = [8.0, 72.0]
+edge = 2.0
+stiffness = 0.5
+direction = "normal"
+tension_only = true
 [[imperfections]]
 of = "colon-end"
 direction = "axial"
@@ -162,6 +177,7 @@ fn state() -> SavedState {
         row: 0,
         along: 0.0,
         obstacles: vec![],
+        patches: vec![],
         muscles: vec![],
         load: tube::Load {
             muscles: vec![],
@@ -281,6 +297,13 @@ fn the_plan_is_dimensionless() {
     assert_eq!(scope.shape, tube::ObstacleShape::Rod { half_length: 0.5 });
     let normal = [0.8, 0.0, 0.6];
     assert_eq!(spine.shape, tube::ObstacleShape::Plate { normal });
+    let [patch, foundation] = [plan.tube.patches[0].region, plan.tube.foundations[0].region];
+    assert_eq!((patch.zone, patch.edge), ([1.0, 2.0], 0.25));
+    assert_eq!((foundation.zone, foundation.edge), ([0.5, 4.5], 0.125));
+    assert_eq!(plan.tube.patches[0].muscles, [1.0, 1.0, 0.25]);
+    assert_eq!(second.load.patches, [1.5]);
+    // 0.5 kPa/mm of a diameter of 16 mm and a modulus of 64 kPa.
+    assert_eq!(plan.tube.foundations[0].stiffness, 0.125);
     let [end, muscle, geometry] = &plan.tube.imperfections[..] else {
         panic!("{:?}", plan.tube.imperfections)
     };

@@ -55,6 +55,80 @@ const OF_RING: &[Rule] = &[
         &["0.1"],
     ),
     rule(
+        "patches[1].edge",
+        "patches = [{ name = 'scar', zone = [1.0, 2.0], edge = @ }]",
+        &["0.0", "0.5"],
+        &["0.501"],
+    ),
+    rule(
+        "patches[1].zone",
+        "patches = [{ name = 'scar', zone = @ }]",
+        &["[0.0, 3.0]"],
+        &["[-0.1, 1.0]", "[1.0, 3.1]", "[2.0, 1.0]"],
+    ),
+    rule(
+        "patches[1].name",
+        "patches = [{ name = @, zone = [1.0, 2.0] }]",
+        &["'scar'"],
+        &["'ring'", "'colon'", "'outer-wall'", "'a.b'"],
+    ),
+    rule(
+        "patches[1].layer",
+        "patches = [{ name = 'scar', zone = [1.0, 2.0], layer = @ }]\nlayers = [{ thickness = 0.03, name = 'in' }, { thickness = 0.03 }]",
+        &["'in'", "'layer-2'"],
+        &["'out'"],
+    ),
+    rule(
+        "patches[1].muscles.@",
+        "patches = [{ name = 'scar', zone = [1.0, 2.0], muscles.@ = 0.5 }]",
+        &["ring"],
+        &["rings"],
+    ),
+    // Dmin/D = 0.25 makes 1 − 0.75 f of the wall.
+    rule(
+        "patches[1].muscles.ring",
+        "patches = [{ name = 'scar', zone = [1.0, 2.0], muscles.ring = @ }]",
+        &["0.0", "1.306"],
+        &["-0.1", "1.307", "11.0", "'x'"],
+    ),
+    rule(
+        "patches[1].sector",
+        "symmetry = @\npatches = [{ name = 'scar', zone = [1.0, 2.0], sector.width_degrees = 90.0 }]",
+        &["'none'", "{ fold = 4 }"],
+        &["'axisymmetric'"],
+    ),
+    rule(
+        "patches[1].sector.width_degrees",
+        "symmetry = 'none'\npatches = [{ name = 'scar', zone = [1.0, 2.0], sector = { width_degrees = @, repeat = 3 } }]",
+        &["120.0"],
+        &["121.0"],
+    ),
+    rule(
+        "foundations[1].sector.width_degrees",
+        "symmetry = { fold = 4 }\nfoundations = [{ stiffness = 1.0, sector = { width_degrees = @, repeat = 6 } }]",
+        &["30.0"],
+        &["31.0"],
+    ),
+    rule(
+        "foundations[1].sector.edge_degrees",
+        "symmetry = 'none'\nfoundations = [{ stiffness = 1.0, sector = { width_degrees = 90.0, edge_degrees = @ } }]",
+        &["45.0"],
+        &["46.0"],
+    ),
+    rule(
+        "foundations[1].tension_only",
+        "foundations = [{ stiffness = 1.0, tension_only = @ }]",
+        &["false"],
+        &["true"],
+    ),
+    rule(
+        "foundations[1].tension_only",
+        "symmetry = 'none'\nends.ileum = 'free'\nends.colon = 'free'\n\
+         foundations = [{ stiffness = 1.0, direction = 'normal', tension_only = @ }]",
+        &["false"],
+        &["true"],
+    ),
+    rule(
         "obstacles[1].friction",
         "obstacles = [{ name = 'hose', shape = { sheath = { radius = 0.6 } }, friction = @ }]",
         &["0.0", "2.0"],

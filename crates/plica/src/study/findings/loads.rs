@@ -89,6 +89,10 @@ pub fn loads(row: &Row, scale: &Scale, muscles_by_name: bool) -> Vec<NamedLoad> 
             loads.push(load(format!("{axis} of {name}"), x, length));
         }
     }
+    for patch in &row.patches {
+        let name = format!("growth of {}", patch.name);
+        loads.push(load(name, patch.growth_through, ""));
+    }
     loads
 }
 
