@@ -12,6 +12,7 @@ mod imperfections;
 mod layers;
 mod loads;
 mod lowest_modes;
+mod patches;
 mod rigid_body_motions;
 mod stability;
 mod study;

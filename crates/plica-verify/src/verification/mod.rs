@@ -30,6 +30,7 @@ mod locking;
 mod main_case;
 mod manufactured;
 pub mod one_dimension;
+mod patches;
 mod report;
 mod rings;
 pub mod row;
