@@ -1,16 +1,16 @@
-//! A matrix with fibres: the sum of an isotropic law, of any number of families of fibres, and of an active tension.
+//! A matrix with fibres: the sum of another law, of any number of families of fibres, and of an active tension.
 //!
 //! Evaluated eight numbers at a time through memory, like a custom law: the element kernels are not compiled for it again.
 
 use super::first_invariant::FirstInvariant;
-use super::{Demiray, Fibres, Gent, Law, Moduli, ModuliData, MooneyRivlin, NeoHookean};
+use super::{Demiray, Fibres, Fung, Gent, Law, Moduli, ModuliData, MooneyRivlin, NeoHookean};
 use super::{Tone, Volumetric, Yeoh};
 use crate::tensor::{Real, Tensor2};
 
 /// A matrix with fibres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Composite {
-    /// The isotropic part.
+    /// The part without fibres.
     pub matrix: Matrix,
     /// The families of fibres.
     pub fibres: Vec<Fibres>,
@@ -18,7 +18,7 @@ pub struct Composite {
     pub tone: Option<Tone>,
 }
 
-/// An isotropic law.
+/// A law without fibres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Matrix {
     /// Compressible neo-Hookean.
@@ -31,6 +31,8 @@ pub enum Matrix {
     Demiray(Demiray),
     /// Gent, with a limit of the extension.
     Gent(Gent),
+    /// Fung, orthotropic.
+    Fung(Fung),
 }
 
 /// Evaluates an expression with the law of a [`Matrix`].
@@ -42,6 +44,7 @@ macro_rules! with_matrix {
             Matrix::Yeoh($law) => $value,
             Matrix::Demiray($law) => $value,
             Matrix::Gent($law) => $value,
+            Matrix::Fung($law) => $value,
         }
     };
 }
@@ -55,6 +58,7 @@ impl Matrix {
             Self::Yeoh(law) => law.shear_modulus(),
             Self::Demiray(law) => law.shear_modulus,
             Self::Gent(law) => law.shear_modulus,
+            Self::Fung(law) => law.shear_modulus(),
         }
     }
 
@@ -66,6 +70,7 @@ impl Matrix {
             Self::Yeoh(_) => "Yeoh",
             Self::Demiray(_) => "Demiray",
             Self::Gent(_) => "Gent",
+            Self::Fung(_) => "Fung",
         }
     }
 
@@ -87,6 +92,7 @@ impl Matrix {
                 volume(law.bulk),
             ],
             Self::Gent(law) => [Self::Gent(Gent { bulk: 0.0, ..law }), volume(law.bulk)],
+            Self::Fung(law) => [Self::Fung(Fung { bulk: 0.0, ..law }), volume(law.bulk)],
         }
     }
 }
@@ -99,7 +105,7 @@ impl Composite {
             Self {
                 matrix: shape,
                 fibres: self.fibres.clone(),
-                tone: self.tone,
+                tone: self.tone.clone(),
             },
             Self {
                 matrix: volume,
@@ -119,7 +125,7 @@ impl Composite {
         };
         let count = |family: &Fibres| self.fibres.iter().filter(|f| same(f, family)).count();
         let pairs = |family: &Fibres| count(family) == count(&family.mirrored());
-        let tone = self.tone.is_none_or(|tone| tone.is_mirror_symmetric());
+        let tone = self.tone.as_ref().is_none_or(|tone| tone.is_mirror_symmetric());
         tone && self.fibres.iter().all(pairs)
     }
 }

@@ -23,7 +23,9 @@ mod custom;
 mod demiray;
 mod fibres;
 mod first_invariant;
+mod fung;
 mod gent;
+mod length_tension;
 mod mooney_rivlin;
 mod neo_hookean;
 mod tangent_data;
@@ -35,7 +37,9 @@ pub use composite::{Composite, Matrix};
 pub use custom::CustomLaw;
 pub use demiray::Demiray;
 pub use fibres::Fibres;
+pub use fung::Fung;
 pub use gent::Gent;
+pub use length_tension::LengthTension;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::{NeoHookean, Volumetric};
 pub use tangent_data::{ModuliData, TangentData};
@@ -74,7 +78,7 @@ pub enum Material {
     NeoHookean(NeoHookean),
     /// Compressible Mooney–Rivlin.
     MooneyRivlin(MooneyRivlin),
-    /// Another isotropic law, or one with fibres.
+    /// Another law, or one with fibres.
     Composite(Composite),
     /// A law of a user's own.
     Custom(CustomLaw),

@@ -65,7 +65,18 @@ fn laws_with_fibres() -> Vec<Material> {
         composite(demiray(), vec![media, linear, dispersed]),
         composite(yeoh(), vec![linear]),
         composite(gent(), vec![media, dispersed]),
+        composite(fung(), vec![]),
+        composite(fung(), vec![media]),
     ]
+}
+
+/// Fung's law with the shear stiffness that follows, and with one of its own.
+fn fung() -> Matrix {
+    let a = [[0.9, 0.05, 0.2], [0.05, 0.4, 0.1], [0.2, 0.1, 1.1]];
+    Matrix::Fung(Fung {
+        shear: [0.3, 0.5, 0.2],
+        ..Fung::new(0.6, a, 20.0)
+    })
 }
 
 fn quadratic(poisson_ratio: f64) -> NeoHookean {
@@ -99,7 +110,7 @@ fn every_law_is_isotropic() {
 
 #[test]
 fn laws_without_fibres_along_a_plane_are_mirror_symmetric() {
-    let expected = [false, true, true, false, true, false];
+    let expected = [false, true, true, false, true, false, true, false];
     for (law, expected) in laws_with_fibres().iter().zip(expected) {
         assert_eq!(law.is_mirror_symmetric(), expected, "{law:?}");
         // Reflection of the direction along the tube.
@@ -115,17 +126,25 @@ fn laws_without_fibres_along_a_plane_are_mirror_symmetric() {
 #[test]
 fn stress_and_moduli_of_a_tone_are_the_derivatives_of_its_energy() {
     let matrix = Matrix::NeoHookean(quadratic(0.45));
+    let rachev = |best, least| LengthTension::Rachev { best, least };
+    let gaussian = LengthTension::Gaussian {
+        best: 1.1,
+        width: 0.3,
+    };
+    let table = LengthTension::Table(vec![[0.5, 0.0], [1.5, 1.0]]);
     for (tone, symmetric) in [
-        (Tone::new(0.7, None, 0.0), true),
-        (Tone::new(0.7, Some([1.4, 0.8]), 0.0), true),
-        (Tone::new(0.7, Some([1.1, 0.6]), 0.4), false),
+        (Tone::new(0.7, LengthTension::Constant, 0.0), true),
+        (Tone::new(0.7, rachev(1.4, 0.8), 0.0), true),
+        (Tone::new(0.7, rachev(1.1, 0.6), 0.4), false),
+        (Tone::new(0.7, gaussian, 0.4), false),
+        (Tone::new(0.7, table, 0.0), true),
         // Beyond its range there is no tension.
-        (Tone::new(0.7, Some([0.6, 0.5]), 0.4), false),
+        (Tone::new(0.7, rachev(0.6, 0.5), 0.4), false),
     ] {
         let law = Material::Composite(Composite {
             matrix,
             fibres: vec![],
-            tone: Some(tone),
+            tone: Some(tone.clone()),
         });
         assert!(law.has_tone() && law.is_mirror_symmetric() == symmetric);
         assert!(law.energy(&Tensor2::IDENTITY).abs() < 1e-14);
@@ -151,10 +170,10 @@ fn stress_and_moduli_of_a_tone_are_the_derivatives_of_its_energy() {
         }
         let none = composite(matrix, vec![]).stress(&DEFORMED);
         let is_none = none.0 == P.0;
-        assert_eq!(is_none, tone.stretches == Some([0.6, 0.5]), "{tone:?}");
+        assert_eq!(is_none, tone.relation == rachev(0.6, 0.5), "{tone:?}");
     }
     // The nominal stress along the fibres is T at λM.
-    let tone = Tone::new(0.7, Some([1.2, 0.8]), 0.0);
+    let tone = Tone::new(0.7, rachev(1.2, 0.8), 0.0);
     let mut F = Tensor2::IDENTITY;
     F.0[2][2] = 1.2;
     let mut P = Tensor2([[0.0; 3]; 3]);
@@ -390,4 +409,36 @@ fn only_the_quadratic_volumetric_energy_stays_elliptic_under_expansion() {
         logarithmic[0] > 1.0 && logarithmic[2] < 0.0,
         "{logarithmic:?}"
     );
+}
+
+#[test]
+fn fung_is_isotropic_where_its_coefficients_are_and_refuses_indefinite_ones() {
+    // a_ii = λ + 2μ, a_ij = λ: Q = λ (tr E)² + 2 μ E : E.
+    let (c, lambda, mu) = (0.7, 0.3, 0.45);
+    let mut a = [[lambda; 3]; 3];
+    for (i, row) in a.iter_mut().enumerate() {
+        row[i] += 2.0 * mu;
+    }
+    let law = Fung::new(c, a, 3.0);
+    assert!(law.is_positive_definite() && (law.shear_modulus() - c * mu).abs() < 1e-15);
+    let (s, k) = 0.7_f64.sin_cos();
+    for Q in [
+        Tensor2([[k, -s, 0.0], [s, k, 0.0], [0.0, 0.0, 1.0]]),
+        Tensor2([[1.0, 0.0, 0.0], [0.0, k, -s], [0.0, s, k]]),
+    ] {
+        let ratio = law.energy(&DEFORMED.times(Q)) / law.energy(&DEFORMED);
+        assert!((ratio - 1.0).abs() < 1e-13);
+    }
+    // Uniaxial stretch: E₁₁ alone.
+    let mut F = Tensor2::IDENTITY;
+    F.0[2][2] = 1.2_f64;
+    let E = 0.22_f64;
+    let shape = 0.5 * c * ((a[2][2] * E * E).exp() - 1.0);
+    let volume = 0.25 * 3.0 * (1.44 - 1.0 - 2.0 * 1.2_f64.ln());
+    assert!((law.energy(&F) - shape - volume).abs() < 1e-14);
+    let form = |a: [[f64; 3]; 3]| Fung::new(1.0, a, 1.0).is_positive_definite();
+    assert!(form([[1.0, 0.0, 0.9], [0.0, 0.0, 0.0], [0.9, 0.0, 1.0]]));
+    assert!(!form([[1.0, 0.0, 1.1], [0.0, 0.0, 0.0], [1.1, 0.0, 1.0]]));
+    assert!(!form([[1.0, 0.9, 0.0], [0.9, 0.5, 0.0], [0.0, 0.0, 1.0]]));
+    assert!(!form([[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]));
 }

@@ -1,34 +1,29 @@
 //! A constant active tension along the fibres of a muscle, a part of the energy of a [`Composite`](super::Composite).
 //!
-//! With the stretch λ = |Fe a| of the fibres and w(1) = 0:
-//!
-//! - constant tension: w′(λ) = T;
-//! - with a length of maximum (Rachev and Hayashi 1999): w′(λ) = T (1 − ((λM − λ)/(λM − λ0))²) where this is positive, for
-//!   λ0 < λ < 2 λM − λ0, and else zero.
-//!
-//! w′ is the nominal stress along the fibres. Beyond λM it falls, and w is not convex.
+//! With the stretch λ = |Fe a| of the fibres, w(1) = 0 and w′(λ) = T f(λ): the nominal stress along the fibres is the tension
+//! T times the fraction f of a [`LengthTension`]. Where f falls, w is not convex.
 
-use super::Moduli;
+use super::{LengthTension, Moduli};
 use crate::tensor::{Real, Tensor2};
 
 /// A constant active tension.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Tone {
     /// Tension T, with the unit of a stress.
     pub tension: f64,
-    /// λM and λ0; none for a tension that does not depend on the stretch.
-    pub stretches: Option<[f64; 2]>,
+    /// Dependence on the stretch.
+    pub relation: LengthTension,
     /// Components of a along the tube and around it.
     direction: [f64; 2],
 }
 
 impl Tone {
     /// Creates a tension at an angle from the circumference toward the axis, in radians.
-    pub fn new(tension: f64, stretches: Option<[f64; 2]>, angle: f64) -> Self {
+    pub fn new(tension: f64, relation: LengthTension, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         Self {
             tension,
-            stretches,
+            relation,
             direction: [sin, cos],
         }
     }
@@ -36,38 +31,6 @@ impl Tone {
     /// Returns whether reflection in a plane through the axis leaves the direction unchanged.
     pub(super) fn is_mirror_symmetric(&self) -> bool {
         (self.direction[0] * self.direction[1]).abs() < 1e-9
-    }
-
-    /// Returns w, w′ and w″ at λ.
-    #[inline(always)]
-    fn energy_of<S: Real>(&self, stretch: S) -> [S; 3] {
-        let T = self.tension;
-        let Some([most, least]) = self.stretches else {
-            let rise = stretch - stretch.like(1.0);
-            return [rise.times(T), stretch.like(T), stretch.like(0.0)];
-        };
-        let range = most - least;
-        // x = (λM − λ)/(λM − λ0) between −1 and 1, where the tension acts: w = T (λM − λ0) (2/3 − x + x³/3) from λ0 on.
-        let one = stretch.like(1.0);
-        let scaled = |stretch: S| (stretch.like(most) - stretch).times(1.0 / range);
-        let clamped = |x: S| {
-            let above = (x - one).when_positive(x - one);
-            let below = (-one - x).when_positive(-one - x);
-            x - above + below
-        };
-        let integral = |x: S| {
-            let cube = x * x * x;
-            (one.times(2.0 / 3.0) - x + cube.times(1.0 / 3.0)).times(T * range)
-        };
-        let x = scaled(stretch);
-        let inside = (one - x * x).when_positive(one);
-        let x = clamped(x);
-        let rest = integral(clamped(scaled(one)));
-        [
-            integral(x) - rest,
-            (one - x * x).times(T),
-            inside * x.times(2.0 * T / range),
-        ]
     }
 
     /// Returns Fe a, and w, w′/λ and (w″ − w′/λ)/λ².
@@ -81,7 +44,8 @@ impl Tone {
             square = Fa[i].mul_add(Fa[i], square);
         }
         let stretch = square.ln().times(0.5).exp();
-        let [w, slope, curvature] = self.energy_of(stretch);
+        let own = self.relation.at(stretch);
+        let [w, slope, curvature] = own.map(|x| x.times(self.tension));
         let over = slope / stretch;
         (Fa, [w, over, (curvature - over) / square])
     }

@@ -19,7 +19,7 @@ pub use mesh::{Integration, Mesh, MeshLayer, Symmetry};
 pub use obstacle::{Distance, Obstacle, ObstacleShape, Placement, turned};
 pub use patch::{Patch, Region};
 pub use random::Random;
-pub use wall_layer::{ResidualStretch, WallLayer};
+pub use wall_layer::{Opening, ResidualStretch, WallLayer};
 
 use crate::activation::{Direction, Muscle};
 
@@ -95,7 +95,7 @@ impl Tube {
         }
         let faces = self.faces();
         let [inner, outer] = [faces[layer], faces[layer + 1]];
-        residual.at((radius - inner) / (outer - inner))
+        residual.at((radius - inner) / (outer - inner), radius)
     }
 
     /// Returns true if a layer has residual stretches or an active tension, so that the tube is not free of stress at rest.
@@ -361,6 +361,15 @@ mod tests {
             let [along, around] = tube.residual_stretch(1, radius);
             assert!(along == 1.0 && (around - expected).abs() < 1e-12);
         }
+        tube.layers[1].residual = ResidualStretch {
+            opening: Some(Opening {
+                fraction: 0.6,
+                shift: 0.3,
+            }),
+            ..ResidualStretch::default()
+        };
+        let [along, around] = tube.residual_stretch(1, 0.5);
+        assert!(along == 1.0 && (around - 0.6 * 0.8 / 0.5).abs() < 1e-15);
     }
 
     #[test]

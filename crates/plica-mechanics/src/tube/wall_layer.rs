@@ -25,6 +25,18 @@ pub struct ResidualStretch {
     pub along: [f64; 2],
     /// Around it.
     pub around: [f64; 2],
+    /// The open sector that the layer is a part of when it is free of stress; multiplies `around`.
+    pub opening: Option<Opening>,
+}
+
+/// Open sector to which a tube springs when it is cut along its length. Thickness is conserved, so that a point at radius r of
+/// the tube is at r + s of the sector, and its stress-free length over that at rest is q (r + s)/r around the tube.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Opening {
+    /// Fraction q of a full circle that the sector covers.
+    pub fraction: f64,
+    /// Radius in the sector less that in the tube, s, in D.
+    pub shift: f64,
 }
 
 impl Default for ResidualStretch {
@@ -32,14 +44,23 @@ impl Default for ResidualStretch {
         Self {
             along: [1.0; 2],
             around: [1.0; 2],
+            opening: None,
         }
     }
 }
 
 impl ResidualStretch {
-    /// Returns the stretches along and around at a depth in the layer: 0 at its inner face, 1 at its outer face.
-    pub fn at(&self, depth: f64) -> [f64; 2] {
-        [self.along, self.around].map(|[inner, outer]| inner + depth * (outer - inner))
+    /// Returns the stretches along and around at a depth in the layer, 0 at its inner face and 1 at its outer face, and at
+    /// that radius.
+    pub fn at(&self, depth: f64, radius: f64) -> [f64; 2] {
+        let [along, around] =
+            [self.along, self.around].map(|[inner, outer]| inner + depth * (outer - inner));
+        match &self.opening {
+            Some(Opening { fraction, shift }) => {
+                [along, around * fraction * (radius + shift) / radius]
+            }
+            None => [along, around],
+        }
     }
 
     /// Returns true if there is none.

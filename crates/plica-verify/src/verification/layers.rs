@@ -7,7 +7,8 @@ use super::tube_model::{TubeModel, radial_displacement, solve_from_rest};
 use plica::assembly::Point;
 use plica::equilibrium::TubeProblem;
 use plica::material::{
-    Composite, Demiray, Fibres, Gent, Material, Matrix, NeoHookean, Tone, Volumetric, Yeoh,
+    Composite, Demiray, Fibres, Gent, LengthTension, Material, Matrix, NeoHookean, Tone, Volumetric,
+    Yeoh,
 };
 use plica::solve::State;
 use plica::tube::{Load, MeshLayer, ResidualStretch, WallLayer};
@@ -43,7 +44,7 @@ fn material(layer: &Layer) -> Material {
         fibres: fibres.collect(),
         tone: layer
             .tone
-            .map(|[tension, most, least]| Tone::new(tension, Some([most, least]), 0.0)),
+            .map(|[tension, best, least]| Tone::new(tension, LengthTension::Rachev { best, least }, 0.0)),
     })
 }
 
@@ -62,6 +63,7 @@ pub(super) fn model(wall: &LayeredWall, elements: &[usize]) -> TubeModel {
             residual: ResidualStretch {
                 along: layer.along,
                 around: layer.around,
+                opening: None,
             },
             ..WallLayer::of(material(layer))
         });

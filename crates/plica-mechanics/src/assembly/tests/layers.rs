@@ -6,7 +6,7 @@ use super::{
     tube_and_load, wavy,
 };
 use crate::assembly::{Point, ReferenceTube, SplineTube};
-use crate::material::{Composite, Fibres, Law, Material, Matrix, MooneyRivlin, NeoHookean, Tone};
+use crate::material::{Composite, Fibres, Law, LengthTension, Material, Matrix, MooneyRivlin, NeoHookean, Tone};
 use crate::spline::transfer;
 use crate::tube::{Integration, Mesh, MeshLayer, ResidualStretch, WallLayer};
 
@@ -28,12 +28,20 @@ fn layers() -> Vec<WallLayer> {
             residual: ResidualStretch {
                 along: [1.0, 0.9],
                 around: [0.7, 0.8],
+                opening: None,
             },
             idle_muscles: vec![1],
             ..WallLayer::of(Material::Composite(Composite {
                 matrix,
                 fibres,
-                tone: Some(Tone::new(0.2, Some([1.5, 0.5]), 0.2)),
+                tone: Some(Tone::new(
+                    0.2,
+                    LengthTension::Rachev {
+                        best: 1.5,
+                        least: 0.5,
+                    },
+                    0.2,
+                )),
             }))
         },
         WallLayer {
@@ -209,6 +217,7 @@ fn residual_stretch_is_growth() {
     residual.layers[0].residual = ResidualStretch {
         along: [1.1; 2],
         around: [0.8; 2],
+        opening: None,
     };
     let mut active = residual.clone();
     active.layers[0].residual = ResidualStretch::default();
