@@ -1,5 +1,6 @@
 //! The command line: commands, arguments and help.
 
+use crate::materials::MaterialsArguments;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use plica_view::report::ColourScale;
@@ -50,6 +51,8 @@ pub enum Command {
     Table(TableArguments),
     /// Check a case and estimate its size and run time
     Check(CaseArguments),
+    /// List the library of materials, draw curves of a law, or fit a law to tests
+    Materials(MaterialsArguments),
     /// Write a commented example case
     New {
         /// File to write; - writes to standard output

@@ -2,7 +2,7 @@
 
 use crate::args::{CaseArguments, Setting};
 use crate::failure::Failure;
-use plica::case::{self, EditError, InputFile, OpenInput};
+use plica::case::{self, EditError, Input, InputFile, OpenInput};
 use plica::run_directory::{RunDirectory, RunError};
 use plica::saved_state::{SavedState, SavedStateError};
 use plica::study::{ModeShape, Plan};
@@ -63,8 +63,8 @@ impl<'a> Folders<'a> {
     }
 
     /// Reads a file in one of the folders. Symbolic links are resolved before.
-    fn read(&self, file: InputFile<'_>) -> Result<SavedState, SavedStateError> {
-        let file = self.case.join(file.path()).canonicalize()?;
+    fn read(&self, wanted: InputFile<'_>) -> Result<Input, SavedStateError> {
+        let file = self.case.join(wanted.path()).canonicalize()?;
         let folders = [Some(self.case), Some(Path::new(".")), self.within];
         let contains = |folder: &Path| {
             let folder = folder.canonicalize();
@@ -75,8 +75,21 @@ impl<'a> Folders<'a> {
                 use --within DIR to allow another folder";
             return Err(Error::new(ErrorKind::PermissionDenied, why).into());
         }
-        SavedState::read(&file)
+        read_input(wanted, &file)
     }
+}
+
+/// Reads a file of the kind that a case names.
+fn read_input(wanted: InputFile<'_>, file: &Path) -> Result<Input, SavedStateError> {
+    if !matches!(wanted, InputFile::Materials(..)) {
+        return SavedState::read(file).map(Into::into);
+    }
+    let about = std::fs::metadata(file)?;
+    if !about.is_file() || about.len() > LARGEST {
+        let why = "not a plain file of at most a megabyte";
+        return Err(Error::new(ErrorKind::InvalidInput, why).into());
+    }
+    Ok(Input::Text(std::fs::read_to_string(file)?))
 }
 
 /// Reads a case file with keys changed; `open` reads the files that it names.
@@ -185,6 +198,10 @@ pub fn open_again(
                 let is_same = |mode: &ModeShape| mode.imperfection == number && mode.file == file;
                 old.modes.iter().any(is_same)
             }
+            InputFile::Materials(number, file) => {
+                let same = old.materials.get(number - 1);
+                same.is_some_and(|library| library.file == file)
+            }
         };
         match is_same {
             true => kept(directory, wanted),
@@ -194,16 +211,17 @@ pub fn open_again(
 }
 
 /// Reads the copy of a file that a run directory keeps.
-fn kept(directory: &RunDirectory, file: InputFile<'_>) -> Result<SavedState, SavedStateError> {
-    match file {
-        InputFile::State(_) => {
-            let kept = directory.start();
-            // Older run directories have only their first state.
-            let first = directory.path().join(RunDirectory::name_of_state(0));
-            SavedState::read(if kept.exists() { &kept } else { &first })
+fn kept(directory: &RunDirectory, wanted: InputFile<'_>) -> Result<Input, SavedStateError> {
+    let path = match wanted {
+        // Older run directories have only their first state.
+        InputFile::State(_) if !directory.start().exists() => {
+            directory.path().join(RunDirectory::name_of_state(0))
         }
-        InputFile::Mode(number, _) => SavedState::read(&directory.imperfection(number)),
-    }
+        InputFile::State(_) => directory.start(),
+        InputFile::Mode(number, _) => directory.imperfection(number),
+        InputFile::Materials(number, _) => directory.materials(number),
+    };
+    read_input(wanted, &path)
 }
 
 /// Returns the name of a case: that of its file, without the extension.

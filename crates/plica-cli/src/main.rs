@@ -9,6 +9,7 @@ mod existing_run;
 mod export;
 mod failure;
 mod interrupt;
+mod materials;
 mod new;
 mod page_directory;
 mod plot;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Command::Report(arguments) => report::report(&arguments),
         Command::Table(arguments) => table::table(&arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Materials(arguments) => materials::materials(&arguments),
         Command::New { file } => new::new(&file),
         Command::Schema => new::schema(),
         Command::Completions { shell } => new::completions(shell),

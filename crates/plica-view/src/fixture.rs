@@ -49,6 +49,7 @@ pub fn plan(symmetry: Symmetry) -> Plan {
         friction: 0.0,
         start: None,
         modes: vec![],
+        materials: vec![],
         stages: vec![],
         solver: Default::default(),
         output: Output::default(),

@@ -7,6 +7,7 @@
 //! | [`page`] | one or several runs as an HTML page |
 //! | [`export`] | states as VTK files for ParaView and PyVista |
 //! | [`vtk`] | writers for VTK files |
+//! | [`law_chart`] | curves of mechanical tests of laws |
 //!
 //! # Quick start
 //! A picture of a neck in a tube, cut open and coloured by the radius:
@@ -31,6 +32,7 @@
 
 pub mod draw;
 pub mod export;
+pub mod law_chart;
 pub mod page;
 pub mod report;
 mod sampled_tube;

@@ -41,6 +41,7 @@
 //! - [`stability`]: critical loads and modes of a run;
 //! - [`measure`]: radii, angles, overhang and shape of deformed walls;
 //! - [`tube`], [`activation`], [`material`]: geometry, muscles and laws of a tube;
+//! - [`homogeneous`], [`fit`]: curves of mechanical tests of a law, its ellipticity, and fits to such tests;
 //! - [`monitor`]: progress and cancellation.
 //!
 //! The method, from the ground up:
@@ -54,6 +55,8 @@
 pub mod case;
 pub mod contact;
 pub mod equilibrium;
+pub mod fit;
+pub mod homogeneous;
 pub mod measure;
 pub mod monitor;
 pub mod run_directory;

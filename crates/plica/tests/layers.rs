@@ -136,7 +136,7 @@ fn fibres_of_one_hand_turn_a_sliding_end_and_a_state_of_theirs_starts_a_run() {
         "[[stages]]\nsteps = 1\ndrive.inner-wall.pressure = 0.031\n[start]\nstate = 's'\n",
     );
     let text = format!("symmetry = 'none'\n{text}");
-    let open = |_: InputFile<'_>| SavedState::from_bytes(&bytes);
+    let open = |_: InputFile<'_>| SavedState::from_bytes(&bytes).map(Into::into);
     let plan = case::read_with(&text, "case", &open).unwrap();
     let mut study = Study::new(&plan).unwrap();
     let first = study.next().unwrap().unwrap();

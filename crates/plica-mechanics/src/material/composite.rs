@@ -125,7 +125,10 @@ impl Composite {
         };
         let count = |family: &Fibres| self.fibres.iter().filter(|f| same(f, family)).count();
         let pairs = |family: &Fibres| count(family) == count(&family.mirrored());
-        let tone = self.tone.as_ref().is_none_or(|tone| tone.is_mirror_symmetric());
+        let tone = self
+            .tone
+            .as_ref()
+            .is_none_or(|tone| tone.is_mirror_symmetric());
         tone && self.fibres.iter().all(pairs)
     }
 }

@@ -156,7 +156,8 @@ fn opened(job: &Job, folder: &Path) -> Option<CompletedRun> {
 
 fn plan(job: &Job, text: &str, folder: &Path) -> Result<Plan, case::CaseError> {
     let folder = folder.join(&job.name);
-    let open = |wanted: InputFile<'_>| SavedState::read(&folder.join(wanted.path()));
+    let open =
+        |wanted: InputFile<'_>| SavedState::read(&folder.join(wanted.path())).map(Into::into);
     case::read_with(text, &job.name, &open)
 }
 

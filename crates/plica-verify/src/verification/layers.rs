@@ -7,8 +7,8 @@ use super::tube_model::{TubeModel, radial_displacement, solve_from_rest};
 use plica::assembly::Point;
 use plica::equilibrium::TubeProblem;
 use plica::material::{
-    Composite, Demiray, Fibres, Gent, LengthTension, Material, Matrix, NeoHookean, Tone, Volumetric,
-    Yeoh,
+    Composite, Demiray, Fibres, Gent, LengthTension, Material, Matrix, NeoHookean, Tone,
+    Volumetric, Yeoh,
 };
 use plica::solve::State;
 use plica::tube::{Load, MeshLayer, ResidualStretch, WallLayer};
@@ -42,9 +42,9 @@ fn material(layer: &Layer) -> Material {
     Material::Composite(Composite {
         matrix,
         fibres: fibres.collect(),
-        tone: layer
-            .tone
-            .map(|[tension, best, least]| Tone::new(tension, LengthTension::Rachev { best, least }, 0.0)),
+        tone: layer.tone.map(|[tension, best, least]| {
+            Tone::new(tension, LengthTension::Rachev { best, least }, 0.0)
+        }),
     })
 }
 

@@ -1,4 +1,4 @@
-//! The files that a case names: saved states and modes.
+//! The files that a case names: saved states, modes, and libraries of materials.
 
 use crate::saved_state::{SavedState, SavedStateError};
 
@@ -9,16 +9,55 @@ pub enum InputFile<'a> {
     State(&'a str),
     /// The mode that is the shape of an imperfection, with the number of the imperfection from 1.
     Mode(usize, &'a str),
+    /// A library of materials, with its number from 1 in the order in which the case names such files.
+    Materials(usize, &'a str),
 }
 
 impl<'a> InputFile<'a> {
     /// The path.
     pub fn path(self) -> &'a str {
         match self {
-            Self::State(path) | Self::Mode(_, path) => path,
+            Self::State(path) | Self::Mode(_, path) | Self::Materials(_, path) => path,
         }
     }
 }
 
+/// The content of a file that a case names.
+#[derive(Clone, Debug)]
+pub enum Input {
+    /// A saved state or a mode.
+    State(Box<SavedState>),
+    /// Text: a library of materials.
+    Text(String),
+}
+
+impl From<SavedState> for Input {
+    fn from(state: SavedState) -> Self {
+        Self::State(Box::new(state))
+    }
+}
+
+impl Input {
+    /// Returns the saved state.
+    pub(super) fn state(self) -> Result<SavedState, SavedStateError> {
+        match self {
+            Self::State(state) => Ok(*state),
+            Self::Text(_) => Err(wrong("not a saved state")),
+        }
+    }
+
+    /// Returns the text.
+    pub(super) fn text(self) -> Result<String, SavedStateError> {
+        match self {
+            Self::Text(text) => Ok(text),
+            Self::State(_) => Err(wrong("not text")),
+        }
+    }
+}
+
+fn wrong(what: &str) -> SavedStateError {
+    std::io::Error::new(std::io::ErrorKind::InvalidData, what.to_owned()).into()
+}
+
 /// Opens a file that a case names.
-pub type OpenInput<'a> = dyn Fn(InputFile<'_>) -> Result<SavedState, SavedStateError> + 'a;
+pub type OpenInput<'a> = dyn Fn(InputFile<'_>) -> Result<Input, SavedStateError> + 'a;

@@ -42,6 +42,8 @@ pub(super) enum Kind {
     Named(&'static [Key]),
     /// One of some words, or a table with exactly one of some keys.
     Choice(&'static [&'static str], &'static [Key]),
+    /// A table with exactly one of the first keys, as many as the number says, or one with the keys after them.
+    Either(&'static [Key], usize),
 }
 
 /// The default, unit and range of a key.
@@ -209,11 +211,13 @@ impl Key {
 
 impl Kind {
     /// Returns the keys of its table or tables.
-    pub fn keys(&self) -> &'static [Key] {
+    pub const fn keys(&self) -> &'static [Key] {
         match self {
-            Self::Table(keys) | Self::List(keys) | Self::Named(keys) | Self::Choice(_, keys) => {
-                keys
-            }
+            Self::Table(keys)
+            | Self::List(keys)
+            | Self::Named(keys)
+            | Self::Choice(_, keys)
+            | Self::Either(keys, _) => keys,
             _ => &[],
         }
     }

@@ -2,11 +2,13 @@
 //! and range are what the reference page, the schema and the checks are made of.
 
 use super::key::{Key, Kind, LENGTH, STIFFNESS, STRESS, default, described, required};
+pub(super) use super::law_keys::{
+    Fibres, Fung, Law, Material, MooneyRivlin, NamedMaterial, NeoHookean, Residual, Tone,
+};
 use super::problem::Problems;
 use super::read::{Fields, Read, Table, Value, choice, choose, table};
 use super::spelling::target;
 use crate::activation::{Direction, Profile};
-use crate::material::Volumetric;
 use crate::study::{LengthUnit, StressUnit};
 use crate::tube::{Axial, EndDirection, Integration, SpringDirection, Support, Symmetry};
 use std::collections::BTreeMap;
@@ -24,9 +26,9 @@ table! {
         units: Option<Units> = described("none", "{ length = \"mm\", stress = \"kPa\" }");
         /// The size of the tube at rest.
         tube: Tube = default("{}");
-        /// The constitutive law of the wall, one of the tables below. Young's modulus E, in which results without units are
-        /// given, is `youngs_modulus` of the law, or three times its shear modulus if it has none; of several layers the
-        /// largest.
+        /// The constitutive law of the wall, one of the tables below, or a material of a library by its name. Young's modulus
+        /// E, in which results without units are given, is `youngs_modulus` of the law, or three times its shear modulus if
+        /// it has none; of several layers the largest.
         material: Material = default("{ neo-hookean = {} }");
         /// The layers of the wall, from the inside out. Without them the wall is one layer of `material`. Strains may jump
         /// at an interface; displacements do not.
@@ -110,93 +112,6 @@ table! {
     }
 }
 
-/// The constitutive law of the wall.
-#[derive(Clone, Debug)]
-pub(super) enum Material {
-    NeoHookean(NeoHookean),
-    MooneyRivlin(MooneyRivlin),
-    Yeoh(Yeoh),
-    Demiray(Demiray),
-    Gent(Gent),
-}
-
-choice! { Material {
-    /// The compressible neo-Hookean law.
-    "neo-hookean": NeoHookean = described("", "{}") => Material::NeoHookean,
-    /// The compressible Mooney–Rivlin law.
-    "mooney-rivlin": MooneyRivlin = described("", "{}") => Material::MooneyRivlin,
-    /// Yeoh's law, a polynomial in I₁ − 3.
-    "yeoh": Yeoh = described("", "{ c1 = 0.2, bulk = 20.0 }") => Material::Yeoh,
-    /// Demiray's law, exponential in I₁ − 3: μ/(2b) (exp(b (I₁ − 3)) − 1).
-    "demiray": Demiray = described("", "{ shear_modulus = 0.3, stiffening = 1.0, bulk = 20.0 }") => Material::Demiray,
-    /// Gent's law, with a limit j of the extension: −μ/2 j ln(1 − (I₁ − 3)/j).
-    "gent": Gent = described("", "{ shear_modulus = 0.3, limit = 30.0, bulk = 20.0 }") => Material::Gent,
-} }
-
-table! {
-    NeoHookean {
-        /// Young's modulus E at small strains.
-        youngs_modulus: f64 = default("1.0").unit(STRESS).from(1e-12).to(1e15);
-        /// Poisson's ratio ν at small strains.
-        poisson_ratio: f64 = default("0.495").from(-0.5).to(0.4999).because("the law is compressible; the solver loses its accuracy beyond");
-        /// The volumetric energy: λ/2 (ln J)², as in the paper, or λ/4 (J² − 1 − 2 ln J), which stays
-        /// elliptic where the wall expands strongly and needs ν ≥ 0.
-        volumetric: Volumetric = default("logarithmic");
-        /// The shear modulus μ at small strains. With `bulk` it takes the place of the keys above; the volumetric energy is
-        /// then the quadratic one.
-        shear_modulus: Option<f64> = described("from `youngs_modulus`", "0.3").unit(STRESS).from(1e-12).to(1e15);
-        /// The constant K of the volumetric energy K/4 (J² − 1 − 2 ln J).
-        bulk: Option<f64> = described("from `poisson_ratio`", "20.0").unit(STRESS).from(1e-12).to(1e15);
-    }
-}
-
-table! {
-    MooneyRivlin {
-        /// Young's modulus E at small strains.
-        youngs_modulus: f64 = default("1.0").unit(STRESS).from(1e-12).to(1e15);
-        /// Poisson's ratio ν at small strains.
-        poisson_ratio: f64 = default("0.495").from(0.0).to(0.4999).because("the law is compressible; the solver loses its accuracy beyond");
-        /// The share s of the second invariant I₂ in the shear modulus, at most ν/(1 − 2ν). The
-        /// neo-Hookean law has s = 0.
-        i2_share: f64 = default("0.5").from(0.0).to(1.0);
-    }
-}
-
-table! {
-    Yeoh {
-        /// The factor c₁ of I₁ − 3, half the shear modulus at small strains.
-        c1: f64 = required("0.2").unit(STRESS).from(1e-12).to(1e15);
-        /// The factor c₂ of (I₁ − 3)².
-        c2: f64 = default("0.0").unit(STRESS).from(0.0).to(1e15);
-        /// The factor c₃ of (I₁ − 3)³.
-        c3: f64 = default("0.0").unit(STRESS).from(0.0).to(1e15);
-        /// The constant K of the volumetric energy K/4 (J² − 1 − 2 ln J).
-        bulk: f64 = required("20.0").unit(STRESS).from(1e-12).to(1e15);
-    }
-}
-
-table! {
-    Demiray {
-        /// The shear modulus μ at small strains.
-        shear_modulus: f64 = required("0.3").unit(STRESS).from(1e-12).to(1e15);
-        /// The stiffening b, the factor of I₁ − 3 in the exponent.
-        stiffening: f64 = required("1.0").from(1e-6).to(1e6);
-        /// The constant K of the volumetric energy K/4 (J² − 1 − 2 ln J).
-        bulk: f64 = required("20.0").unit(STRESS).from(1e-12).to(1e15);
-    }
-}
-
-table! {
-    Gent {
-        /// The shear modulus μ at small strains.
-        shear_modulus: f64 = required("0.3").unit(STRESS).from(1e-12).to(1e15);
-        /// The value j of I₁ − 3 at which the law becomes infinitely stiff.
-        limit: f64 = required("30.0").from(1e-3).to(1e9);
-        /// The constant K of the volumetric energy K/4 (J² − 1 − 2 ln J).
-        bulk: f64 = required("20.0").unit(STRESS).from(1e-12).to(1e15);
-    }
-}
-
 table! {
     WallLayer {
         /// Its name, by which a muscle is placed in it. At most 40 letters, digits, - and _.
@@ -215,51 +130,6 @@ table! {
         residual: Residual = default("{}");
     }
 }
-
-table! {
-    Fibres {
-        /// The stiffness k₁ in k₁/(2 k₂) (exp(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1). ⟨E⟩ is E where it is
-        /// positive, and else zero.
-        k1: f64 = required("0.5").unit(STRESS).from(0.0).to(1e15);
-        /// The stiffening k₂. With 0 the energy is k₁/2 ⟨E⟩².
-        k2: f64 = required("0.8").from(0.0).to(1e6);
-        /// The angle from the circumference toward the axis: 0 is around the tube, 90 along it.
-        angle_degrees: f64 = required("30.0").unit("degrees").from(-90.0).to(90.0);
-        /// True if there is a second family at minus this angle. One family alone twists the tube.
-        pair: bool = default("true");
-        /// The dispersion κ: 0 for fibres of one direction, 1/3 for all directions alike.
-        dispersion: f64 = default("0.0").from(0.0).to(0.333_333_333_333_333_3);
-    }
-}
-
-table! {
-    Tone {
-        /// The nominal stress T along the muscle cells, from rest on. It does not depend on the stages.
-        tension: f64 = required("0.1").unit(STRESS).from(0.0).to(1e15);
-        /// The angle of the cells from the circumference toward the axis.
-        angle_degrees: f64 = default("0.0").unit("degrees").from(-90.0).to(90.0);
-        /// The stretch λM of the cells at which their stress is T. It is T (1 − ((λM − λ)/(λM − λ0))²) at another stretch λ,
-        /// where that is positive.
-        best_stretch: Option<f64> = described("T at any stretch", "1.4").from(0.1).to(10.0);
-        /// The stretch λ0 below which the cells have no stress.
-        least_stretch: Option<f64> = described("T at any stretch", "0.8").from(0.0).to(10.0);
-    }
-}
-
-table! {
-    Residual {
-        /// The stress-free length around the tube over the length at rest, at the inner and the outer face of the layer;
-        /// linear in between.
-        around: [f64; 2] = default("[1.0, 1.0]");
-        /// The same along the tube.
-        along: [f64; 2] = default("[1.0, 1.0]");
-    }
-}
-
-choice! { Volumetric {
-    "logarithmic" => Volumetric::Logarithmic,
-    "quadratic" => Volumetric::Quadratic,
-} }
 
 table! {
     Muscle {

@@ -549,7 +549,7 @@ fn wrong_type<T>(problems: &mut Problems, key: &Key, path: &str, value: &Value) 
         Kind::Points => "must be a list of points [x, s]",
         Kind::Numbers => "must be a table of numbers",
         Kind::List(_) => "must be a list of tables",
-        Kind::Table(_) | Kind::Named(_) | Kind::Choice(..) => "must be a table",
+        Kind::Table(_) | Kind::Named(_) | Kind::Choice(..) | Kind::Either(..) => "must be a table",
     };
     let is_integer = matches!(key.kind, Kind::Integer);
     let help = match value.get_ref() {

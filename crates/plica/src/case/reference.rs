@@ -33,7 +33,13 @@ const CLOSING: &str = "
   one. A muscle with a `layer` acts in that layer only; its zone may overlap those of muscles in other layers.
 - `shear_modulus` and `bulk` of the neo-Hookean law are given together, without `youngs_modulus` and `poisson_ratio`. A
   pair of families of fibres is not at 0° or 90°, where it would count one family twice. Residual stretches lie between
-  0.1 and 10. The two stretches of a tone are given together, `best_stretch` above `least_stretch`. With `contact`, every family of a layer has a mirror image.
+  0.1 and 10; `around` is not given together with `opening_degrees`. Of a tone, `best_stretch` is given together with
+  either `least_stretch`, which is below it, or `width`; a `table` is given alone. With `contact`, every family of a layer
+  has a mirror image.
+- The form Q of Fung's law is positive definite: in the strains along and around if there are no coefficients of the strain
+  through the wall, and else in all three.
+- `from` is not given together with a law, and `file` and `bulk` only with `from`. A material whose stresses have a unit
+  needs a case with `units`. A layer whose material has fibres has none of its own.
 - A pressure is at most 10 E. A follower pressure needs both ends held; an axial imperfection of an end then needs that
   end to be fixed. (Where an end moves freely, the work of a follower pressure depends on the path and on the closure of
   the end. A dead load has no such restriction.)
@@ -89,7 +95,9 @@ fn row(path: &str, key: &Key) -> String {
         Kind::Points => "`[[x, s], …]`".to_owned(),
         Kind::Numbers => "`{ name = number, … }`".to_owned(),
         Kind::List(_) => "list of tables".to_owned(),
-        Kind::Table(_) | Kind::Named(_) | Kind::Choice([], _) => "table".to_owned(),
+        Kind::Table(_) | Kind::Named(_) | Kind::Choice([], _) | Kind::Either(..) => {
+            "table".to_owned()
+        }
         Kind::Choice(words, tables) => {
             let words = words.iter().map(|word| format!("`\"{word}\"`"));
             let tables = tables.iter().map(|key| format!("`{{ {} = … }}`", key.name));

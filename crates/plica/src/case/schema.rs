@@ -35,6 +35,14 @@ fn table(keys: &[Key]) -> Map<String, Value> {
     table
 }
 
+/// Returns the schema of a table with exactly one of these keys.
+fn one_key(keys: &[Key]) -> Map<String, Value> {
+    let mut tables = table(keys);
+    tables.insert("minProperties".into(), 1.into());
+    tables.insert("maxProperties".into(), 1.into());
+    tables
+}
+
 /// Returns the schema of a key's value, with its description and default.
 fn property(key: &Key) -> Map<String, Value> {
     let mut property = value(key);
@@ -74,10 +82,12 @@ fn value(key: &Key) -> Map<String, Value> {
         Kind::Table(keys) => return table(keys),
         Kind::List(keys) => json!({ "type": "array", "items": table(keys) }),
         Kind::Named(keys) => json!({ "type": "object", "additionalProperties": table(keys) }),
+        Kind::Either(keys, alternatives) => {
+            let (alone, together) = keys.split_at(alternatives);
+            json!({ "anyOf": [one_key(alone), table(together)] })
+        }
         Kind::Choice(words, keys) => {
-            let mut tables = table(keys);
-            tables.insert("minProperties".into(), 1.into());
-            tables.insert("maxProperties".into(), 1.into());
+            let tables = one_key(keys);
             match (words, keys) {
                 (_, []) => json!({ "enum": words }),
                 ([], _) => return tables,

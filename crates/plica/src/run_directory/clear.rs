@@ -2,7 +2,8 @@
 
 use super::RunError;
 use super::{
-    CASE, CHECKPOINTS, HISTORY, IMPERFECTIONS, OF_STATES, START, STATE_ENDING, number_of_state,
+    CASE, CHECKPOINTS, HISTORY, IMPERFECTIONS, MATERIALS, OF_STATES, START, STATE_ENDING,
+    number_of_state,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,6 +30,7 @@ pub(super) fn clear(path: &Path) -> Result<(), RunError> {
             .map(|name| path.join(name)),
     );
     old.extend(modes(&path.join(IMPERFECTIONS)));
+    old.extend(libraries(&path.join(MATERIALS)));
     let exported = [
         ("vtk/walls", "vtp"),
         ("vtk/meridian", "vtp"),
@@ -98,6 +100,17 @@ pub(super) fn modes(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
             .and_then(|name| name.to_str())
             .unwrap_or_default();
         name.starts_with("mode-") && name.ends_with(STATE_ENDING)
+    })
+}
+
+/// Returns the copies of libraries of materials in a folder.
+pub(super) fn libraries(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+    files(folder).filter(|file| {
+        let name = file
+            .file_name()
+            .and_then(|name| name.to_str())
+            .unwrap_or_default();
+        name.starts_with("library-") && name.ends_with(".toml")
     })
 }
 

@@ -30,7 +30,7 @@ pub use write::write_file;
 
 use clear::{clear, files};
 use lock::{LOCK, Lock};
-use names::{imperfection, name_of_profile, name_of_temporary_state, number_of_state};
+use names::{imperfection, materials, name_of_profile, name_of_temporary_state, number_of_state};
 use presence::Folder;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
@@ -54,6 +54,7 @@ use std::path::{Path, PathBuf};
 /// | `vtk/` | VTK files, on request |
 /// | `start.safetensors` | the state that the run started from, if not from rest |
 /// | `imperfections/mode-NN.safetensors` | the mode that gives imperfection NN its shape |
+/// | `materials/library-NN.toml` | the library of materials NN that the case names |
 /// | `stability.csv`, `eigenvalues.csv`, `eigenpairs.csv`, `modes/` | results of `stability` |
 #[derive(Debug)]
 pub struct RunDirectory {
@@ -125,6 +126,9 @@ const START: &str = "start.safetensors";
 
 /// Folder of the modes that give imperfections their shapes.
 const IMPERFECTIONS: &str = "imperfections";
+
+/// Folder of the libraries of materials that the case names.
+const MATERIALS: &str = "materials";
 
 /// Extension of the files of saved states.
 const STATE_ENDING: &str = "safetensors";

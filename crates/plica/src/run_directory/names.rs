@@ -2,7 +2,8 @@
 
 use super::clear::modes;
 use super::{
-    IMPERFECTIONS, PROFILES, RunDirectory, RunError, START, STATE_ENDING, STATES, TEMPORARY,
+    IMPERFECTIONS, MATERIALS, PROFILES, RunDirectory, RunError, START, STATE_ENDING, STATES,
+    TEMPORARY,
 };
 use std::collections::BTreeMap;
 use std::fs;
@@ -68,6 +69,11 @@ impl RunDirectory {
         self.path.join(imperfection(number))
     }
 
+    /// Returns the path of the copy of a library of materials that the case names; libraries are counted from 1.
+    pub fn materials(&self, number: usize) -> PathBuf {
+        self.path.join(materials(number))
+    }
+
     /// Returns the path of the state that the run started from, if not from rest.
     pub fn start(&self) -> PathBuf {
         self.path.join(START)
@@ -87,6 +93,11 @@ pub(super) fn name_of_profile(row: usize) -> String {
 /// Returns the relative path of the mode that gives an imperfection its shape.
 pub(super) fn imperfection(number: usize) -> String {
     format!("{IMPERFECTIONS}/mode-{number:02}.{STATE_ENDING}")
+}
+
+/// Returns the relative path of the copy of a library of materials.
+pub(super) fn materials(number: usize) -> String {
+    format!("{MATERIALS}/library-{number:02}.toml")
 }
 
 /// Returns the number N of a file `state-N` with an extension.

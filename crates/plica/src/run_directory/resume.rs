@@ -1,11 +1,11 @@
 //! Files for resuming a run: the truncated history, checkpoints, and temporary states for pictures.
 
 use super::checkpoint::with_recorded;
-use super::clear::{modes, remove};
+use super::clear::{libraries, modes, remove};
 use super::write::table_of;
 use super::{
-    CHECKPOINTS, Checkpoint, Fault, HISTORY, IMPERFECTIONS, OF_STATES, Record, RunDirectory,
-    RunError, START, STATE_ENDING, TEMPORARY, Verdict, name_of_temporary_state,
+    CHECKPOINTS, Checkpoint, Fault, HISTORY, IMPERFECTIONS, MATERIALS, OF_STATES, Record,
+    RunDirectory, RunError, START, STATE_ENDING, TEMPORARY, Verdict, name_of_temporary_state,
 };
 use crate::saved_state::SavedState;
 use crate::study::{Plan, Row};
@@ -79,6 +79,7 @@ impl RunDirectory {
             return remove(
                 inputs
                     .chain(modes(&self.path.join(IMPERFECTIONS)))
+                    .chain(libraries(&self.path.join(MATERIALS)))
                     .collect(),
             );
         }

@@ -3,7 +3,7 @@
 use super::manifest::Manifest;
 use super::resume::list;
 use super::{
-    Checkpoint, Record, RunDirectory, RunError, START, Snapshot, Summary, imperfection,
+    Checkpoint, Record, RunDirectory, RunError, START, Snapshot, Summary, imperfection, materials,
     name_of_profile, name_of_temporary_state,
 };
 use crate::contact::{self, PressureField};
@@ -70,6 +70,11 @@ impl<'a> Run<'a> {
             let bytes = directory.state_bytes(&name, state)?;
             directory.write(&name, &bytes)?;
             record.add_file(&name, &bytes);
+        }
+        for (i, library) in plan.materials.iter().enumerate() {
+            let name = materials(i + 1);
+            directory.write(&name, library.text.as_bytes())?;
+            record.add_file(&name, library.text.as_bytes());
         }
         let manifest = Manifest::begin(plan, directory);
         directory.write_manifest(&manifest)?;

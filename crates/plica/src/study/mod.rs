@@ -44,7 +44,9 @@ pub use limit_point::LimitPoint;
 pub use lost::{Location, Lost, Phase};
 pub use obstacle_row::ObstacleRow;
 pub use patch_row::PatchRow;
-pub use plan::{LengthUnit, ModeShape, Output, Plan, Stage, Start, StressUnit, Units};
+pub use plan::{
+    LengthUnit, MaterialFile, ModeShape, Output, Plan, Stage, Start, StressUnit, Units,
+};
 pub use row::{EndRow, MuscleRow, Row};
 pub use start::inverted_by_imperfections;
 pub use state::{MuscleState, ObstacleState, PatchState, State};

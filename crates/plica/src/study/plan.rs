@@ -26,6 +26,8 @@ pub struct Plan {
     pub start: Option<Start>,
     /// The buckling modes that give imperfections their shapes.
     pub modes: Vec<ModeShape>,
+    /// The libraries of materials of the user that the case takes materials from.
+    pub materials: Vec<MaterialFile>,
     /// The stages of load, in order.
     pub stages: Vec<Stage>,
     /// Settings of the solver.
@@ -58,6 +60,15 @@ pub struct ModeShape {
     pub file: String,
     /// Content of the file: the mode and the state that it belongs to.
     pub state: SavedState,
+}
+
+/// A library of materials that a case names. Its materials are in the layers of the tube.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MaterialFile {
+    /// The file, as the case names it.
+    pub file: String,
+    /// Its content.
+    pub text: String,
 }
 
 /// A stage: a straight segment in the space of loads.
@@ -137,7 +148,7 @@ impl LengthUnit {
 
 impl StressUnit {
     /// Returns the power of ten of a pascal.
-    pub(super) fn power(self) -> i32 {
+    pub(crate) fn power(self) -> i32 {
         match self {
             Self::Pascal => 0,
             Self::Kilopascal => 3,

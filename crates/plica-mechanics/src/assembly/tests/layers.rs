@@ -6,7 +6,9 @@ use super::{
     tube_and_load, wavy,
 };
 use crate::assembly::{Point, ReferenceTube, SplineTube};
-use crate::material::{Composite, Fibres, Law, LengthTension, Material, Matrix, MooneyRivlin, NeoHookean, Tone};
+use crate::material::{
+    Composite, Fibres, Law, LengthTension, Material, Matrix, MooneyRivlin, NeoHookean, Tone,
+};
 use crate::spline::transfer;
 use crate::tube::{Integration, Mesh, MeshLayer, ResidualStretch, WallLayer};
 

@@ -1,6 +1,6 @@
 //! The imperfections: their parts, amplitudes and shapes.
 
-use super::super::files::{InputFile, OpenInput};
+use super::super::files::{Input, InputFile, OpenInput};
 use super::super::key::join;
 use super::super::keys::{self, Case};
 use super::super::problem::Problems;
@@ -251,7 +251,8 @@ fn mode(
     if !problems.is_as_written(&key) {
         return None;
     }
-    let read = open(input).and_then(|state| Ok((state.mode()?, state)));
+    let state = open(input).and_then(Input::state);
+    let read = state.and_then(|state| Ok((state.mode()?, state)));
     let (mode, state) = match read {
         Ok(read) => read,
         Err(error) => {

@@ -2,12 +2,13 @@
 
 use super::super::keys::{self, Case};
 use super::super::problem::Problems;
-use super::material::{fibres, matrix, tone, with_fibres};
+use super::law::{fibres, matrix, with_fibres};
+use super::material::{tone, youngs_modulus};
 use super::muscles::is_name;
+use super::residual::residuals;
 use super::zone::length;
 use crate::activation::Muscle;
-use crate::tube::{MeshLayer, ResidualStretch, WallLayer};
-use std::ops::RangeInclusive;
+use crate::tube::{MeshLayer, WallLayer};
 
 /// Thickness of the wall, in D, if the case does not give it.
 const THICKNESS: f64 = 0.06;
@@ -15,8 +16,6 @@ const THICKNESS: f64 = 0.06;
 const SAME: f64 = 1e-6;
 /// Least thickness of a layer over that of the wall.
 const THINNEST: f64 = 1e-3;
-/// Residual stretches.
-const RESIDUAL: RangeInclusive<f64> = 0.1..=10.0;
 
 /// Returns the thickness of the wall, in D: as it is given, or that of its layers.
 pub(super) fn whole_thickness(case: &Case, problems: &mut Problems) -> f64 {
@@ -44,22 +43,29 @@ pub(super) fn layers(
     muscles: &[Muscle],
     problems: &mut Problems,
 ) -> Vec<WallLayer> {
+    let modulus = youngs_modulus(case);
     if case.layers.is_empty() {
-        let law = matrix(&case.material, "material", case, problems);
+        let own = &case.material;
+        let law = matrix(&own.law, "material", modulus, problems);
+        let fibres = fibres(&own.fibres, "material", modulus, problems);
         check_places(case, &[], problems);
-        return vec![WallLayer::of(with_fibres(law, vec![], None))];
+        return vec![WallLayer::of(with_fibres(law, fibres, None))];
     }
     let names: Vec<String> = (0..case.layers.len()).map(|i| name(case, i)).collect();
     check_names(&names, problems);
     check_places(case, &names, problems);
     let share = |layer: &keys::WallLayer| layer.thickness / case.tube.diameter / thickness;
+    let residuals = residuals(case, thickness, problems);
     let layers = case.layers.iter().enumerate().map(|(i, layer)| {
         let path = format!("layers[{}]", i + 1);
-        let law = match &layer.material {
-            Some(law) => matrix(law, &format!("{path}.material"), case, problems),
-            None => matrix(&case.material, "material", case, problems),
+        let (own, key) = match &layer.material {
+            Some(own) => (own, format!("{path}.material")),
+            None => (&case.material, "material".to_owned()),
         };
-        let fibres = fibres(&layer.fibres, &format!("{path}.fibres"), case, problems);
+        let law = matrix(&own.law, &key, modulus, problems);
+        let mut families = fibres(&own.fibres, &key, modulus, problems);
+        let key = format!("{path}.fibres");
+        families.extend(fibres(&layer.fibres, &key, modulus, problems));
         let tone = layer
             .tone
             .as_ref()
@@ -72,8 +78,8 @@ pub(super) fn layers(
         WallLayer {
             name: names[i].clone(),
             share: share(layer),
-            material: with_fibres(law, fibres, tone),
-            residual: residual(&layer.residual, &path, problems),
+            material: with_fibres(law, families, tone),
+            residual: residuals[i],
             idle_muscles: idle(case, muscles, &names[i]),
         }
     });
@@ -146,19 +152,4 @@ fn idle(case: &Case, muscles: &[Muscle], name: &str) -> Vec<usize> {
         .filter(|(_, muscle)| elsewhere(muscle))
         .map(|(m, _)| m)
         .collect()
-}
-
-/// Checks the residual stretches of a layer and returns them.
-fn residual(written: &keys::Residual, path: &str, problems: &mut Problems) -> ResidualStretch {
-    for (name, stretches) in [("around", written.around), ("along", written.along)] {
-        let key = format!("{path}.residual.{name}");
-        if !stretches.iter().all(|x| RESIDUAL.contains(x)) && problems.are_sound(&[&key]) {
-            let rule = format!("must be from {} to {}", RESIDUAL.start(), RESIDUAL.end());
-            problems.value(&key, rule, "try [0.9, 1.1]");
-        }
-    }
-    ResidualStretch {
-        along: written.along,
-        around: written.around,
-    }
 }

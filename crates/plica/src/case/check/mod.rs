@@ -6,13 +6,16 @@
 
 mod contact;
 mod imperfections;
+pub(super) mod law;
 mod layers;
 mod material;
 mod mesh;
 mod muscles;
+mod named_materials;
 mod obstacles;
 mod patches;
 mod region;
+mod residual;
 mod solver;
 mod stages;
 mod start;
@@ -26,6 +29,9 @@ use crate::study::{Output, Plan, Units};
 
 /// Returns the plan of a case. It is valid only if no problems were found.
 pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut Problems) -> Plan {
+    let mut case = case.clone();
+    let materials = named_materials::look_up(&mut case, open, problems);
+    let case = &case;
     let mut tube = tube::tube(case, problems);
     let (mesh, symmetry) = mesh::mesh(case, &tube, problems);
     tube.obstacles = obstacles::obstacles(case, problems);
@@ -57,6 +63,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
         friction: case.friction,
         start,
         modes,
+        materials,
         stages,
         solver: solver::settings(&case.solver, problems),
         output: Output {

@@ -1,6 +1,6 @@
 //! The saved state that a case starts from, and its load.
 
-use super::super::files::{InputFile, OpenInput};
+use super::super::files::{Input, InputFile, OpenInput};
 use super::super::key::join;
 use super::super::keys::Case;
 use super::super::problem::Problems;
@@ -26,7 +26,7 @@ pub(super) fn start(
     if !problems.are_sound(&["start"]) {
         return None;
     }
-    let state = match open(InputFile::State(&file)) {
+    let state = match open(InputFile::State(&file)).and_then(Input::state) {
         Ok(state) => state,
         Err(error) => {
             let help = "give the path of states/state-NNNN.safetensors of a run, relative to the case file";

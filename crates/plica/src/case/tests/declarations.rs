@@ -37,6 +37,7 @@ fn base(pattern: &str) -> String {
             "shear_modulus = 0.3, stiffening = 1.0, bulk = 20.0",
         ),
         ("gent", "shear_modulus = 0.3, limit = 30.0, bulk = 20.0"),
+        ("fung", "c = 0.2, along = 1.0, around = 1.5, bulk = 20.0"),
         ("neo-hookean", "shear_modulus = 0.3, bulk = 20.0"),
     ];
     let needs_both = pattern.ends_with(".shear_modulus") || pattern.ends_with(".bulk");
@@ -45,9 +46,16 @@ fn base(pattern: &str) -> String {
         is_own && (law.0 != "neo-hookean" || needs_both)
     };
     let law = laws.iter().find(own);
-    let law = law.map_or(String::new(), |(name, keys)| {
+    let mut law = law.map_or(String::new(), |(name, keys)| {
         format!("{name} = {{ {keys} }}")
     });
+    if ["material.from", "material.file", "material.bulk"]
+        .iter()
+        .any(|end| pattern.ends_with(end))
+    {
+        law = "from = 'carotid-media-hgo-2000'".into();
+        text += "[units]\nlength = 'mm'\nstress = 'kPa'\n";
+    }
     if pattern.starts_with("layers[]") || pattern.ends_with(".layer") {
         let law = match &law[..] {
             "" => String::new(),
@@ -65,11 +73,18 @@ fn base(pattern: &str) -> String {
             _ if pattern.ends_with("least_stretch") => {
                 "tone = { tension = 0.1, best_stretch = 1.4 }\n"
             }
+            _ if pattern.ends_with("tone.width") => {
+                "tone = { tension = 0.1, best_stretch = 1.4 }\n"
+            }
             _ if pattern.contains(".tone.") => "tone = { tension = 0.1 }\n",
             _ => "",
         };
+        let residual = match pattern.ends_with("opening_radius") {
+            true => "residual = { opening_degrees = 60.0 }\n",
+            false => "",
+        };
         text += &format!(
-            "[[layers]]\nname = 'media'\nthickness = 0.03\n{law}{fibres}{tone}\
+            "[[layers]]\nname = 'media'\nthickness = 0.03\n{law}{fibres}{tone}{residual}\
              [[layers]]\nname = 'adventitia'\nthickness = 0.03\n"
         );
     } else if !law.is_empty() {
@@ -158,7 +173,12 @@ fn written(pattern: &str, literal: &str) -> Option<String> {
 }
 
 fn read_case(text: &str) -> Result<Plan, CaseError> {
-    read_with(text, "case", &|_| Ok(state()))
+    read_with(text, "case", &|wanted| {
+        Ok(match wanted {
+            InputFile::Materials(..) => Input::Text(MATERIALS.into()),
+            _ => state().into(),
+        })
+    })
 }
 
 #[test]
@@ -319,11 +339,16 @@ fn units_scale_a_case_and_change_nothing_else() {
             "mooney-rivlin",
             "demiray",
             "gent",
+            "fung",
             if of_layer { "neo-hookean" } else { "yeoh" },
         ];
         let is_second =
             pattern.starts_with("material.neo-hookean.") && !pattern.ends_with("youngs_modulus");
+        // Materials of a library and open sectors have tests of their own.
+        let is_elsewhere =
+            pattern.ends_with("material.bulk") || pattern.ends_with("opening_radius");
         is_second
+            || is_elsewhere
             || others
                 .iter()
                 .any(|law| pattern.contains(&format!("material.{law}.")))

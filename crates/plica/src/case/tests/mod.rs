@@ -1,6 +1,7 @@
 //! Tests of the whole way from a text to a plan, or to its problems.
 
 mod declarations;
+mod materials;
 mod mistakes;
 mod rules;
 
@@ -9,6 +10,16 @@ use super::*;
 use crate::saved_state::{Array, Layout, SavedState};
 use crate::tube;
 use std::path::{Path, PathBuf};
+
+/// A library of materials of a user.
+const MATERIALS: &str = "
+[carotid-media-hgo-2000]
+material.yeoh = { c1 = 2.0, bulk = 512.0 }
+[soft]
+stress = 'Pa'
+material.fung = { c = 500.0, along = 1.0, around = 1.5, bulk = 64000.0 }
+fibres = [{ k1 = 2000.0, k2 = 0.5, angle_degrees = 30.0 }]
+";
 
 /// A valid case with a table of every kind. Its diameter and its modulus are powers of two.
 const RICH: &str = r#"

@@ -571,7 +571,7 @@ fn with_state(text: &str, change: impl Fn(&mut SavedState)) -> Vec<String> {
     let state = |_: InputFile<'_>| {
         let mut state = state();
         change(&mut state);
-        Ok(state)
+        Ok(state.into())
     };
     let read = read_with(text, "case", &state);
     let problems = read.map_or_else(|error| error.problems, |_| vec![]);
