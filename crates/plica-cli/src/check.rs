@@ -39,7 +39,11 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
     };
     let scheme = plan.solver.scheme.name();
     let states = 1 + plan.stages.iter().map(|stage| stage.steps).sum::<usize>();
-    let muscles: Vec<&str> = tube.muscles.iter().map(|m| m.name.as_str()).collect();
+    let muscles = tube.muscles.iter().map(|muscle| match &muscle.sector {
+        Some(own) => format!("{} ({})", muscle.name, sector(own)),
+        None => muscle.name.clone(),
+    });
+    let muscles: Vec<String> = muscles.collect();
     let mut rows = vec![
         (
             "tube",
@@ -64,7 +68,6 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
                 muscles.join(", ")
             },
         ),
-        ("stretches", stretches(plan)),
         ("symmetry", symmetry),
         (
             "mesh",
@@ -137,7 +140,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
     if !tube.imperfections.is_empty() {
         let imperfections = tube.imperfections.iter();
         let described: Vec<String> = imperfections.map(|i| imperfection(tube, i)).collect();
-        rows.insert(3, ("imperfect", described.join("; ")));
+        rows.insert(2, ("imperfect", described.join("; ")));
     }
     let is_simple = |layer: &WallLayer| {
         let law = &layer.material;
@@ -153,7 +156,7 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
     if let Some(start) = &plan.start {
         let (row, stage) = (start.state.row, &start.state.stage);
         rows.insert(
-            4,
+            3,
             ("start", format!("{}: state {row}, {stage}", start.file)),
         );
     }
@@ -161,6 +164,13 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         let (d, e) = (units.diameter, units.youngs_modulus);
         let units = format!("D = {d} {}, E = {e} {}", units.length, units.stress);
         rows.insert(1, ("units", units));
+    }
+    let muscles = rows.iter().position(|row| row.0 == "muscles");
+    if let Some(at) = muscles.filter(|_| !tube.muscles.is_empty()) {
+        for (i, line) in stretches(plan).into_iter().enumerate() {
+            let name = if i == 0 { "stretches" } else { "" };
+            rows.insert(at + 1 + i, (name, line));
+        }
     }
     rows
 }
@@ -214,26 +224,27 @@ fn disk(plan: &Plan) -> String {
     format!("about {total}: {}", parts.join(", "))
 }
 
-/// Describes the smallest or largest growth stretch that each muscle reaches, the one farther from 1.
-fn stretches(plan: &Plan) -> String {
+/// Describes the smallest and largest stress-free stretch of the muscles in each stage.
+fn stretches(plan: &Plan) -> Vec<String> {
     let tube = &plan.tube;
-    let described = tube.muscles.iter().enumerate().map(|(m, muscle)| {
-        let ratios = plan.stages.iter().map(|stage| stage.load.muscles[m]);
-        let extremes = ratios.map(|ratio| {
-            let smallest = muscle.smallest_stretch(ratio, tube.length);
-            // The stretch is linear in the ratio, and 1 at 1.
-            let largest = 2.0 - muscle.smallest_stretch(2.0 - ratio, tube.length);
-            if smallest < 1.0 { smallest } else { largest }
+    let mut before = plan.first_load();
+    let mut lines = vec![];
+    for stage in &plan.stages {
+        let described = tube.muscles.iter().enumerate().map(|(m, muscle)| {
+            let (mut least, mut largest) = (1.0_f64, 1.0_f64);
+            for load in [&before, &stage.load] {
+                let ratio = load.muscles[m];
+                least = least.min(muscle.smallest_stretch(ratio, tube.length));
+                // The stretch is linear in the ratio, and 1 at 1.
+                largest = largest.max(2.0 - muscle.smallest_stretch(2.0 - ratio, tube.length));
+            }
+            format!("{} {least:.2} to {largest:.2}", muscle.name)
         });
-        let farther = |a: f64, b: f64| if b.ln().abs() > a.ln().abs() { b } else { a };
-        let own = muscle.sector.as_ref();
-        let place = own.map_or(String::new(), |own| format!(" ({})", sector(own)));
-        format!("{} {:.2}{place}", muscle.name, extremes.fold(1.0, farther))
-    });
-    match tube.muscles.is_empty() {
-        true => "none".into(),
-        false => described.collect::<Vec<_>>().join(", "),
+        let described: Vec<String> = described.collect();
+        lines.push(format!("{}: {}", stage.name, described.join(", ")));
+        before = stage.load.clone();
     }
+    lines
 }
 
 /// Describes a patch: name, place and factors.

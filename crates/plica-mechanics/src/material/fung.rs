@@ -1,4 +1,4 @@
-//! Fung's orthotropic law (Fung et al. 1979; with shear Humphrey 1995):
+//! Fung's orthotropic law (Fung et al. 1979), here with shear:
 //!
 //! w = c/2 (exp(Q) − 1) + K/4 (J² − 1 − 2 ln J),
 //! Q = Σ a_ij E_ii E_jj + 4 Σ s_ij E_ij² over i < j,  E = ½ (FeᵀFe − I)

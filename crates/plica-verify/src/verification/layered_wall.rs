@@ -38,6 +38,9 @@ pub enum Shape {
     Exponential(f64, f64),
     /// Gent: c/2 / (1 − x/j), with c and j.
     Limited(f64, f64),
+    /// None: Fung's law instead, c/2 (exp(Q) − 1) with Q = a_z E_z² + a_θ E_θ² + 2 b E_z E_θ + (a_z + a_θ − 2 b) E_θz², with
+    /// c, a_z, a_θ and b.
+    Orthotropic([f64; 4]),
 }
 
 /// A family of fibres.
@@ -104,6 +107,7 @@ impl Shape {
             Self::Polynomial([c1, c2, c3]) => c1 + 2.0 * c2 * x + 3.0 * c3 * x * x,
             Self::Exponential(c, b) => 0.5 * c * (b * x).exp(),
             Self::Limited(c, j) => 0.5 * c / (1.0 - x / j),
+            Self::Orthotropic(_) => 0.0,
         }
     }
 }
@@ -144,6 +148,20 @@ impl Layer {
         let isotropic = 0.5 * self.bulk * (J * J - 1.0) - 2.0 * self.shape.slope(0.0);
         let mut tau = left.map(|b| 2.0 * self.shape.slope(x) * b);
         tau.iter_mut().take(3).for_each(|t| *t += isotropic);
+        if let Shape::Orthotropic([c, az, at, b]) = self.shape {
+            let Ez = 0.5 * (sz * sz + shear * shear - 1.0);
+            let (Et, Ezt) = (0.5 * (st * st - 1.0), 0.5 * st * shear);
+            let both = az + at - 2.0 * b;
+            let Q = az * Ez * Ez + at * Et * Et + 2.0 * b * Ez * Et + both * Ezt * Ezt;
+            // The second Piola–Kirchhoff stress.
+            let stiffness = c * Q.exp();
+            let Sz = stiffness * (az * Ez + b * Et);
+            let St = stiffness * (at * Et + b * Ez);
+            let Szt = 0.5 * stiffness * both * Ezt;
+            tau[1] += st * st * St + 2.0 * st * shear * Szt + shear * shear * Sz;
+            tau[2] += sz * sz * Sz;
+            tau[3] += sz * (st * Szt + shear * Sz);
+        }
         for family in &self.fibres {
             let (sin, cos) = family.angle.sin_cos();
             let [around, along] = [st * cos + shear * sin, sz * sin]; // Fe a

@@ -7,11 +7,11 @@ use super::tube_model::{TubeModel, radial_displacement, solve_from_rest};
 use plica::assembly::Point;
 use plica::equilibrium::TubeProblem;
 use plica::material::{
-    Composite, Demiray, Fibres, Gent, LengthTension, Material, Matrix, NeoHookean, Tone,
+    Composite, Demiray, Fibres, Fung, Gent, LengthTension, Material, Matrix, NeoHookean, Tone,
     Volumetric, Yeoh,
 };
 use plica::solve::State;
-use plica::tube::{Load, MeshLayer, ResidualStretch, WallLayer};
+use plica::tube::{Load, MeshLayer, Opening, ResidualStretch, WallLayer};
 
 /// Source of most references.
 pub(super) const ONE: &str = "one-dimensional solution";
@@ -36,6 +36,10 @@ fn material(layer: &Layer) -> Material {
             limit,
             bulk,
         }),
+        Shape::Orthotropic([c, along, around, both]) => {
+            let a = [[along, 0.0, both], [0.0; 3], [both, 0.0, around]];
+            Matrix::Fung(Fung::new(c, a, bulk))
+        }
     };
     let fibres = layer.fibres.iter();
     let fibres = fibres.map(|family| Fibres::new(family.k, family.dispersion, family.angle));
@@ -105,12 +109,13 @@ pub(super) fn radii(
     }
 }
 
-/// Records the inflation of rings of Yeoh's, Demiray's and Gent's law.
+/// Records the inflation of rings of Yeoh's, Demiray's, Gent's and Fung's law.
 pub fn laws(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     for (name, shape) in [
         ("Yeoh", Shape::Polynomial([0.2, 0.05, 0.02])),
         ("Demiray", Shape::Exponential(0.4, 0.8)),
         ("Gent", Shape::Limited(0.4, 3.0)),
+        ("Fung", Shape::Orthotropic([0.4, 0.8, 1.2, 0.3])),
     ] {
         let layer = Layer {
             shape,
@@ -201,6 +206,23 @@ pub fn artery(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
             }
         }
     }
+    Ok(())
+}
+
+/// Records the radii of a carotid artery described as it is at rest, with the sector to which it opens.
+pub fn opening_angle(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
+    let wall = carotid([0.71, 0.97, 1.10]);
+    let mut model = model(&wall, &[6, 4]);
+    for layer in &mut model.tube.layers {
+        layer.residual.opening = Some(Opening {
+            fraction: 5.0 / 9.0,
+            shift: (1.43 - 0.71) / 2.2,
+        });
+    }
+    let (problem, state) = inflated(&model, &wall, 13.33, 16)?;
+    recorder.case("carotid artery at rest, opening angle 160°, ℓ = 1.7, p = 13.33 kPa")?;
+    let expected = ([1.27455486, 1.42755714], "an independent integration");
+    radii(recorder, 1e-7, (&problem, &state), &wall, expected);
     Ok(())
 }
 

@@ -97,6 +97,11 @@ pub const CHECKS: &[Check] = &[
     quick("laws", "inflation of rings of other laws", layers::laws),
     quick("artery", "inflation of a carotid artery", layers::artery),
     quick(
+        "opening-angle",
+        "a carotid artery that springs open",
+        layers::opening_angle,
+    ),
+    quick(
         "helical-fibres",
         "twist of a tube with fibres of one hand",
         layers::helical_fibres,

@@ -71,6 +71,7 @@ pub fn advice(plan: &Plan) -> Vec<String> {
             "no end is fixed: nothing keeps the tube from starting to {motion}"
         ));
     }
+    advice.extend(super::ellipticity::advice(plan));
     advice
 }
 

@@ -32,6 +32,7 @@ mod advice;
 mod check;
 mod difference;
 mod edit;
+mod ellipticity;
 mod files;
 mod key;
 mod keys;

@@ -6,6 +6,10 @@ use crate::material::Material;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 
+/// Evaluations for each parameter, from every start and then from the best of them.
+const FEW: usize = 8;
+const MANY: usize = 200;
+
 /// A parameter of a fitted law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
@@ -62,15 +66,21 @@ pub fn fit(law: FittedLaw, measurements: &[Measurement]) -> Result<Fit, FitError
     for start in law.starts(stiffness(measurements)) {
         let mut problem = template.clone();
         problem.x = DVector::from_vec(start);
-        let method = LevenbergMarquardt::new().with_patience(200);
-        let (found, report) = method.minimize(problem);
-        let sum = report.objective_function;
+        let (found, sum) = minimised(problem, FEW);
         if sum.is_finite() && best.as_ref().is_none_or(|(least, _)| sum < *least) {
             best = Some((sum, found));
         }
     }
     let (_, problem) = best.ok_or(FitError::NoMinimum)?;
+    let (problem, _) = minimised(problem, MANY);
     problem.result().ok_or(FitError::NoMinimum)
+}
+
+/// Returns the problem after a minimisation, and half the sum of its squares.
+fn minimised(problem: Problem<'_>, patience: usize) -> (Problem<'_>, f64) {
+    let method = LevenbergMarquardt::new().with_patience(patience);
+    let (found, report) = method.minimize(problem);
+    (found, report.objective_function)
 }
 
 /// A law with free numbers x for its parameters. Stresses are measured in their root mean square.

@@ -17,6 +17,11 @@ const STEPS: usize = 24;
 
 /// Returns the least stiffness of a plane wave in a material at Fe; not positive if the law is not elliptic there.
 pub fn least_wave_stiffness(law: &Material, F: &Tensor2) -> f64 {
+    least_over(law, F, 2 * AZIMUTH)
+}
+
+/// Returns the least stiffness of a wave along a direction with one of the first azimuths.
+fn least_over(law: &Material, F: &Tensor2, azimuths: usize) -> f64 {
     let A = law.moduli(F);
     let modulus = |j: usize, k: usize, i: usize, l: usize| match k <= l {
         true => A[3 * k + j][3 * l + i],
@@ -38,9 +43,9 @@ pub fn least_wave_stiffness(law: &Material, F: &Tensor2) -> f64 {
     let mut least = f64::INFINITY;
     for p in 0..=POLAR {
         let polar = 0.5 * PI * p as f64 / POLAR as f64;
-        for a in 0..2 * AZIMUTH {
-            // n and −n are the same; at the pole all azimuths are.
-            if (p == POLAR && a >= AZIMUTH) || (p == 0 && a > 0) {
+        for a in 0..azimuths {
+            // At the pole all azimuths are the same.
+            if p == 0 && a > 0 {
                 break;
             }
             let azimuth = PI * a as f64 / AZIMUTH as f64;
@@ -63,13 +68,18 @@ pub fn least_wave_stiffness(law: &Material, F: &Tensor2) -> f64 {
 /// Returns the stretch at which a law loses ellipticity on the way from 1 to `limit` in a test; none if it does not, or if the
 /// law has no such states before it does.
 pub fn loses_ellipticity(law: &Material, test: MechanicalTest, limit: f64) -> Option<f64> {
+    // Directions that are mirror images have the same stiffness in a state without shear.
+    let azimuths = match law.is_mirror_symmetric() {
+        true => AZIMUTH / 2 + 1,
+        false => AZIMUTH,
+    };
     let stiffness = |stretch: f64| {
         let state = homogeneous(law, test.prescribed(stretch), Volume::Free)?;
         let mut F = Tensor2::IDENTITY;
         for i in 0..3 {
             F.0[i][i] = state.stretches[i];
         }
-        Some(least_wave_stiffness(law, &F))
+        Some(least_over(law, &F, azimuths))
     };
     let at = |step: usize| limit.powf(step as f64 / STEPS as f64);
     let mut before = 1.0;

@@ -1,0 +1,119 @@
+//! Advice on laws that lose ellipticity where a plan may use them.
+//!
+//! The elastic stretch that a stage may reach is estimated from its stress-free stretches: it is their inverse where the wall
+//! keeps its length, and less far from one where it follows.
+
+use crate::homogeneous::{MechanicalTest, loses_ellipticity};
+use crate::study::Plan;
+use crate::tube::Load;
+
+/// Points along the tube at which stress-free stretches are taken.
+const POINTS: usize = 240;
+
+/// Returns a sentence for each layer whose law loses ellipticity within the stretches of a stage.
+pub(super) fn advice(plan: &Plan) -> Vec<String> {
+    let layers = 0..plan.tube.layers.len();
+    layers.filter_map(|layer| of_layer(plan, layer)).collect()
+}
+
+fn of_layer(plan: &Plan, layer: usize) -> Option<String> {
+    // Ranges of the stages, along and around.
+    let mut before = plan.first_load();
+    let mut ranges = vec![];
+    for stage in &plan.stages {
+        let [mut along, mut around] = range(plan, layer, &before);
+        for (own, other) in
+            [&mut along, &mut around]
+                .into_iter()
+                .zip(range(plan, layer, &stage.load))
+        {
+            *own = [own[0].min(other[0]), own[1].max(other[1])];
+        }
+        ranges.push([along, around]);
+        before = stage.load.clone();
+    }
+    let own = &plan.tube.layers[layer];
+    let tests = [
+        MechanicalTest::UniaxialAlong,
+        MechanicalTest::UniaxialAround,
+    ];
+    for (direction, test) in tests.into_iter().enumerate() {
+        for side in [0, 1] {
+            let ends = ranges.iter().map(|range| range[direction][side]);
+            let far = |a: f64, b: f64| if b.ln().abs() > a.ln().abs() { b } else { a };
+            let limit = ends.fold(1.0, far);
+            let Some(stretch) = loses_ellipticity(&own.material, test, limit) else {
+                continue;
+            };
+            let reaches =
+                |range: &[[f64; 2]; 2]| range[direction][side].ln().abs() >= stretch.ln().abs();
+            let stage = ranges.iter().position(reaches).unwrap_or(0);
+            let [low, high] = ranges[stage][direction];
+            let way = ["along", "around"][direction];
+            let name = match plan.tube.layers.len() {
+                1 => "the wall".into(),
+                _ => format!("the layer {}", own.name),
+            };
+            return Some(format!(
+                "the law of {name} loses ellipticity at a stretch of {stretch:.3} {way} the tube; stage {} may stretch it by \
+                 {low:.3} to {high:.3} there, and creases or bands would depend on the mesh",
+                plan.stages[stage].name
+            ));
+        }
+    }
+    None
+}
+
+/// Returns the least and the largest elastic stretch along and around where the wall keeps its shape under a load, 1
+/// included.
+fn range(plan: &Plan, layer: usize, load: &Load) -> [[f64; 2]; 2] {
+    let tube = &plan.tube;
+    let faces = tube.faces();
+    let residual = [faces[layer], faces[layer + 1]].map(|r| tube.residual_stretch(layer, r));
+    let [first, last] = load.ends.map(|end| end.displacement);
+    let extension = 1.0 + (last - first) / tube.length;
+    let mut ranges = [[1.0_f64; 2]; 2];
+    for point in 0..=POINTS {
+        let z = tube.length * point as f64 / POINTS as f64;
+        let (along, around) = tube.stretches(layer, z, load);
+        for residual in residual {
+            let elastic = [
+                extension / (along * residual[0]),
+                1.0 / (around * residual[1]),
+            ];
+            for (range, x) in ranges.iter_mut().zip(elastic) {
+                *range = [range[0].min(x), range[1].max(x)];
+            }
+        }
+    }
+    ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn advice_on(layer: &str, drive: &str) -> Vec<String> {
+        let text = format!(
+            "[[layers]]\nthickness = 0.06\n{layer}\n[muscles.ring]\ndirection = 'circular'\nzone = [0.5, 1.0]\n\
+             [[stages]]\nname = 'first'\nsteps = 1\n[[stages]]\nname = 'second'\n{drive}\n"
+        );
+        advice(&crate::case::read(&text, "case").unwrap())
+    }
+
+    #[test]
+    fn a_falling_tension_is_advised_against_where_a_stage_reaches_it() {
+        let tone = "tone = { tension = 1.0, best_stretch = 1.2, least_stretch = 0.8 }";
+        let contract = "drive.ring.diameter_ratio = 0.6";
+        let found = advice_on(tone, contract);
+        let start = "the law of the wall loses ellipticity at a stretch of 1.";
+        assert!(found.len() == 1 && found[0].starts_with(start), "{found:?}");
+        let end = "around the tube; stage second may stretch it by 1.000 to 1.667 there, and creases or bands would \
+            depend on the mesh";
+        assert!(found[0].ends_with(end), "{found:?}");
+        // Not where the stage does not reach it, nor with the laws of the paper.
+        assert!(advice_on(tone, "drive.ring.diameter_ratio = 0.9").is_empty());
+        assert!(advice_on("", "drive.ring.diameter_ratio = 0.25").is_empty());
+        assert!(advice_on("", "drive.ileum.displacement = 3.0").is_empty());
+    }
+}
