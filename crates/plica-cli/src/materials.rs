@@ -9,7 +9,7 @@ use clap::{Args, Subcommand};
 use plica::case::{self, LibraryMaterial};
 use plica::fit::{Fit, FittedLaw, Measurements, ParameterUnit, fit};
 use plica::homogeneous::{Volume, scaled};
-use plica::material::{Composite, Material, Matrix};
+use plica::material::{Composite, Material, Matrix, Volumetric};
 use plica::run_directory::write_file;
 use plica_view::law_chart::{LawChart, NamedLaw, law_chart, law_table};
 use std::fmt::Write;
@@ -217,6 +217,14 @@ fn parameters(material: &Material) -> String {
     };
     let n = number;
     let mut text = match &law.matrix {
+        Matrix::NeoHookean(law) if law.volumetric == Volumetric::Logarithmic => {
+            let ratio = 0.5 * law.lambda / (law.lambda + law.mu);
+            format!(
+                "material.neo-hookean = {{ youngs_modulus = {}, poisson_ratio = {} }}\n",
+                n(2.0 * law.mu * (1.0 + ratio)),
+                n(ratio)
+            )
+        }
         Matrix::NeoHookean(law) => format!(
             "material.neo-hookean = {{ shear_modulus = {}, bulk = {} }}\n",
             n(law.mu),

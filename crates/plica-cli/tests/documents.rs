@@ -52,7 +52,12 @@ fn the_commands_of_the_pages_exist() {
             assert!(exists || command == "--help", "{place}");
             let help = help
                 .entry(command.clone())
-                .or_insert_with(|| succeed(&root(), &[&command, "--help"]));
+                .or_insert_with(|| match &command[..] {
+                    "materials" => ["show", "plot", "fit"]
+                        .map(|own| succeed(&root(), &["materials", own, "--help"]))
+                        .concat(),
+                    command => succeed(&root(), &[command, "--help"]),
+                });
             for word in words {
                 if let Some(option) = word.strip_prefix("--") {
                     let option = format!("--{}", option.split('=').next().unwrap());

@@ -8,6 +8,7 @@ mod command_line;
 mod export;
 mod faults;
 mod main_case;
+mod materials;
 mod mode_imperfections;
 mod obstacles;
 #[cfg(unix)]
