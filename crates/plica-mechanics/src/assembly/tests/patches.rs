@@ -63,6 +63,7 @@ fn imperfect(tube: &mut Tube) {
     tube.layers[0].residual = ResidualStretch {
         along: [1.05, 0.95],
         around: [0.9, 1.1],
+        opening: None,
     };
     tube.imperfections = vec![Imperfection {
         of: Part::Geometry,
