@@ -9,8 +9,8 @@ use plica::run_directory::DiskUse;
 use plica::spline::Circle;
 use plica::study::{Plan, check_memory, forecast};
 use plica::tube::{
-    End, Foundation, Imperfection, Integration, Part, Patch, Region, Shape, SpringDirection,
-    Symmetry, Tube, WallLayer,
+    End, Foundation, Imperfection, Integration, Outline, Part, Patch, Region, Shape,
+    SpringDirection, Symmetry, Tube, WallLayer,
 };
 
 /// Checks a case and prints its size and estimated cost.
@@ -137,10 +137,14 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         let all = tube.foundations.iter().map(foundation);
         rows.push(("foundations", all.collect::<Vec<_>>().join("; ")));
     }
-    if !tube.imperfections.is_empty() {
-        let imperfections = tube.imperfections.iter();
-        let described: Vec<String> = imperfections.map(|i| imperfection(tube, i)).collect();
-        rows.insert(2, ("imperfect", described.join("; ")));
+    let is_outline = |one: &&Imperfection| matches!(one.shape, Shape::Outline(_));
+    let (outlines, imperfections): (Vec<_>, Vec<_>) =
+        tube.imperfections.iter().partition(is_outline);
+    for (name, those) in [("imperfect", imperfections), ("shape", outlines)] {
+        let described: Vec<String> = those.iter().map(|one| imperfection(tube, one)).collect();
+        if !described.is_empty() {
+            rows.insert(3, (name, described.join("; ")));
+        }
     }
     let is_simple = |layer: &WallLayer| {
         let law = &layer.material;
@@ -296,6 +300,7 @@ fn imperfection(tube: &Tube, imperfection: &Imperfection) -> String {
         Shape::Wave(wave) => format!("circumferential mode {}", wave.harmonic),
         Shape::Random(random) => format!("random, seed {}", random.seed()),
         Shape::Mode(mode) => format!("buckling mode, circumferential mode {}", mode.harmonic),
+        Shape::Outline(outline) => return outline_of(outline),
     };
     let unit = match imperfection.of {
         Part::Muscle(_) => "",
@@ -303,6 +308,20 @@ fn imperfection(tube: &Tube, imperfection: &Imperfection) -> String {
     };
     let (part, amplitude) = (part(tube, imperfection.of), imperfection.amplitude);
     format!("{part} ({shape}, {amplitude:.1e}{unit})")
+}
+
+/// Describes a diameter and a thickness that vary along the tube.
+fn outline_of(outline: &Outline) -> String {
+    let range = |what: &str, points: &[[f64; 2]]| {
+        let values = points.iter().map(|[_, value]| *value);
+        let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(x), b.max(x)));
+        (!points.is_empty()).then(|| format!("{what} {low:.4} to {high:.4} D along the tube"))
+    };
+    let parts = [
+        range("diameter", &outline.diameter),
+        range("thickness", &outline.thickness),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// Returns the name of an imperfect part.

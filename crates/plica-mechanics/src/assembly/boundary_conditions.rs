@@ -2,7 +2,7 @@
 
 use super::imperfection::end_face;
 use crate::rings::Sector;
-use crate::tube::{End, Load, Support, Tube};
+use crate::tube::{End, EndMotion, Load, Support, Tube};
 use std::f64::consts::TAU;
 
 /// Prescribed displacements of a tube.
@@ -41,6 +41,8 @@ struct PrescribedUnknown {
     component: usize,
     /// Radius of the control point.
     radius: f64,
+    /// Angle of its ring.
+    angle: f64,
     /// Displacement of the control point by imperfections: (axial, radial, circumferential).
     shift: [f64; 3],
 }
@@ -79,6 +81,7 @@ impl BoundaryConditions {
                             end,
                             component,
                             radius,
+                            angle: sector.ring_angle(ring),
                             shift,
                         });
                     }
@@ -159,6 +162,10 @@ impl BoundaryConditions {
     pub fn apply_prescribed(&self, load: &Load, u: &mut [f64]) {
         for e in &self.ends {
             let motion = load.ends[e.end];
+            if motion.is_sideways() {
+                u[e.unknown] = e.moved_sideways(&motion);
+                continue;
+            }
             let ([axial, radial, around], (sin, cos)) = (e.shift, motion.twist.sin_cos());
             // A point at angle zero rotated by ω moves by r (cos ω − 1) outwards and r sin ω
             // around; the displacement of an imperfection rotates with the face.
@@ -169,6 +176,42 @@ impl BoundaryConditions {
             };
         }
     }
+}
+
+impl PrescribedUnknown {
+    /// Returns the displacement by a motion of the end: a twist, then a tilt about the centre of the face, then a shift. A
+    /// rigid motion of the face is that of its control points.
+    fn moved_sideways(&self, motion: &EndMotion) -> f64 {
+        let [axial, radial, around] = self.shift;
+        let from = self.radius + radial;
+        let (sin, cos) = (self.angle + motion.twist).sin_cos();
+        // (z, x, y) from the centre of the face.
+        let point = [axial, from * cos - around * sin, from * sin + around * cos];
+        let [z, x, y] = tilted(point, motion.tilt);
+        let [x, y] = [x + motion.shift[0], y + motion.shift[1]];
+        let (sin, cos) = self.angle.sin_cos();
+        match self.component {
+            0 => motion.displacement + z,
+            1 => x * cos + y * sin - self.radius,
+            _ => y * cos - x * sin,
+        }
+    }
+}
+
+/// Returns a point (z, x, y) rotated by a rotation vector in the plane of x and y (Rodrigues' formula).
+fn tilted(point: [f64; 3], [a, b]: [f64; 2]) -> [f64; 3] {
+    let angle = a.hypot(b);
+    if angle == 0.0 {
+        return point;
+    }
+    let [a, b] = [a / angle, b / angle];
+    let ([z, x, y], (sin, cos)) = (point, angle.sin_cos());
+    let along = (a * x + b * y) * (1.0 - cos);
+    [
+        z * cos + (a * y - b * x) * sin,
+        x * cos + b * z * sin + a * along,
+        y * cos - a * z * sin + b * along,
+    ]
 }
 
 /// Returns for every unknown of a ring whether an end prescribes it.

@@ -91,6 +91,22 @@ pub(super) fn geometry(
                 }
             }
         }
+        if let Shape::Outline(outline) = &imperfection.shape {
+            // Control values that are those of the shape at the Greville abscissae reproduce a linear shape, and round a
+            // corner over p elements without overshooting.
+            let height = imperfection.amplitude * sector.control_wave(1);
+            let rows = u.chunks_exact_mut(points * 3 * k);
+            for (row, z) in rows.zip(axial.greville()) {
+                for (point, radius) in row.chunks_exact_mut(3 * k).zip(wall.greville()) {
+                    let size = [tube.length, tube.thickness];
+                    let [along, outwards] = outline.displacement(z, radius, size);
+                    for ring in 0..k {
+                        point[ring] += imperfection.amplitude * along;
+                        point[k + ring] += height * outwards;
+                    }
+                }
+            }
+        }
         if let Shape::Mode(mode) = &imperfection.shape {
             let shape = ModeShape::new(mode, tube);
             let size = imperfection.amplitude / shape.largest_displacement();

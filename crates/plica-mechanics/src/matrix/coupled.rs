@@ -1,14 +1,16 @@
-//! A symmetric block matrix that consists of a band and blocks outside it.
+//! A symmetric block matrix that consists of a band, blocks outside it, and a term of rank one.
 
-use super::{BlockBanded, Factor, FarBlocks, Singular, SparseFactor};
+use super::{BlockBanded, Factor, FarBlocks, RankOne, RankOneFactor, Singular, SparseFactor};
 
-/// A symmetric block matrix: a band, and blocks outside it, if there are any.
+/// A symmetric block matrix: a band, and blocks outside it and a term of rank one, if there are any.
 #[derive(Clone, Debug)]
 pub struct CoupledBanded {
     /// The band.
     pub band: BlockBanded,
     /// The blocks outside.
     pub far: FarBlocks,
+    /// The term of rank one.
+    pub term: Option<RankOne>,
 }
 
 /// The factorisation of a [`CoupledBanded`] matrix: that of the band where there are no blocks outside it.
@@ -18,12 +20,18 @@ pub enum CoupledFactor {
     Banded(Factor),
     /// With blocks outside the band.
     Sparse(SparseFactor),
+    /// With a term of rank one.
+    RankOne(Box<RankOneFactor>),
 }
 
 impl From<BlockBanded> for CoupledBanded {
     fn from(band: BlockBanded) -> Self {
         let far = FarBlocks::new(band.size(), band.band());
-        Self { band, far }
+        Self {
+            band,
+            far,
+            term: None,
+        }
     }
 }
 
@@ -59,12 +67,18 @@ impl CoupledBanded {
     pub fn multiply_add(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         self.band.multiply_add(factor, x, y);
         self.far.multiply_add(factor, x, y);
+        if let Some(term) = &self.term {
+            term.multiply_add(factor, x, y);
+        }
     }
 
     /// Replaces rows and columns of prescribed unknowns by those of the unit matrix.
     pub fn constrain(&mut self, prescribed: &[bool]) {
         self.band.constrain(prescribed);
         self.far.constrain(prescribed);
+        if let Some(term) = &mut self.term {
+            term.constrain(prescribed);
+        }
     }
 
     /// Factors the matrix.
@@ -72,7 +86,11 @@ impl CoupledBanded {
     /// # Errors
     ///
     /// If a pivot is zero or NaN.
-    pub fn factor(self) -> Result<CoupledFactor, Singular> {
+    pub fn factor(mut self) -> Result<CoupledFactor, Singular> {
+        if let Some(term) = self.term.take() {
+            let factor = RankOneFactor::new(self.factor()?, term)?;
+            return Ok(CoupledFactor::RankOne(Box::new(factor)));
+        }
         if self.far.is_empty() {
             return self.band.factor().map(CoupledFactor::Banded);
         }
@@ -86,6 +104,7 @@ impl CoupledFactor {
         match self {
             Self::Banded(factor) => factor.negative_pivots(),
             Self::Sparse(factor) => factor.negative_pivots(),
+            Self::RankOne(factor) => factor.negative_pivots(),
         }
     }
 
@@ -94,6 +113,7 @@ impl CoupledFactor {
         match self {
             Self::Banded(factor) => factor.solve(b),
             Self::Sparse(factor) => factor.solve(b),
+            Self::RankOne(factor) => factor.solve(b),
         }
     }
 
@@ -102,6 +122,7 @@ impl CoupledFactor {
         match self {
             Self::Banded(factor) => factor.solve_pair(b),
             Self::Sparse(factor) => factor.solve_pair(b),
+            Self::RankOne(factor) => factor.solve_pair(b),
         }
     }
 
@@ -110,6 +131,7 @@ impl CoupledFactor {
         match self {
             Self::Banded(factor) => factor.make_positive(),
             Self::Sparse(factor) => factor.make_positive(),
+            Self::RankOne(factor) => factor.make_positive(),
         }
     }
 
@@ -118,6 +140,7 @@ impl CoupledFactor {
         match self {
             Self::Banded(factor) => Some(factor.into_memory()),
             Self::Sparse(_) => None,
+            Self::RankOne(factor) => factor.into_matrix().into_memory(),
         }
     }
 }

@@ -8,6 +8,7 @@ mod dense;
 mod eigen;
 mod elimination;
 mod far_blocks;
+mod rank_one;
 mod tall_matrix;
 
 pub use block_banded::{BlockBanded, Factor, Singular};
@@ -16,4 +17,5 @@ pub use coupled::{CoupledBanded, CoupledFactor};
 pub use dense::multiply;
 pub use eigen::{Eigenpair, NoEigenpairs, lowest_eigenpairs, lowest_eigenpairs_excluding};
 pub use far_blocks::FarBlocks;
+pub use rank_one::{RankOne, RankOneFactor};
 pub use tall_matrix::TallMatrix;

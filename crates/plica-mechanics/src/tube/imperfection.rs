@@ -13,9 +13,10 @@
 //! | c | share of the wave in the shape | [`Wave::share`] |
 //! | g | factor along the tube | [`Axial::value`] |
 //!
-//! An imperfect geometry may also have the shape of a [`Mode`], for example a buckling mode.
+//! An imperfect geometry may also have the shape of a [`Mode`], for example a buckling mode. A diameter or a thickness that
+//! varies along the tube, an [`Outline`], displaces the stress-free shape likewise, though not by a small amount.
 
-use super::{End, Mesh, Random};
+use super::{End, Mesh, Outline, Random};
 use std::f64::consts::{PI, TAU};
 
 /// One imperfection of a tube.
@@ -60,6 +61,8 @@ pub enum Shape {
     Random(Random),
     /// A displacement of the control points, for the geometry only.
     Mode(Mode),
+    /// Diameter and thickness along the tube, with the amplitude 1, for the geometry only.
+    Outline(Outline),
 }
 
 /// A displacement (z cos nφ, r cos nφ, −θ sin nφ) of control points. An imperfect geometry scales it
@@ -100,12 +103,12 @@ pub enum Axial {
 }
 
 impl Shape {
-    /// Returns the waves of a sum; none for a mode.
+    /// Returns the waves of a sum; none for a mode or an outline.
     pub fn waves(&self) -> &[Wave] {
         match self {
             Self::Wave(wave) => std::slice::from_ref(wave),
             Self::Random(random) => random.waves(),
-            Self::Mode(_) => &[],
+            Self::Mode(_) | Self::Outline(_) => &[],
         }
     }
 

@@ -11,6 +11,9 @@ pub struct Load {
     pub ends: [EndMotion; 2],
     /// Pressure on the inner wall, acting outwards, and on the outer wall, acting inwards.
     pub pressures: [Pressure; 2],
+    /// Volume of the lumen over that of the stress-free shape, if it is driven. The follower pressure on the inner wall then
+    /// is what holds it: that of an accepted state, and of no meaning before.
+    pub lumen_volume: Option<f64>,
     /// Placement of each obstacle of the tube, in the order of the tube.
     pub obstacles: Vec<Placement>,
     /// Stress-free thickness over the thickness at rest in the middle of each patch of the tube, in the order of the tube.
@@ -24,6 +27,18 @@ pub struct EndMotion {
     pub displacement: f64,
     /// About z, in radians; fixed ends only.
     pub twist: f64,
+    /// Across the axis, along x and y, in D; fixed ends of whole tubes only.
+    pub shift: [f64; 2],
+    /// Rotation vector about x and y, in radians, after the twist: its direction is the axis and its length the angle;
+    /// fixed ends of whole tubes only.
+    pub tilt: [f64; 2],
+}
+
+impl EndMotion {
+    /// Returns whether the end leaves its axis.
+    pub fn is_sideways(&self) -> bool {
+        self.shift != [0.0; 2] || self.tilt != [0.0; 2]
+    }
 }
 
 /// Pressures on one wall, in E.
@@ -36,6 +51,15 @@ pub struct Pressure {
 }
 
 impl Load {
+    /// Returns the load without the pressure that holds a driven volume of the lumen.
+    #[must_use]
+    pub fn without_multiplier(mut self) -> Self {
+        if self.lumen_volume.is_some() {
+            self.pressures[0].follower = 0.0;
+        }
+        self
+    }
+
     /// Interpolates linearly to another load, which has t = 1.
     pub fn towards(&self, other: &Self, t: f64) -> Self {
         // At t = 1 the other load to the bit.
@@ -43,6 +67,8 @@ impl Load {
         let end = |i: usize| EndMotion {
             displacement: mix(self.ends[i].displacement, other.ends[i].displacement),
             twist: mix(self.ends[i].twist, other.ends[i].twist),
+            shift: [0, 1].map(|k| mix(self.ends[i].shift[k], other.ends[i].shift[k])),
+            tilt: [0, 1].map(|k| mix(self.ends[i].tilt[k], other.ends[i].tilt[k])),
         };
         let pressure = |i: usize| Pressure {
             follower: mix(self.pressures[i].follower, other.pressures[i].follower),
@@ -61,6 +87,10 @@ impl Load {
                 .collect(),
             ends: [end(0), end(1)],
             pressures: [pressure(0), pressure(1)],
+            lumen_volume: match [self.lumen_volume, other.lumen_volume] {
+                [Some(a), Some(b)] => Some(mix(a, b)),
+                [_, b] => b,
+            },
             obstacles: self
                 .obstacles
                 .iter()
@@ -88,11 +118,14 @@ mod tests {
             ends: [3.0, 4.0].map(|s| EndMotion {
                 displacement: s * x,
                 twist: 10.0 * s * x,
+                shift: [20.0, 30.0].map(|t| t * s * x),
+                tilt: [40.0, 50.0].map(|t| t * s * x),
             }),
             pressures: [5.0, 6.0].map(|s| Pressure {
                 follower: s * x,
                 dead: 10.0 * s * x,
             }),
+            lumen_volume: Some(11.0 * x),
             obstacles: vec![Placement {
                 radius: 7.0 * x,
                 position: [8.0, 9.0, 10.0].map(|s| s * x),

@@ -8,6 +8,7 @@ mod imperfection;
 mod load;
 mod mesh;
 mod obstacle;
+mod outline;
 mod patch;
 mod random;
 mod wall_layer;
@@ -17,6 +18,7 @@ pub use imperfection::{Axial, EndDirection, Imperfection, Mode, Part, Shape, Wav
 pub use load::{EndMotion, Load, Pressure};
 pub use mesh::{Integration, Mesh, MeshLayer, Symmetry};
 pub use obstacle::{Distance, Obstacle, ObstacleShape, Placement, turned};
+pub use outline::Outline;
 pub use patch::{Patch, Region};
 pub use random::Random;
 pub use wall_layer::{Opening, ResidualStretch, WallLayer};
@@ -36,7 +38,7 @@ pub struct Tube {
     pub muscles: Vec<Muscle>,
     /// Supports of the colon end (z = 0) and the ileum end (z = L).
     pub ends: [Support; 2],
-    /// Imperfections; they add up.
+    /// Imperfections, and a diameter or thickness that varies along the tube; they add up.
     pub imperfections: Vec<Imperfection>,
     /// Rigid obstacles that the walls may touch.
     pub obstacles: Vec<Obstacle>,
@@ -73,6 +75,14 @@ impl Tube {
     /// Inner radius, in D.
     pub fn inner_radius(&self) -> f64 {
         Self::OUTER_RADIUS - self.thickness
+    }
+
+    /// Returns the diameter and thickness along the tube, if they vary.
+    pub fn outline(&self) -> Option<&Outline> {
+        self.imperfections.iter().find_map(|one| match &one.shape {
+            Shape::Outline(outline) => Some(outline),
+            _ => None,
+        })
     }
 
     /// Returns the radii of the faces of the layers, from the inside out: one more than there are layers.
@@ -120,6 +130,7 @@ impl Tube {
             muscles: vec![1.0; self.muscles.len()],
             ends: [EndMotion::default(); 2],
             pressures: [Pressure::default(); 2],
+            lumen_volume: None,
             obstacles: self
                 .obstacles
                 .iter()

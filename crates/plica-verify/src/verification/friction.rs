@@ -63,7 +63,7 @@ impl Sheathed {
         };
         load.ends[0] = EndMotion {
             displacement: end,
-            twist: 0.0,
+            ..EndMotion::default()
         };
         self.path.begin_segment(load);
         let mut work = 0.0;

@@ -297,6 +297,20 @@ impl LayeredWall {
     }
 }
 
+impl LayeredWall {
+    /// Returns the internal pressure at which the inner radius now has a value, of a tube that does not twist.
+    ///
+    /// # Errors
+    /// [`NoEquilibrium`] if an iteration does not converge.
+    pub fn pressure_at(&self, inner_radius: f64) -> Result<f64, NoEquilibrium> {
+        let outside = |p: f64| {
+            let state = self.integrate(inner_radius, 0.0, p);
+            state.map_or(f64::NAN, |(_, end)| end[0])
+        };
+        secant(0.0, 1e-3, outside)
+    }
+}
+
 /// Finds a zero by the secant method, to rounding.
 fn secant(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> Result<f64, NoEquilibrium> {
     let (mut fa, mut fb) = (f(a), f(b));

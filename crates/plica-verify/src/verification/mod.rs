@@ -8,6 +8,7 @@
 //! | `exact` | identities that hold to rounding |
 //! | `layers` | layers, laws, fibres and residual stretches |
 //! | `rings`, `columns` | pressure, growth, buckling; limits of thin walls and long tubes |
+//! | `volume` | tubes inflated by the volume of their lumen |
 //! | `locking` | nearly incompressible thick walls |
 //! | `manufactured` | orders of convergence on manufactured solutions |
 //! | `contact` | contact with obstacles |
@@ -36,6 +37,7 @@ mod rings;
 pub mod row;
 mod self_contact;
 mod tube_model;
+mod volume;
 
 pub use error::VerificationError;
 pub use report::{Recorder, TITLE, Verification};
@@ -115,6 +117,16 @@ pub const CHECKS: &[Check] = &[
         "foundation",
         "a ring and a tube on elastic foundations",
         patches::foundation,
+    ),
+    quick(
+        "lumen-volume",
+        "inflation of a ring by volume, past a pressure maximum",
+        volume::ring,
+    ),
+    quick(
+        "lumen-symmetries",
+        "inflation by volume in all symmetries",
+        volume::symmetries,
     ),
     quick(
         "ring-buckling",

@@ -168,6 +168,7 @@ fn label(quantity: Quantity, plan: &Plan) -> String {
         Quantity::DiameterRatio => "*D*_{min}/*D*".into(),
         Quantity::ColonDisplacement => moved(0),
         Quantity::IleumDisplacement => moved(1),
+        Quantity::LumenVolume => "*V*/*V*_{0} of the lumen".into(),
         Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
         Quantity::DeadLoad(wall) => format!("dead load/*E* {}", ["inside", "outside"][wall]),
         Quantity::Muscle(_)

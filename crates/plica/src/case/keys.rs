@@ -33,8 +33,8 @@ table! {
         /// The layers of the wall, from the inside out. Without them the wall is one layer of `material`. Strains may jump
         /// at an interface; displacements do not.
         layers: Vec<WallLayer> = default("[]");
-        /// The muscles of the wall, each with a name that you choose. `colon`, `ileum`, `inner-wall` and
-        /// `outer-wall` are taken. A name has at most 40 letters, digits, - and _.
+        /// The muscles of the wall, each with a name that you choose. `colon`, `ileum`, `inner-wall`,
+        /// `outer-wall` and `lumen` are taken. A name has at most 40 letters, digits, - and _.
         muscles: BTreeMap<String, Muscle> = default("{}");
         /// The supports of the two ends. A stage can move an end that is held, under the name `colon` or
         /// `ileum`.
@@ -109,6 +109,12 @@ table! {
         length: Option<f64> = described("3 diameters", "3.0").unit(LENGTH).above(0.0);
         /// Thickness H of the wall at rest, below half the diameter.
         thickness: Option<f64> = described("0.06 diameters", "0.06").unit(LENGTH).above(0.0);
+        /// The outer diameter along the tube where it varies: points (position, diameter), linear between them and
+        /// constant beyond. The splines round a corner over a few elements. `diameter` is that of everything which is
+        /// given in diameters.
+        diameter_along: Option<Vec<[f64; 2]>> = described("constant", "[[0.0, 1.0], [1.5, 1.0], [3.0, 0.8]]").unit(LENGTH);
+        /// The thickness of the wall along the tube where it varies, likewise. Layers keep their shares of it.
+        thickness_along: Option<Vec<[f64; 2]>> = described("constant", "[[0.0, 0.06], [3.0, 0.04]]").unit(LENGTH);
     }
 }
 
@@ -318,8 +324,8 @@ table! {
         name: Option<String> = described("stage-1, stage-2, …", "stage-1");
         /// The number of equal load steps. Each ends in a state of the history.
         steps: usize = default("20").from(1.0).to(100_000.0);
-        /// The targets at its end: of muscles, obstacles and patches, by their names, of the ends `colon` and `ileum`, and of
-        /// the surfaces `inner-wall` and `outer-wall`.
+        /// The targets at its end: of muscles, obstacles and patches, by their names, of the ends `colon` and `ileum`, of
+        /// the surfaces `inner-wall` and `outer-wall`, and of the `lumen`.
         drive: BTreeMap<String, Drive> = default("{}");
     }
 }
@@ -343,6 +349,17 @@ table! {
         /// It pushes the inner wall outwards and the outer wall inwards. Both ends must be held (fixed or
         /// sliding).
         pressure: Option<f64> = described(BEFORE_0, "0.0").unit(STRESS);
+        /// Target of `lumen`: the volume between the ends over that at rest. The pressure that holds it is a result, so that
+        /// the path goes on past a maximum of the pressure. The pressure is taken over from the stage before, and the other
+        /// way round. Both ends must be held.
+        volume_ratio: Option<f64> = described(BEFORE, "1.5").from(0.001).to(10_000.0);
+        /// Target of `lumen`: the same as a volume.
+        volume: Option<f64> = described(BEFORE, "3.0").unit("length³");
+        /// Target of a fixed end of a tube without symmetry: its displacement [x, y] across the axis from rest.
+        offset: Option<[f64; 2]> = described(BEFORE_0, "[0.1, 0.0]").unit(LENGTH);
+        /// Target of a fixed end of a tube without symmetry: its rotation about the axis [x, y] through its centre, by the
+        /// length of this vector; after that by `twist_degrees`.
+        tilt_degrees: Option<[f64; 2]> = described(BEFORE_0, "[0.0, 30.0]").unit("degrees");
         /// Target of a surface: a dead load, per area at rest and normal to the surface at rest.
         dead_load: Option<f64> = described(BEFORE_0, "0.0").unit(STRESS);
         /// Target of an obstacle: its radius. Not of a plate.

@@ -41,6 +41,9 @@ pub(super) fn nearest<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) 
 pub(super) fn target(name: &str) -> Option<&'static str> {
     let name = name.to_lowercase();
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    if has(&["lumen"]) {
+        return has(&["vol"]).then_some("lumen.volume_ratio");
+    }
     let place = ["inner", "outer", "colon", "ileum"].map(|word| has(&[word]));
     let place = place.iter().position(|is_meant| *is_meant)?;
     let targets = match place {
@@ -69,6 +72,7 @@ mod tests {
             ("inner_dead_load", Some("inner-wall.dead_load")),
             ("displacement_colon", Some("colon.displacement")),
             ("twist_deg_ileum", Some("ileum.twist_degrees")),
+            ("lumen_volume", Some("lumen.volume_ratio")),
             ("pressure", None),
             ("inner", None),
             ("circular", None),

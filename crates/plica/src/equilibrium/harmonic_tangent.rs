@@ -4,7 +4,7 @@
 use super::buffers::Buffers;
 use crate::assembly::{Friction, LowHarmonics, MatrixFreeTangent, RingDamping, SplineTube};
 use crate::contact::{SelfContact, SurfaceContact, SurfaceTangent};
-use crate::matrix::{BlockBanded, CoupledBanded, CoupledFactor, Singular};
+use crate::matrix::{BlockBanded, CoupledBanded, CoupledFactor, RankOne, Singular};
 use crate::monitor::Monitor;
 use crate::rings::{HarmonicSolver, LowHarmonicCorrection, Transform};
 use crate::solve::{NegativeCurvature, Operator, Solved, Solver, Tangent, conjugate_gradients};
@@ -56,6 +56,8 @@ struct Linear {
     at: MatrixFreeTangent,
     /// Contact of the wall with itself, if it touches.
     contact: Option<SurfaceTangent>,
+    /// The term of a driven volume of the lumen, and its average around the tube, of harmonic 0.
+    term: Option<[RankOne; 2]>,
     /// Whether the displacements are the same at every ring.
     symmetric: bool,
     /// The low harmonics that the state couples, if any.
@@ -71,6 +73,8 @@ pub struct HarmonicSystem {
     alpha: f64,
     /// None only while `self` is dropped.
     preconditioner: Option<HarmonicSolver>,
+    /// M⁻¹ g and 1 + κ g · M⁻¹ g of a driven volume, where the preconditioner M does not contain its term.
+    beside: Option<(Vec<f64>, f64)>,
     /// Negative pivots of the averaged block of each harmonic of the cyclic sector.
     negative_pivots: Vec<usize>,
 }
@@ -124,6 +128,7 @@ impl HarmonicTube {
         load: &Load,
         u: &[f64],
         friction: Option<&Friction>,
+        term: Option<RankOne>,
     ) -> HarmonicTangent {
         let mut at = self.linearised.take().unwrap_or_default();
         self.tube.linearise(load, u, &mut at);
@@ -156,6 +161,10 @@ impl HarmonicTube {
                 tube: self.clone(),
                 at,
                 contact: touching.map(|(_, tangent)| tangent),
+                term: term.map(|term| {
+                    let average = averaged(&term, self.tube.sector.rings);
+                    [term, average]
+                }),
                 symmetric: differs <= SYMMETRIC && !has_sectors,
                 low,
                 coupled,
@@ -222,7 +231,8 @@ impl Tangent for HarmonicTangent {
             let mut band = tube.low_matrix(low);
             band.copy_from(&coupled.band);
             let far = coupled.far.clone();
-            CoupledBanded { band, far }
+            let term = None;
+            CoupledBanded { band, far, term }
         });
         self.system(alpha, copy)
     }
@@ -273,13 +283,45 @@ impl HarmonicTangent {
                 averaged: averaged.into_iter().flatten().collect(),
             });
         }
+        let term = self.state.term.as_ref();
+        let beside = term.filter(|_| self.state.low.is_some()).map(|[term, _]| {
+            let mut g = term.clone();
+            g.constrain(tube.tube.prescribed());
+            let solution = preconditioner.solve(&g.vector);
+            let denominator = 1.0 + g.factor * dot(&g.vector, &solution);
+            (solution, denominator)
+        });
         Ok(HarmonicSystem {
             state: self.state.clone(),
             alpha,
             negative_pivots,
+            beside,
             preconditioner: Some(preconditioner),
         })
     }
+}
+
+/// Returns harmonic 0 of the average of a term over the rotations and mirror images of k rings: k κ ḡ ḡᵀ with the mean ḡ of
+/// the rings, without its circumferential components.
+fn averaged(term: &RankOne, rings: usize) -> RankOne {
+    let k = rings as f64;
+    let mean = |(i, rings): (usize, &[f64])| match i % 3 {
+        2 => 0.0,
+        _ => rings.iter().sum::<f64>() / k,
+    };
+    RankOne {
+        factor: k * term.factor,
+        vector: term
+            .vector
+            .chunks_exact(rings)
+            .enumerate()
+            .map(mean)
+            .collect(),
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The factored block of a harmonic, made positive definite by additional damping if needed.
@@ -302,13 +344,21 @@ impl Linear {
         if let (Some(contact), Some(tangent)) = (tube.surface_contact(), &self.contact) {
             contact.add_product(tangent, factor, v, y);
         }
+        if let Some([term, _]) = &self.term {
+            term.multiply_add(factor, v, y);
+        }
     }
 
     /// Factors K_n + α C_n of the averaged tangent, for harmonic n of the cyclic sector.
     fn block(&self, n: usize, alpha: f64) -> Result<Block, Singular> {
         let (tube, waves) = (&self.tube.tube, n * self.waves());
         let prescribed = tube.prescribed_in_harmonic(waves);
-        let factored = |alpha: f64| {
+        let term = self
+            .term
+            .as_ref()
+            .filter(|_| n == 0)
+            .map(|[_, average]| average);
+        let factored_with = |term: Option<&RankOne>, alpha: f64| {
             let mut block = self.tube.block();
             self.at.average.harmonic_into(waves, &mut block);
             if alpha != 0.0 {
@@ -324,6 +374,7 @@ impl Linear {
                 .filter(|low| n <= low.highest)
                 .map(|low| self.averaged(low, n, &block))
                 .transpose()?;
+            block.term = term.cloned();
             block.constrain(&prescribed);
             Ok((block.factor()?, averaged))
         };
@@ -332,13 +383,19 @@ impl Linear {
                 .as_ref()
                 .map_or(1, |(factor, _)| factor.negative_pivots())
         };
-        let mut found = factored(alpha);
+        let mut found = factored_with(term, alpha);
         // A singular block is at the limit of stability and counts as unstable; for a state that is not
         // symmetric it proves nothing.
         let negative_pivots = match &found {
             Err(_) if !self.symmetric => 0,
             found => pivots(found),
         };
+        // The correction on low harmonics does not know the term, which is then added beside.
+        let term = term.filter(|_| self.low.is_none());
+        let factored = |alpha: f64| factored_with(term, alpha);
+        if self.low.is_some() && n == 0 && self.term.is_some() {
+            found = factored(alpha);
+        }
         let mut shift = 0.0;
         while pivots(&found) > 0 && shift < 1e6 {
             if let Ok((factor, _)) = found {
@@ -402,6 +459,13 @@ impl Operator for HarmonicSystem {
             Some(preconditioner) => out.copy_from_slice(&preconditioner.solve(r)),
             None => out.copy_from_slice(r),
         }
+        if let (Some([term, _]), Some((solution, denominator))) = (&self.state.term, &self.beside) {
+            // Sherman and Morrison (1950). Prescribed entries of r are zero.
+            let part = term.factor * dot(solution, r) / denominator;
+            out.iter_mut()
+                .zip(solution)
+                .for_each(|(x, w)| *x -= part * w);
+        }
     }
     fn metric(&self, v: &[f64], out: &mut [f64]) {
         out.fill(0.0);
@@ -420,8 +484,17 @@ impl HarmonicSystem {
     /// Returns whether the average of the tangent around the tube is indefinite. Then the tangent is indefinite, too: the
     /// average is the mean of the tangents rotated to every ring and mirrored, and the boundary conditions do not
     /// change under rotation and mirroring.
+    ///
+    /// Where the volume of the lumen is driven, only harmonic 0 of the average contains its term, and the others prove
+    /// nothing if the state is not axisymmetric.
     pub fn average_is_indefinite(&self) -> bool {
-        self.negative_pivots.iter().any(|negative| *negative > 0)
+        let proving = match self.state.term {
+            Some(_) if !self.state.symmetric => 1,
+            _ => self.negative_pivots.len(),
+        };
+        self.negative_pivots[..proving]
+            .iter()
+            .any(|negative| *negative > 0)
     }
 }
 
@@ -491,7 +564,7 @@ mod tests {
             })
         };
         let solved = |on: &Arc<HarmonicTube>, u: &[f64]| {
-            let tangent = on.tangent(&load, u, None);
+            let tangent = on.tangent(&load, u, None, None);
             let coupled = tangent.state.low.as_ref().map(|low| low.highest);
             let mut b = wave(3.0);
             let solver = tangent.into_shifted(1.0).unwrap();

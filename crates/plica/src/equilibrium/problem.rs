@@ -2,12 +2,14 @@
 
 use super::friction_step::FrictionStep;
 use super::harmonic_tangent::{HarmonicSystem, HarmonicTangent, HarmonicTube};
+use super::lumen::{DrivenLumen, without_lumen};
 use crate::assembly::{Forces, Inverted, ObstacleContact, SplineTube};
 use crate::contact::{ContactReport, MeridianContact, PressureField, SelfContact};
 use crate::matrix::{BlockBanded, CoupledBanded, CoupledFactor, Singular};
 use crate::monitor::Monitor;
 use crate::solve::{
-    Direct, Equilibrium, NegativeCurvature, ResidualEvaluation, Solved, Solver, Tangent,
+    Direct, EQUILIBRIUM, Equilibrium, NegativeCurvature, ResidualEvaluation, Solved, Solver,
+    Tangent,
 };
 use crate::tube::{Load, Tube};
 use std::f64::consts::PI;
@@ -22,6 +24,8 @@ pub struct TubeProblem {
     pub contact: Option<Arc<SelfContact>>,
     /// Friction in the load step that a path has begun; none without friction.
     friction: Option<Arc<FrictionStep>>,
+    /// Driven volume of the lumen; none if no load drives it.
+    lumen: Option<DrivenLumen>,
     rings: Rings,
     prescribed: Arc<[bool]>,
     /// Reference volume of the cyclic sector.
@@ -73,6 +77,7 @@ impl TubeProblem {
             at_rest,
             contact: None,
             friction: None,
+            lumen: None,
             tube,
         }
     }
@@ -100,6 +105,18 @@ impl TubeProblem {
             self.contact = Some(Arc::new(SelfContact::Meridian(contact)));
         }
         self
+    }
+
+    /// Returns the problem for loads that drive the volume of the lumen.
+    #[must_use]
+    pub fn with_driven_lumen(mut self) -> Self {
+        self.lumen = Some(DrivenLumen::new(&self.tube));
+        self
+    }
+
+    /// Returns the volume of the lumen of the stress-free shape, of a problem whose loads drive the volume.
+    pub fn driven_lumen_at_rest(&self) -> Option<f64> {
+        self.lumen.as_ref().map(DrivenLumen::at_rest)
     }
 
     fn meridian_contact(&self) -> Option<&MeridianContact> {
@@ -176,16 +193,20 @@ impl TubeProblem {
     }
 
     /// Assembles the tangent of one ring, with contact, for a circumferential mode at a state without twist. Friction, which
-    /// has no energy of its own, is left out.
+    /// has no energy of its own, is left out. Where the load drives the volume of the lumen, mode 0 is that at a held volume.
     pub fn ring_tangent(&self, load: &Load, u: &[f64], mode: usize) -> CoupledBanded {
-        self.with_self_contact(
+        let mut tangent = self.with_self_contact(
             u,
             mode,
             match mode {
                 0 => self.tube.tangent(load, u),
                 n => self.tube.tangent_in_harmonic(load, u, n),
             },
-        )
+        );
+        // Other modes do not change the volume.
+        let lumen = self.lumen.as_ref().filter(|_| mode == 0);
+        tangent.term = lumen.and_then(|lumen| lumen.holding_term(&self.tube, load, u));
+        tangent
     }
 
     /// Assembles the tangent of one ring with contact and friction.
@@ -235,8 +256,16 @@ impl Equilibrium for TubeProblem {
         from.towards(to, t)
     }
     fn forces(&self, load: &Load, u: &[f64]) -> Result<ResidualEvaluation, Inverted> {
+        let lumen = self.lumen.as_ref();
+        let held = lumen.and_then(|lumen| lumen.held(&self.tube, load, u));
+        let (load, of_lumen) = held
+            .as_ref()
+            .map_or((load, 0.0), |(load, energy)| (load, *energy));
         let mut forces = self.forces_on_tube(load, u)?;
         forces.potential += forces.contact + forces.friction;
+        if of_lumen != 0.0 {
+            forces.potential += of_lumen;
+        }
         if let Some(contact) = &self.contact {
             let of_contact = contact.add_forces(u, &mut forces.residual);
             forces.potential += self.tube.sector.repeats() * of_contact.energy;
@@ -261,26 +290,58 @@ impl Equilibrium for TubeProblem {
         })
     }
     fn tangent(&self, load: &Load, u: &[f64]) -> TubeTangent {
+        let lumen = self.lumen.as_ref();
+        let term = lumen.and_then(|lumen| lumen.term(&self.tube, load, u));
+        let held = lumen.and_then(|lumen| lumen.held(&self.tube, load, u));
+        let load = held.as_ref().map_or(load, |(load, _)| load);
         match &self.rings {
-            Rings::One(damping) => TubeTangent::Direct(Direct::new(
-                self.tangent_of_step(load, u),
-                damping.clone(),
-                self.prescribed.clone(),
-            )),
+            Rings::One(damping) => {
+                let mut tangent = self.tangent_of_step(load, u);
+                tangent.term = term;
+                TubeTangent::Direct(Direct::new(
+                    tangent,
+                    damping.clone(),
+                    self.prescribed.clone(),
+                ))
+            }
             Rings::Many(tube) => {
                 let friction = self.friction.as_ref().and_then(|step| step.friction());
-                TubeTangent::Harmonic(tube.tangent(load, u, friction))
+                TubeTangent::Harmonic(tube.tangent(load, u, friction, term))
             }
         }
     }
     fn begin_step(&mut self, load: &Load, u: &[f64], history: &[f64]) {
+        if let Some(lumen) = &mut self.lumen {
+            lumen.begin_step(&self.tube, (load, u), history);
+        }
         let contact = self.meridian_contact();
+        let history = without_lumen(history);
         let step = FrictionStep::begin(&self.tube, contact, (load, u), history);
         self.friction = step.map(Arc::new);
     }
+    fn begin_segment(&mut self, from: Load, to: &Load, u: &[f64], history: &mut Vec<f64>) -> Load {
+        match &mut self.lumen {
+            Some(lumen) => lumen.begin_segment(&self.tube, (from, to), u, history),
+            None => from,
+        }
+    }
+    fn completed(&self, load: Load, u: &[f64]) -> Load {
+        match &self.lumen {
+            Some(lumen) => lumen.completed(&self.tube, load, u),
+            None => load,
+        }
+    }
+    fn repetition_tolerance(&self, load: &Load, tolerance: f64) -> f64 {
+        match load.lumen_volume {
+            Some(_) if self.friction.is_none() => tolerance,
+            _ => tolerance.max(EQUILIBRIUM),
+        }
+    }
     fn update(&mut self, load: &Load, u: &[f64]) -> bool {
+        let lumen = self.lumen.as_mut();
+        let renewed = lumen.is_some_and(|lumen| lumen.renew(&self.tube, load, u));
         let Some(mut step) = self.friction.take() else {
-            return false;
+            return renewed;
         };
         let contact = self.meridian_contact();
         Arc::make_mut(&mut step).update(&self.tube, contact, (load, u));
@@ -288,9 +349,13 @@ impl Equilibrium for TubeProblem {
         true
     }
     fn history(&self, load: &Load, u: &[f64]) -> Vec<f64> {
-        let step = self.friction.as_ref();
-        let contact = self.meridian_contact();
-        step.map_or(vec![], |step| step.history(&self.tube, contact, (load, u)))
+        let lumen = self.lumen.as_ref();
+        let mut history = lumen.map_or(vec![], |lumen| lumen.history(&self.tube, load, u));
+        if let Some(step) = &self.friction {
+            let contact = self.meridian_contact();
+            history.extend(step.history(&self.tube, contact, (load, u)));
+        }
+        history
     }
     fn longest_step(&self, u: &[f64], step: &[f64]) -> f64 {
         let contact = self.contact.as_ref();

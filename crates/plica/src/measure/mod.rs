@@ -125,9 +125,18 @@ impl Measures {
             unreachable!("a tube has a meridian")
         };
         let (z_at_min, outer_radius_min) = own_outer[narrowest].narrowest();
-        let narrowed = Tube::OUTER_RADIUS - outer_radius_min >= Shape::MIN_DEPTH;
+        // A tube whose diameter varies is narrowed where it is narrower than at rest.
+        let relative: Option<Vec<Wall>> = tube.tube.outline().map(|outline| {
+            let walls = own_outer.iter();
+            walls.map(|wall| wall.on_cylinder(outline)).collect()
+        });
+        let relative = relative.as_ref().unwrap_or(&own_outer);
+        let radius = |&i: &usize| relative[i].narrowest().1;
+        let deepest = (0..angles.len()).min_by(|a, b| radius(a).total_cmp(&radius(b)));
+        let deepest = deepest.unwrap_or(narrowest);
+        let narrowed = Tube::OUTER_RADIUS - radius(&deepest) >= Shape::MIN_DEPTH;
         let flatness = if narrowed {
-            own_outer[narrowest].flatness()
+            relative[deepest].flatness()
         } else {
             0.0
         };
@@ -141,8 +150,8 @@ impl Measures {
             gap,
             lumen,
             shape: Shape::of(
-                &own_outer[narrowest],
-                &own_inner[narrowest],
+                &relative[deepest],
+                &own_inner[deepest],
                 angle,
                 tube.tube.diameter_ratio(load),
                 asymmetry.amplitude,

@@ -14,7 +14,7 @@ use crate::tube::Load;
 pub struct Reaction {
     /// Force (z, x, y).
     pub force: [f64; 3],
-    /// Moment (z, x, y) about the point of the axis at the prescribed axial position of the end.
+    /// Moment (z, x, y) about the centre of the end where it is prescribed to be.
     pub moment: [f64; 3],
     /// Axial component of the outward normal of the end: −1 at z = 0, 1 at z = L.
     pub outwards: f64,
@@ -41,7 +41,11 @@ impl Reaction {
                     // From the centre of the end.
                     x[0] -= load.ends[end].displacement;
                     x[1] += radius * tube.circle.control_radius;
-                    let m = cross(in_space(x), f);
+                    let mut x = in_space(x);
+                    for (k, shift) in load.ends[end].shift.iter().enumerate() {
+                        x[k + 1] -= shift;
+                    }
+                    let m = cross(x, f);
                     for i in 0..3 {
                         force[i] += f[i];
                         moment[i] += m[i];
@@ -132,7 +136,7 @@ mod tests {
         let mut load = tube.tube.rest();
         load.ends = [-1.0, 1.0].map(|side| EndMotion {
             displacement: side * 0.5 * (along - 1.0) * length,
-            twist: 0.0,
+            ..EndMotion::default()
         });
         let stress = mu * (along - 1.0 / along) + lambda * (along * b * b).ln() / along;
         let area = PI * (0.25 - tube.tube.inner_radius().powi(2));

@@ -1,7 +1,7 @@
 //! A meridian of one face of the wall, as a curve in (z, ρ).
 
 use super::Side;
-use crate::tube::Tube;
+use crate::tube::{Outline, Tube};
 
 /// A face of the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +34,16 @@ pub struct Wall {
 }
 
 impl Wall {
+    /// Returns a meridian of the outer face of a tube whose diameter varies, with its radii changed by as much as the
+    /// diameter at rest differs from that of a cylinder.
+    pub(super) fn on_cylinder(&self, outline: &Outline) -> Self {
+        let mut wall = self.clone();
+        for (point, z) in wall.points.iter_mut().zip(&self.reference_z) {
+            point.1 += Tube::OUTER_RADIUS - 0.5 * outline.diameter_at(*z);
+        }
+        wall
+    }
+
     /// Returns the point (z, ρ) with the smallest radius; NaN if the wall has no points.
     pub fn narrowest(&self) -> (f64, f64) {
         let nearest = self.points.iter().min_by(|a, b| a.1.total_cmp(&b.1));

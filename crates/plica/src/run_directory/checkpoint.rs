@@ -165,7 +165,8 @@ impl Checkpoint {
         let Some([from, to]) = self.clone().into_continuation().segment(plan) else {
             return Err("the case has no such stage".into());
         };
-        if self.state.load != from.towards(&to, self.path.reached) {
+        let expected = from.towards(&to, self.path.reached).without_multiplier();
+        if self.state.load.clone().without_multiplier() != expected {
             return Err("its load is not on the path of the case".into());
         }
         Ok((own, lost))
@@ -187,9 +188,22 @@ pub(super) fn with_recorded(mut rows: Vec<Row>, recorded: &[Row]) -> (Vec<Row>, 
 
 /// Returns whether two rows agree, apart from wall times; absent pressures count as zero.
 fn agree(a: &Row, b: &Row) -> bool {
-    let [a, b] = [a, b].map(|row| Row {
-        seconds: 0.0,
-        ..row.clone().with_pressures()
+    let has_lumen = a.lumen_pressure.is_some() || b.lumen_pressure.is_some();
+    let is_sideways = [a, b].iter().any(|row| row.ends[0].sideways.is_some());
+    let [a, b] = [a, b].map(|row| {
+        let row = row.clone().with_pressures();
+        let mut row = if has_lumen {
+            row.with_lumen_pressure()
+        } else {
+            row
+        };
+        if is_sideways {
+            row = row.with_sideways_ends();
+        }
+        Row {
+            seconds: 0.0,
+            ..row
+        }
     });
     a == b
 }

@@ -138,6 +138,13 @@ impl<'a> Run<'a> {
         }
         if plan.has_pressures() {
             rows = rows.into_iter().map(Row::with_pressures).collect();
+            if plan.drives_lumen() {
+                rows = rows.into_iter().map(Row::with_lumen_pressure).collect();
+            }
+            record.replace_rows(&rows);
+        }
+        if plan.has_sideways_ends() {
+            rows = rows.into_iter().map(Row::with_sideways_ends).collect();
             record.replace_rows(&rows);
         }
         let study = Study::resume(plan, checkpoint.into_continuation());
@@ -284,7 +291,18 @@ impl<'a> Run<'a> {
     /// Writes the walls, the unknowns and the row of a state, and a checkpoint. Nothing of a state with a number that is not
     /// finite is written.
     fn write(&mut self, state: &State, monitor: &mut dyn Monitor) -> Result<(), RunError> {
-        let row = Row::new(state, &self.scale, self.has_pressures, self.rows.last());
+        let mut row = Row::new(state, &self.scale, self.has_pressures, self.rows.last());
+        if self
+            .rows
+            .first()
+            .is_some_and(|row| row.lumen_pressure.is_some())
+        {
+            row = row.with_lumen_pressure();
+        }
+        let first = self.rows.first();
+        if first.is_some_and(|row| row.ends[0].sideways.is_some()) {
+            row = row.with_sideways_ends();
+        }
         let table = self.directory.row_table(&row)?;
         let output = &self.plan.output;
         let is_due =

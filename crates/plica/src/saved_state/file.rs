@@ -244,6 +244,8 @@ mod tests {
                     EndMotion {
                         displacement: -0.1,
                         twist: 1e-300,
+                        shift: [0.1, 1.0 / 3.0],
+                        tilt: [-1e-5, 0.0],
                     },
                 ],
                 pressures: [
@@ -253,6 +255,7 @@ mod tests {
                         dead: -1e-5,
                     },
                 ],
+                lumen_volume: Some(1.0 / 19.0),
                 obstacles: vec![Placement {
                     radius: 1.0 / 13.0,
                     position: [0.1, -1e-300, 1.0 / 17.0],

@@ -33,6 +33,9 @@ struct LoadHeader {
     inner_wall: PressureHeader,
     #[serde(default, skip_serializing_if = "PressureHeader::is_none")]
     outer_wall: PressureHeader,
+    /// Driven volume of the lumen over that at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    lumen_volume_ratio: Option<f64>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     obstacles: Vec<ObstacleHeader>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -71,6 +74,15 @@ enum DirectionHeader {
 struct EndHeader {
     displacement: f64,
     twist_radians: f64,
+    #[serde(default, skip_serializing_if = "is_none")]
+    shift: [f64; 2],
+    /// Rotation vector.
+    #[serde(default, skip_serializing_if = "is_none")]
+    tilt_radians: [f64; 2],
+}
+
+fn is_none(vector: &[f64; 2]) -> bool {
+    *vector == [0.0; 2]
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
@@ -152,6 +164,8 @@ impl SavedState {
         let end = |motion: EndMotion| EndHeader {
             displacement: motion.displacement,
             twist_radians: motion.twist,
+            shift: motion.shift,
+            tilt_radians: motion.tilt,
         };
         let wall = |pressure: Pressure| PressureHeader {
             pressure: pressure.follower,
@@ -199,6 +213,7 @@ impl SavedState {
                 ileum: end(self.load.ends[1]),
                 inner_wall: wall(self.load.pressures[0]),
                 outer_wall: wall(self.load.pressures[1]),
+                lumen_volume_ratio: self.load.lumen_volume,
                 obstacles: self
                     .obstacles
                     .iter()
@@ -236,6 +251,8 @@ impl SavedState {
         let end = |end: EndHeader| EndMotion {
             displacement: end.displacement,
             twist: end.twist_radians,
+            shift: end.shift,
+            tilt: end.tilt_radians,
         };
         let wall = |wall: PressureHeader| Pressure {
             follower: wall.pressure,
@@ -299,6 +316,7 @@ impl SavedState {
                 muscles: muscles.iter().map(|m| m.ratio).collect(),
                 ends: [end(header.load.colon), end(header.load.ileum)],
                 pressures: [wall(header.load.inner_wall), wall(header.load.outer_wall)],
+                lumen_volume: header.load.lumen_volume_ratio,
                 obstacles: obstacles.iter().map(placement).collect(),
                 patches: patches.iter().map(|patch| patch.growth_through).collect(),
             },

@@ -8,7 +8,8 @@ pub const EQUILIBRIUM: f64 = 1e-6;
 
 /// An energy W(u, load) to be made stationary in u. Its methods are pure functions of (u, load).
 ///
-/// The energy may change from step to step of a [`Path`](super::Path), as with friction, whose forces depend on the way.
+/// The energy may change from step to step of a [`Path`](super::Path), as with friction, whose forces depend on the way, or
+/// with a multiplier that holds a constraint.
 /// A step then begins with [`begin_step`](Self::begin_step), and is solved repeatedly, with
 /// [`update`](Self::update) before each repetition, until the energy is that of its own solution.
 ///
@@ -17,7 +18,7 @@ pub const EQUILIBRIUM: f64 = 1e-6;
 /// orthogonal to these, so the methods of this module need not consider them.
 pub trait Equilibrium {
     /// The parameters that drive the problem.
-    type Load: Clone;
+    type Load: Clone + PartialEq;
     /// The reason why the energy is not defined at some u.
     type EvaluationError: std::error::Error + Clone;
     /// Its tangent stiffness.
@@ -50,6 +51,26 @@ pub trait Equilibrium {
     /// energy does not depend on any state.
     fn update(&mut self, _load: &Self::Load, _u: &[f64]) -> bool {
         false
+    }
+    /// Returns the relative residual with the energy of a solution itself up to which a step is not repeated, for a
+    /// tolerance of the solver: at least 1e-6, where not stated otherwise.
+    fn repetition_tolerance(&self, _load: &Self::Load, tolerance: f64) -> f64 {
+        tolerance.max(EQUILIBRIUM)
+    }
+    /// Returns the load of a solution `u`, with the parameters that the solution determines.
+    fn completed(&self, load: Self::Load, _u: &[f64]) -> Self::Load {
+        load
+    }
+    /// Begins a segment from an accepted state to another load, and a step from there; `history` is that of the state, and
+    /// becomes that at the start of the segment. Returns the load of the state from which the segment begins.
+    fn begin_segment(
+        &mut self,
+        from: Self::Load,
+        _to: &Self::Load,
+        _u: &[f64],
+        _history: &mut Vec<f64>,
+    ) -> Self::Load {
+        from
     }
     /// Returns everything that the energies of later steps take from the path up to a state `u` that ends the step, beside
     /// (u, load).

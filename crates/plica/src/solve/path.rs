@@ -102,6 +102,7 @@ impl<P: Equilibrium> Path<P> {
         u: Vec<f64>,
         settings: Settings,
     ) -> Result<Self, P::EvaluationError> {
+        let load = problem.completed(load, &u);
         problem.begin_step(&load, &u, &[]);
         Self::begin_with(problem, load, u, vec![], settings)
     }
@@ -183,14 +184,30 @@ impl<P: Equilibrium> Path<P> {
 
     /// Begins a segment from the load of the last accepted state to another.
     pub fn begin_segment(&mut self, to: P::Load) {
-        (self.from, self.to, self.tangent) = (self.state.load.clone(), to, None);
         let ContinuationState {
-            velocity, history, ..
+            velocity,
+            mut history,
+            ..
         } = std::mem::replace(
             &mut self.continuation,
             ContinuationState::at_start(vec![], vec![]),
         );
+        let State { load, u, .. } = &self.state;
+        let from = (self.problem).begin_segment(load.clone(), &to, u, &mut history);
+        self.switch(from.clone());
+        (self.from, self.to, self.tangent) = (from, to, None);
         self.continuation = ContinuationState::at_start(velocity, history);
+    }
+
+    /// Takes another load for the last accepted state, under which it is in equilibrium, too; its stability may differ.
+    fn switch(&mut self, load: P::Load) {
+        if load == self.state.load {
+            return;
+        }
+        let u = std::mem::take(&mut self.state.u);
+        let solver = self.problem.tangent(&load, &u).into_shifted(0.0).ok();
+        self.state.negative_pivots = negative_eigenvalues(solver.as_ref());
+        (self.state.load, self.state.u, self.solver) = (load, u, solver);
     }
 
     /// Returns the position of the last accepted state on its segment, 0 to 1.
@@ -424,6 +441,7 @@ impl<P: Equilibrium> Path<P> {
         step.effort.linear_solves += 1;
         step.damping_work += found.damping_work;
         self.continuation.history = self.problem.history(&load, &found.u);
+        let load = self.problem.completed(load, &found.u);
         self.problem
             .begin_step(&load, &found.u, &self.continuation.history);
         (self.state, self.solver) = accepted(&self.problem, load, found.u, &found.forces);
@@ -539,16 +557,21 @@ fn accepted<P: Equilibrium>(
     forces: &ResidualEvaluation,
 ) -> (State<P::Load>, Option<SolverOf<P>>) {
     let solver = problem.tangent(&load, &u).into_shifted(0.0).ok();
-    let negative = |solver: &SolverOf<P>| {
-        let unstable = usize::from(solver.is_unstable());
-        solver.negative_pivots().max(unstable)
-    };
     let state = State {
         load,
         energy: forces.energy,
         relative_residual: forces.relative_residual(problem.prescribed()),
-        negative_pivots: solver.as_ref().map_or(1, negative),
+        negative_pivots: negative_eigenvalues(solver.as_ref()),
         u,
     };
     (state, solver)
+}
+
+/// Returns the number of negative eigenvalues that a solver shows; 1 for a singular tangent, which has none.
+fn negative_eigenvalues<S: Solver>(solver: Option<&S>) -> usize {
+    let negative = |solver: &S| {
+        let unstable = usize::from(solver.is_unstable());
+        solver.negative_pivots().max(unstable)
+    };
+    solver.map_or(1, negative)
 }

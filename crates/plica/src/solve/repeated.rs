@@ -15,7 +15,8 @@ const INEXACT: f64 = 0.02;
 const REDUCTION: (usize, f64) = (4, 0.8);
 
 /// Updates the energy of a step to that of a solution, and solves again by `again`, until the residual with the energy of
-/// the solution itself is within the tolerance, or 1e-6 if that is smaller. Returns the last solution.
+/// the solution itself is within the [`repetition_tolerance`](Equilibrium::repetition_tolerance), or the energy does not
+/// change. Returns the last solution.
 ///
 /// # Errors
 ///
@@ -27,7 +28,7 @@ pub(super) fn repeated<P: Equilibrium>(
     settings: &Settings,
     mut again: impl FnMut(&P, Vec<f64>, &Settings) -> Result<Solution, Failure<P::EvaluationError>>,
 ) -> Result<Solution, Failure<P::EvaluationError>> {
-    let tolerance = settings.tolerance.max(EQUILIBRIUM);
+    let tolerance = problem.repetition_tolerance(load, settings.tolerance);
     let mut before = f64::INFINITY;
     for repetition in 0.. {
         if !problem.update(load, &found.u) {
@@ -41,6 +42,9 @@ pub(super) fn repeated<P: Equilibrium>(
             break;
         }
         let stagnates = repetition >= REDUCTION.0 && relative_residual > REDUCTION.1 * before;
+        if stagnates && relative_residual <= EQUILIBRIUM {
+            break;
+        }
         before = relative_residual;
         if repetition == REPETITIONS || stagnates {
             return Err(Failure::Friction {

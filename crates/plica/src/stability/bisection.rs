@@ -155,7 +155,7 @@ impl Bisection<'_> {
     ) -> Result<Option<Found>, StabilityError> {
         let begun = Path::resume(
             self.problem.clone(),
-            [a.load.clone(), b.load.clone()],
+            [a.load.clone(), a.load.clone()],
             a.load.clone(),
             a.u.clone(),
             ContinuationState::at_start(vec![0.0; a.u.len()], a.history.clone()),
@@ -164,6 +164,7 @@ impl Bisection<'_> {
         let Ok(mut path) = begun else {
             return Ok(None);
         };
+        path.begin_segment(b.load.clone());
         let step = match path.advance(t, monitor) {
             Ok(step) => step,
             Err(error) if error.is_cancelled() => return Err(StabilityError::Cancelled),

@@ -21,6 +21,8 @@ pub enum Quantity {
     IleumDisplacement,
     /// Target of one muscle, if several change and their combination does not.
     Muscle(usize),
+    /// Volume of the lumen over that at rest.
+    LumenVolume,
     /// Follower pressure on the inner (0) or the outer (1) wall, in E.
     Pressure(usize),
     /// Dead load on the inner (0) or the outer (1) wall, in E.
@@ -36,6 +38,12 @@ pub enum Quantity {
 impl Quantity {
     /// Returns the quantity that changes most between two loads.
     pub fn between(tube: &Tube, from: &Load, to: &Load) -> Self {
+        // The pressure in a driven lumen is a result.
+        let [from, to] = match [from, to].iter().all(|load| load.lumen_volume.is_some()) {
+            true => [from, to].map(|load| load.clone().without_multiplier()),
+            false => [from, to].map(Load::clone),
+        };
+        let (from, to) = (&from, &to);
         let most = |quantities: &mut dyn Iterator<Item = Self>| {
             let change = |q: Self| (q.of(tube, to) - q.of(tube, from)).abs();
             quantities
@@ -47,6 +55,7 @@ impl Quantity {
             Self::DiameterRatio,
             Self::IleumDisplacement,
             Self::ColonDisplacement,
+            Self::LumenVolume,
             Self::Pressure(0),
             Self::Pressure(1),
             Self::DeadLoad(0),
@@ -74,6 +83,7 @@ impl Quantity {
             Self::ColonDisplacement => load.ends[0].displacement,
             Self::IleumDisplacement => load.ends[1].displacement,
             Self::Muscle(m) => load.muscles[m],
+            Self::LumenVolume => load.lumen_volume.unwrap_or(1.0),
             Self::Pressure(wall) => load.pressures[wall].follower,
             Self::DeadLoad(wall) => load.pressures[wall].dead,
             Self::Radius(i) => load.obstacles[i].radius,
@@ -90,6 +100,7 @@ impl Quantity {
             Self::ColonDisplacement => "colon displacement/D".into(),
             Self::IleumDisplacement => "ileum displacement/D".into(),
             Self::Muscle(m) => format!("ratio of {}", tube.muscles[m].name),
+            Self::LumenVolume => "volume/volume at rest".into(),
             Self::Pressure(wall) => format!("pressure {}/E", WALLS[wall]),
             Self::DeadLoad(wall) => format!("dead load {}/E", WALLS[wall]),
             Self::Radius(i) => format!("radius of {}/D", tube.obstacles[i].name),

@@ -116,14 +116,19 @@ fn zero(plan: &Plan) -> Row {
     let obstacles: Vec<&str> = obstacles.map(|obstacle| obstacle.name.as_str()).collect();
     let patches = plan.tube.patches.iter();
     let patches: Vec<&str> = patches.map(|patch| patch.name.as_str()).collect();
-    let mut row = row.with_obstacles(&obstacles).with_patches(&patches);
+    row = row.with_obstacles(&obstacles).with_patches(&patches);
     if !plan.tube.foundations.is_empty() {
         row = row.with_foundations();
     }
     if plan.has_pressures() {
-        row.with_pressures()
-    } else {
-        row
+        row = row.with_pressures();
+    }
+    if plan.has_sideways_ends() {
+        row = row.with_sideways_ends();
+    }
+    match plan.drives_lumen() {
+        true => row.with_lumen_pressure(),
+        false => row,
     }
 }
 

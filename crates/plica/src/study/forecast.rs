@@ -6,7 +6,7 @@ use crate::assembly::SplineTube;
 use crate::equilibrium::{HarmonicTangent, TubeProblem};
 use crate::material::Material;
 use crate::solve::{Equilibrium, Scheme, Solver, Tangent};
-use crate::tube::{Imperfection, Integration, Mesh, Part, Symmetry, Tube, WallLayer};
+use crate::tube::{Imperfection, Integration, Mesh, Part, Shape, Symmetry, Tube, WallLayer};
 use std::ops::Range;
 use std::time::Instant;
 
@@ -148,10 +148,11 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
 /// Returns the number of states at which a tube that is not perfectly axisymmetric has left the axisymmetric path.
 fn states_not_round(plan: &Plan) -> usize {
     let states: usize = plan.stages.iter().map(|stage| stage.steps).sum();
-    if plan.start.is_some() || plan.tube.has_sectors() {
+    if plan.start.is_some() || plan.tube.has_sectors() || plan.has_sideways_ends() {
         return states;
     }
-    if plan.tube.imperfections.is_empty() {
+    let is_outline = |one: &Imperfection| matches!(one.shape, Shape::Outline(_));
+    if plan.tube.imperfections.iter().all(is_outline) {
         return 0;
     }
     let (mut from, mut count) = (plan.first_load(), 0);

@@ -5,7 +5,7 @@ use super::state::Milestone;
 use super::work::WorkPoint;
 use super::{Lost, Phase, Plan, State, StudyError, check_memory};
 use crate::assembly::SplineTube;
-use crate::equilibrium::{TubeProblem, test_stability};
+use crate::equilibrium::{TubeProblem, segment_start, test_stability};
 use crate::monitor::{Monitor, Part};
 use crate::solve::{ContinuationState, Effort, Failure, Method, Path, PathError, Step};
 use crate::tube::Load;
@@ -66,11 +66,12 @@ impl Continuation {
     pub fn segment(&self, plan: &Plan) -> Option<[Load; 2]> {
         let first = plan.first_load();
         let end = |stage: usize| Some(plan.stages.get(stage)?.load.clone());
-        match self.stage {
-            None => Some([first.clone(), first]),
-            Some(0) => Some([first, end(0)?]),
-            Some(stage) => Some([end(stage - 1)?, end(stage)?]),
-        }
+        let [from, to] = match self.stage {
+            None => [first.clone(), first],
+            Some(0) => [first, end(0)?],
+            Some(stage) => [end(stage - 1)?, end(stage)?],
+        };
+        Some([segment_start(from, &to, &self.path.history), to])
     }
 }
 

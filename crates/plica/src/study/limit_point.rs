@@ -54,8 +54,27 @@ fn quantities(plan: &Plan, load: &Load) -> Vec<(String, f64, String)> {
             displacement,
             scale.length_name.clone(),
         ));
-        all.push((format!("{end}.twist_degrees"), twist, degrees));
+        all.push((format!("{end}.twist_degrees"), twist, degrees.clone()));
+        for (k, axis) in ["x", "y"].iter().enumerate() {
+            let shift = scale.length * motion.shift[k];
+            all.push((
+                format!("{axis} of {end}.shift"),
+                shift,
+                scale.length_name.clone(),
+            ));
+            let tilt = motion.tilt[k].to_degrees();
+            all.push((
+                format!("{axis} of {end}.tilt_degrees"),
+                tilt,
+                degrees.clone(),
+            ));
+        }
     }
+    if let Some(ratio) = load.lumen_volume {
+        all.push(("lumen.volume_ratio".into(), ratio, String::new()));
+    }
+    // The pressure in a driven lumen is a result.
+    let load = load.clone().without_multiplier();
     for (wall, pressure) in ["inner-wall", "outer-wall"].iter().zip(&load.pressures) {
         let [follower, dead] = [pressure.follower, pressure.dead].map(|p| scale.stress * p);
         all.push((
@@ -136,11 +155,13 @@ mod tests {
             ends: [1.0, -2.0].map(|sign| EndMotion {
                 displacement: sign * x,
                 twist: sign * x.to_radians(),
+                ..EndMotion::default()
             }),
             pressures: [3.0, -4.0].map(|sign| Pressure {
                 follower: sign * x,
                 dead: 10.0 * sign * x,
             }),
+            lumen_volume: None,
             obstacles: vec![],
             patches: vec![],
         };

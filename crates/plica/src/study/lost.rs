@@ -182,9 +182,16 @@ fn at_limit_point(limit_points: &[LimitPoint]) -> String {
         [_] => "it",
         _ => "them together",
     };
+    let pressure = |limit: &LimitPoint| limit.quantity == "inner-wall.pressure";
+    let volume = match limit_points.iter().any(pressure) {
+        true => {
+            ". To go past a maximum of the pressure, drive lumen.volume_ratio instead of inner-wall.pressure"
+        }
+        false => "",
+    };
     format!(
         "The path turns back here: {}. No equilibrium beyond was found, and more steps or a finer mesh will not help. \
-         End the stage before, or hold {it} there and drive something else: a muscle or an end of the tube",
+         End the stage before, or hold {it} there and drive something else: a muscle or an end of the tube{volume}",
         extremes.join(", and ")
     )
 }

@@ -47,7 +47,7 @@ pub use patch_row::PatchRow;
 pub use plan::{
     LengthUnit, MaterialFile, ModeShape, Output, Plan, Stage, Start, StressUnit, Units,
 };
-pub use row::{EndRow, MuscleRow, Row};
+pub use row::{EndRow, MuscleRow, Row, SidewaysRow};
 pub use start::inverted_by_imperfections;
 pub use state::{MuscleState, ObstacleState, PatchState, State};
 pub use table::{Cell, Quantity, RowReader};

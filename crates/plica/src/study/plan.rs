@@ -4,7 +4,7 @@ use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
 use crate::saved_state::{Layout, SavedState, SavedStateError};
 use crate::solve::Settings;
-use crate::tube::{Load, Mesh, Pressure, Symmetry, Tube};
+use crate::tube::{EndMotion, Load, Mesh, Pressure, Symmetry, Tube};
 use std::fmt;
 
 /// A checked, dimensionless study: lengths in D, stresses in E.
@@ -182,12 +182,14 @@ impl Plan {
     /// Returns the problem of the solver: the tube on its mesh, with contact if the plan has that.
     pub fn problem(&self) -> TubeProblem {
         let rings = self.mesh.rings(self.symmetry);
-        let problem = TubeProblem::new(SplineTube::new(&self.tube, &self.mesh, rings));
+        let mut problem = TubeProblem::new(SplineTube::new(&self.tube, &self.mesh, rings));
         if self.contact {
-            problem.with_contact().with_friction(self.friction)
-        } else {
-            problem
+            problem = problem.with_contact().with_friction(self.friction);
         }
+        if self.drives_lumen() {
+            problem = problem.with_driven_lumen();
+        }
+        problem
     }
 
     /// Returns whether the wall has friction on itself or on an obstacle.
@@ -240,9 +242,25 @@ impl Plan {
 
     /// Returns whether there is a pressure on a wall at the start or in any stage.
     pub fn has_pressures(&self) -> bool {
+        let pressed = |load: &Load| load.pressures != [Pressure::default(); 2];
+        self.loads().any(pressed) || self.drives_lumen()
+    }
+
+    /// Returns whether the volume of the lumen is driven at the start or in any stage.
+    pub fn drives_lumen(&self) -> bool {
+        self.loads().any(|load| load.lumen_volume.is_some())
+    }
+
+    /// Returns whether an end leaves its axis at the start or in any stage.
+    pub fn has_sideways_ends(&self) -> bool {
+        self.loads()
+            .any(|load| load.ends.iter().any(EndMotion::is_sideways))
+    }
+
+    /// Returns the loads at the start, if it is not at rest, and at the ends of the stages.
+    fn loads(&self) -> impl Iterator<Item = &Load> {
         let start = self.start.iter().map(|start| &start.load);
-        let mut loads = start.chain(self.stages.iter().map(|stage| &stage.load));
-        loads.any(|load| load.pressures != [Pressure::default(); 2])
+        start.chain(self.stages.iter().map(|stage| &stage.load))
     }
 }
 

@@ -37,6 +37,8 @@ pub struct Row {
     pub inner_wall_work: Option<f64>,
     /// Work done so far by the pressures on the outer wall; likewise.
     pub outer_wall_work: Option<f64>,
+    /// Pressure on the inner wall; only in runs that drive the volume of the lumen in any stage.
+    pub lumen_pressure: Option<f64>,
     /// Contact of the wall with itself; its columns exist only in runs with contact.
     pub contact: ContactRow,
     /// The obstacles, in the order of the tube.
@@ -125,6 +127,8 @@ pub struct EndRow {
     pub displacement: f64,
     /// Prescribed twist about the axis, in degrees.
     pub twist_deg: f64,
+    /// Shift and tilt; only in runs in which an end leaves its axis.
+    pub sideways: Option<SidewaysRow>,
     /// Axial force of the support, positive if it pulls the end outwards.
     pub axial_force: f64,
     /// Magnitude of the force of the support across the axis.
@@ -135,6 +139,15 @@ pub struct EndRow {
     pub torque: f64,
     /// Work that the support has done so far.
     pub work: f64,
+}
+
+/// Prescribed motion of an end beside and about the axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SidewaysRow {
+    /// Displacement along x and y.
+    pub shift: [f64; 2],
+    /// Rotation vector about x and y, in degrees.
+    pub tilt_deg: [f64; 2],
 }
 
 impl Row {
@@ -164,6 +177,10 @@ impl Row {
             name: state.end_names[i].clone(),
             displacement: length * state.load.ends[i].displacement,
             twist_deg: state.load.ends[i].twist.to_degrees(),
+            sideways: state.has_sideways_ends.then(|| SidewaysRow {
+                shift: state.load.ends[i].shift.map(|x| length * x),
+                tilt_deg: state.load.ends[i].tilt.map(f64::to_degrees),
+            }),
             axial_force: scale.force * state.reactions[i].axial_force(),
             shear_force: scale.force * state.reactions[i].shear_force(),
             bending_moment: scale.moment * state.reactions[i].bending_moment(),
@@ -184,6 +201,7 @@ impl Row {
             potential: has_pressures.then_some(energy * state.potential),
             inner_wall_work: has_pressures.then_some(0.0),
             outer_wall_work: has_pressures.then_some(0.0),
+            lumen_pressure: state.lumen_pressure.map(|p| scale.stress * p),
             contact: state
                 .contact
                 .as_ref()
@@ -301,6 +319,23 @@ impl Row {
         self
     }
 
+    /// Adds the column of the pressure in a driven lumen to a row without it.
+    #[must_use]
+    pub fn with_lumen_pressure(mut self) -> Self {
+        let inner = self.inner_pressure.unwrap_or(0.0);
+        self.lumen_pressure.get_or_insert(inner);
+        self
+    }
+
+    /// Adds the columns of ends that leave their axis to a row without them.
+    #[must_use]
+    pub fn with_sideways_ends(mut self) -> Self {
+        for end in &mut self.ends {
+            end.sideways.get_or_insert_default();
+        }
+        self
+    }
+
     /// Adds the columns of contact, with zeros, to a row without them.
     #[must_use]
     pub fn with_contact(mut self) -> Self {
@@ -351,6 +386,7 @@ impl Row {
             potential: None,
             inner_wall_work: None,
             outer_wall_work: None,
+            lumen_pressure: None,
             contact: ContactRow::default(),
             obstacles: vec![],
             patches: vec![],
@@ -454,6 +490,24 @@ impl Row {
                 v.cell(&name, of, field(end));
             }
         }
+        for end in &mut self.ends {
+            let SidewaysRow { shift, tilt_deg } = end.sideways.clone().unwrap_or_default();
+            let [mut x, mut y, mut about_x, mut about_y] =
+                [shift[0], shift[1], tilt_deg[0], tilt_deg[1]]
+                    .map(|value| end.sideways.as_ref().map(|_| value));
+            for (name, of, value) in [
+                ("shift_x", Length, &mut x),
+                ("shift_y", Length, &mut y),
+                ("tilt_x_deg", Degrees, &mut about_x),
+                ("tilt_y_deg", Degrees, &mut about_y),
+            ] {
+                v.optional(&format!("{name}_{}", end.name), of, value);
+            }
+            if let (Some(x), Some(y), Some(a), Some(b)) = (x, y, about_x, about_y) {
+                let (shift, tilt_deg) = ([x, y], [a, b]);
+                end.sideways = Some(SidewaysRow { shift, tilt_deg });
+            }
+        }
         v.optional("inner_pressure", Stress, &mut self.inner_pressure);
         v.optional("outer_pressure", Stress, &mut self.outer_pressure);
         v.optional("inner_dead_load", Stress, &mut self.inner_dead_load);
@@ -514,6 +568,7 @@ impl Row {
         v.cell("gap", Length, &mut self.gap);
         v.cell("lumen", Length, &mut self.lumen);
         v.cell("lumen_volume", Volume, &mut self.lumen_volume);
+        v.optional("lumen_pressure", Stress, &mut self.lumen_pressure);
         v.cell("lumen_area_min", Area, &mut self.lumen_area_min);
         v.cell("shape", Text, &mut self.shape);
         v.cell("asymmetry", Length, &mut self.asymmetry);

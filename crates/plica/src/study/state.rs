@@ -54,6 +54,10 @@ pub struct State {
     pub measures: Measures,
     /// Sizes of the lumen and of the outer wall.
     pub dimensions: Dimensions,
+    /// Pressure on the inner wall, in a study that drives the volume of the lumen in any stage.
+    pub lumen_pressure: Option<f64>,
+    /// Whether an end leaves its axis in any stage of the study.
+    pub has_sideways_ends: bool,
     /// Reactions at z = 0 and z = L.
     pub reactions: [Reaction; 2],
     /// Contact of the walls with themselves; none in a study without contact.
@@ -175,7 +179,9 @@ impl State {
             inner_iterations: step.effort.inner_iterations,
             seconds,
             measures: measures(problem, load, u, contact.as_ref()),
-            dimensions: Dimensions::of(tube, u),
+            dimensions: dimensions(problem, load, u),
+            lumen_pressure: plan.drives_lumen().then_some(load.pressures[0].follower),
+            has_sideways_ends: plan.has_sideways_ends(),
             reactions: Reaction::of(tube, load, u, &forces.residual),
             contact,
             obstacles: obstacles(plan, load, point.contacts()),
@@ -212,6 +218,16 @@ fn measures(
         measures.gap = gaps.fold(exact.barrier().range, f64::min);
     }
     measures
+}
+
+/// Measures the sizes of a state. A driven volume is the driven value: the quadrature of the pressure differs a little from
+/// the exact volume.
+fn dimensions(problem: &TubeProblem, load: &Load, u: &[f64]) -> Dimensions {
+    let mut dimensions = Dimensions::of(&problem.tube, u);
+    if let (Some(ratio), Some(at_rest)) = (load.lumen_volume, problem.driven_lumen_at_rest()) {
+        dimensions.lumen_volume = ratio * at_rest;
+    }
+    dimensions
 }
 
 /// Returns the obstacles of a plan under a load.

@@ -236,14 +236,16 @@ mod tests {
             ends: [
                 EndMotion {
                     displacement: -0.05,
-                    twist: 0.0,
+                    ..EndMotion::default()
                 },
                 EndMotion {
                     displacement: 0.02,
                     twist: 0.2,
+                    ..EndMotion::default()
                 },
             ],
             pressures: [pressure(0.01, 0.002), pressure(-0.005, 0.003)],
+            lumen_volume: None,
             obstacles: vec![],
             patches: vec![],
         };

@@ -61,11 +61,12 @@ fn ends_follow_displacement_and_twist_of_the_load() {
         load.ends = [
             EndMotion {
                 displacement: -0.2,
-                twist: 0.0,
+                ..EndMotion::default()
             },
             EndMotion {
                 displacement: 0.1,
                 twist: 0.9,
+                ..EndMotion::default()
             },
         ];
         let mut u = vec![0.0; tube.unknowns()];
@@ -79,6 +80,59 @@ fn ends_follow_displacement_and_twist_of_the_load() {
                     assert!((along - z - motion.displacement).abs() < 1e-14);
                     assert!((x - (X * cos - Y * sin)).abs() < 1e-14);
                     assert!((y - (X * sin + Y * cos)).abs() < 1e-14);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn ends_follow_a_shift_and_a_tilt_after_a_twist() {
+    let TubeAndLoad { tube, .. } = tube_and_load(3, [5, 2, 6], 6);
+    let mut load = tube.tube.rest();
+    load.ends = [
+        EndMotion {
+            displacement: -0.2,
+            twist: 0.4,
+            shift: [0.3, -0.1],
+            tilt: [0.0; 2],
+        },
+        EndMotion {
+            displacement: 0.1,
+            twist: 0.9,
+            shift: [-0.2, 0.5],
+            tilt: [1.2, -0.5],
+        },
+    ];
+    let mut u = vec![0.0; tube.unknowns()];
+    tube.apply_prescribed(&load, &mut u);
+    // Right-handed rotation of (x, y, z) about an axis of unit length.
+    let rotated = |x: [f64; 3], axis: [f64; 3], angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        let dot: f64 = (0..3).map(|i| axis[i] * x[i]).sum();
+        let cross = |i: usize, j: usize| axis[i] * x[j] - axis[j] * x[i];
+        let cross = [cross(1, 2), cross(2, 0), cross(0, 1)];
+        [0, 1, 2].map(|i| x[i] * cos + cross[i] * sin + axis[i] * dot * (1.0 - cos))
+    };
+    for angle in [0.0, 0.3, 2.0] {
+        for radius in [0.35, 0.42, 0.5] {
+            for (z, motion) in [(0.0, load.ends[0]), (1.5, load.ends[1])] {
+                let sample = tube.sample(&load, &u, Point { z, radius, angle });
+                let ([_, X, Y], position) = (sample.reference, sample.position);
+                let [a, b] = motion.tilt;
+                let size = a.hypot(b).max(1e-300);
+                let x = rotated([X, Y, 0.0], [0.0, 0.0, 1.0], motion.twist);
+                let x = rotated(x, [a / size, b / size, 0.0], a.hypot(b));
+                let expected = [
+                    z + motion.displacement + x[2],
+                    x[0] + motion.shift[0],
+                    x[1] + motion.shift[1],
+                ];
+                for (found, expected) in position.iter().zip(expected) {
+                    assert!(
+                        (found - expected).abs() < 1e-14,
+                        "{position:?} {expected:?}"
+                    );
                 }
             }
         }

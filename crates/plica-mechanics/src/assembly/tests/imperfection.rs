@@ -115,6 +115,7 @@ fn end_imperfection_rotates_with_the_end() {
     load.ends[0] = EndMotion {
         displacement: 0.02,
         twist: 0.5,
+        ..EndMotion::default()
     };
     let mut u = vec![0.0; tube.unknowns()];
     tube.apply_prescribed(&load, &mut u);

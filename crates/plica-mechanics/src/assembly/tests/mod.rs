@@ -5,6 +5,7 @@ mod boundary_conditions;
 mod imperfection;
 mod layers;
 mod mechanics;
+mod outline;
 mod patches;
 mod reduced_integration;
 mod reference;

@@ -27,6 +27,7 @@ mod friction_forces;
 #[cfg(test)]
 mod friction_tests;
 mod low_harmonics;
+mod lumen;
 #[cfg(test)]
 mod obstacle_tests;
 mod obstacles;

@@ -355,8 +355,13 @@ pub(super) fn check_wall(
             "with it the stress-free wall is folded over, near z = {z}, {}",
             at.place.angle_and_depth()
         );
-        let key = format!("imperfections[{}].amplitude", last + 1);
-        problems.value(&key, rule, "make it smaller");
+        // The outline comes last.
+        if last < case.imperfections.len() {
+            let key = format!("imperfections[{}].amplitude", last + 1);
+            problems.value(&key, rule, "make it smaller");
+        } else {
+            problems.key("tube", rule, "let the tables rise or fall more slowly");
+        }
     }
 }
 

@@ -8,14 +8,17 @@ mod contact;
 mod imperfections;
 pub(super) mod law;
 mod layers;
+mod lumen;
 mod material;
 mod mesh;
 mod muscles;
 mod named_materials;
 mod obstacles;
+mod outline;
 mod patches;
 mod region;
 mod residual;
+mod sideways;
 mod solver;
 mod stages;
 mod start;
@@ -39,17 +42,22 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
     let begin = start
         .as_ref()
         .map_or(tube.rest(), |start| start.load.clone());
-    let stages = stages::stages(case, &tube, &begin, problems);
+    let run = (&mesh, symmetry);
+    let (mut imperfections, modes) = imperfections::imperfections(case, &tube, run, open, problems);
+    imperfections.extend(outline::outline(case, &tube, problems));
+    tube.imperfections = imperfections;
+    let volume_at_rest = lumen::volume_at_rest(case, &tube, run, problems);
+    let stages = stages::stages(case, &tube, &begin, volume_at_rest, problems);
     if start.is_some() == case.start.is_some() {
         stages::check_all(&tube, &begin, &stages, problems);
     }
-    let run = (&mesh, symmetry);
-    let (imperfections, modes) = imperfections::imperfections(case, &tube, run, open, problems);
-    tube.imperfections = imperfections;
     imperfections::check_stretches(&tube, &stages, problems);
     patches::check_stretches(&tube, &stages, problems);
     imperfections::check_wall(case, &tube, run, problems);
     stages::check_end_planes(&tube, &stages, problems);
+    lumen::check_ends(&stages, problems);
+    outline::check_loads(&tube, &stages, problems);
+    sideways::check(symmetry, &stages, problems);
     contact::check(case, symmetry, &tube, &stages, problems);
     obstacles::check(case, &tube, run, (&begin, &stages), problems);
     let title = case.title.clone().unwrap_or_else(|| name.to_owned());

@@ -3,6 +3,7 @@
 use super::super::key::join;
 use super::super::keys::{self, Case};
 use super::super::problem::Problems;
+use super::lumen::LUMEN;
 use super::region;
 use super::zone::{ROUNDING, zone};
 use crate::activation::{Muscle, Profile};
@@ -66,8 +67,8 @@ pub(super) fn is_name(name: &str) -> bool {
 }
 
 fn check_name(path: &str, name: &str, problems: &mut Problems) {
-    if ENDS.contains(&name) || WALLS.contains(&name) {
-        let rule = "an end or a surface of the tube has this name";
+    if ENDS.contains(&name) || WALLS.contains(&name) || name == LUMEN {
+        let rule = "an end, a surface or the lumen of the tube has this name";
         problems.key(path, rule, "choose another name for the muscle");
     } else if !is_name(name) {
         let rule = "a muscle's name must consist of letters, digits, - and _, at most 40 of them";

@@ -2,10 +2,13 @@
 
 use super::super::keys::{self, Case};
 use super::super::problem::Problems;
+use super::lumen::LUMEN;
 use super::muscles::{ENDS, WALLS, is_name};
 use super::zone::{length, tidy};
 use crate::study::Stage;
-use crate::tube::{Load, Mesh, Obstacle, ObstacleShape, Placement, Support, Symmetry, Tube};
+use crate::tube::{
+    Load, Mesh, Obstacle, ObstacleShape, Outline, Placement, Support, Symmetry, Tube,
+};
 use std::f64::consts::TAU;
 
 /// Names that would give a column of the history the name of another.
@@ -79,6 +82,7 @@ fn check_name(key: &str, name: &str, before: &[Obstacle], case: &Case, problems:
     }
     let is_taken = ENDS.contains(&name)
         || RESERVED.contains(&name)
+        || name == LUMEN
         || [&case.ends.colon_name, &case.ends.ileum_name].contains(&&name.to_owned())
         || WALLS.contains(&name)
         || case.muscles.contains_key(name)
@@ -217,12 +221,14 @@ fn check_fixed_ends(
             .into_iter()
             .filter(|end| tube.ends[*end] == Support::Fixed);
         let mut points = edges.flat_map(|end| {
-            let z = tube.length * end as f64 + load.ends[end].displacement;
-            let radii = [Tube::OUTER_RADIUS, tube.inner_radius()];
-            radii.into_iter().flat_map(move |radius| {
+            let at_rest = tube.length * end as f64;
+            let motion = load.ends[end];
+            let z = at_rest + motion.displacement;
+            radii_at(tube, at_rest).into_iter().flat_map(move |radius| {
                 (0..POINTS).map(move |j| {
                     let (sin, cos) = (TAU * j as f64 / POINTS as f64).sin_cos();
-                    [z, radius * cos, radius * sin]
+                    let [x, y] = motion.shift;
+                    [z, x + radius * cos, y + radius * sin]
                 })
             })
         });
@@ -282,6 +288,9 @@ fn check_steps(
 
 /// Returns the smallest distance of an obstacle from the wall at rest; negative where they overlap.
 fn gap_at_rest(obstacle: &Obstacle, tube: &Tube) -> f64 {
+    if tube.outline().is_some() {
+        return gap_of_points(obstacle, tube);
+    }
     let Placement { radius, position } = obstacle.rest;
     let [z, x, y] = position;
     let across = x.hypot(y);
@@ -305,4 +314,31 @@ fn gap_at_rest(obstacle: &Obstacle, tube: &Tube) -> f64 {
             at(0.0).min(at(tube.length))
         }
     }
+}
+
+/// Returns the outer and the inner radius at z.
+fn radii_at(tube: &Tube, z: f64) -> [f64; 2] {
+    let radii = [Tube::OUTER_RADIUS, tube.inner_radius()];
+    let outline = tube.outline();
+    radii.map(|radius| {
+        let size = [tube.length, tube.thickness];
+        let outwards = |outline: &Outline| outline.displacement(z, radius, size)[1];
+        radius + outline.map_or(0.0, outwards)
+    })
+}
+
+/// Returns the smallest distance of an obstacle from points of the faces of the wall at rest.
+fn gap_of_points(obstacle: &Obstacle, tube: &Tube) -> f64 {
+    let rows = (0..=POINTS).map(|i| tube.length * i as f64 / POINTS as f64);
+    let points = rows.flat_map(|z| {
+        let radii = radii_at(tube, z).into_iter();
+        radii.flat_map(move |radius| {
+            (0..POINTS).map(move |j| {
+                let (sin, cos) = (TAU * j as f64 / POINTS as f64).sin_cos();
+                [z, radius * cos, radius * sin]
+            })
+        })
+    });
+    let gaps = points.map(|point| obstacle.shape.distance(&obstacle.rest, point).gap);
+    gaps.fold(f64::INFINITY, f64::min)
 }

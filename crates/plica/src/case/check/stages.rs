@@ -4,9 +4,11 @@ use super::super::key::join;
 use super::super::keys::{Case, Drive};
 use super::super::problem::Problems;
 use super::super::spelling::{nearest, target};
+use super::lumen::{self, LUMEN};
 use super::material::youngs_modulus;
 use super::muscles::{ENDS, WALLS};
 use super::obstacles::in_tube;
+use super::sideways;
 use super::zone::{stress, tidy};
 use crate::activation::{Direction, Muscle};
 use crate::study::Stage;
@@ -32,6 +34,7 @@ pub(super) fn stages(
     case: &Case,
     tube: &Tube,
     begin: &Load,
+    volume_at_rest: f64,
     problems: &mut Problems,
 ) -> Vec<Stage> {
     let mut stages: Vec<Stage> = Vec::new();
@@ -57,11 +60,27 @@ pub(super) fn stages(
         }
         for (target, drive) in &stage.drive {
             let key = join(&format!("{path}.drive"), target);
-            match Driven::find(target, tube, &muscles) {
+            let driven = match Driven::find(target, tube, &muscles) {
+                Some(Driven::Lumen(_)) => Some(Driven::Lumen(volume_at_rest)),
+                driven => driven,
+            };
+            match driven {
                 Some(driven) => apply(&key, target, driven, drive, case, tube, &mut load, problems),
                 None => unknown_name(&key, target, tube, problems),
             }
         }
+        let is_driven =
+            |key: &str, problems: &Problems| problems.is_given(key) && problems.is_as_written(key);
+        let given: Vec<String> = ["lumen.volume", "lumen.volume_ratio", "inner-wall.pressure"]
+            .map(|key| format!("{path}.drive.{key}"))
+            .into_iter()
+            .filter(|key| is_driven(key, problems))
+            .collect();
+        lumen::check_stage(
+            &format!("{path}.drive"),
+            |key| given.iter().any(|one| one == key),
+            problems,
+        );
         stages.push(Stage {
             name,
             load: load.clone(),
@@ -121,6 +140,8 @@ enum Driven {
     End(usize),
     /// The inner wall or the outer wall.
     Wall(usize),
+    /// The lumen, with its volume at rest in D³.
+    Lumen(f64),
     /// An obstacle, by its index in the tube, and whether it has a radius.
     Obstacle(usize, bool),
     /// A patch, by its index in the tube.
@@ -134,6 +155,9 @@ impl Driven {
         }
         if let Some(wall) = WALLS.iter().position(|&wall| wall == name) {
             return Some(Self::Wall(wall));
+        }
+        if name == LUMEN {
+            return Some(Self::Lumen(f64::NAN));
         }
         if let Some(i) = tube
             .obstacles
@@ -154,8 +178,9 @@ impl Driven {
         match self {
             Self::Muscle(_, Direction::Circular) => &["diameter_ratio"],
             Self::Muscle(_, Direction::Longitudinal) => &["length_ratio"],
-            Self::End(_) => &["displacement", "twist_degrees"],
+            Self::End(_) => &["displacement", "twist_degrees", "offset", "tilt_degrees"],
             Self::Wall(_) => &["pressure", "dead_load"],
+            Self::Lumen(_) => &lumen::TARGETS,
             Self::Obstacle(_, true) => &["radius", "position"],
             Self::Obstacle(_, false) => &["position"],
             Self::Patch(_) => &["growth_through"],
@@ -168,6 +193,7 @@ impl Driven {
             Self::Muscle(_, Direction::Longitudinal) => "a longitudinal muscle",
             Self::End(_) => "an end of the tube",
             Self::Wall(_) => "a surface of the tube",
+            Self::Lumen(_) => "the lumen",
             Self::Obstacle(_, true) => "an obstacle",
             Self::Obstacle(_, false) => "a plate",
             Self::Patch(_) => "a patch",
@@ -175,7 +201,7 @@ impl Driven {
     }
 }
 
-/// Reports a name that is neither a muscle, nor an end, nor a surface.
+/// Reports a name that is neither a muscle, nor an end, nor a surface, nor the lumen.
 fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
     let muscle = join("muscles", name);
     if !problems.are_sound(&[&muscle, "obstacles", "patches"]) {
@@ -184,7 +210,7 @@ fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
     let names = || {
         let muscles = tube.muscles.iter().map(|muscle| muscle.name.as_str());
         // A muscle of such a name is reported by itself.
-        let is_free = |name: &&str| !ENDS.contains(name) && !WALLS.contains(name);
+        let is_free = |name: &&str| !ENDS.contains(name) && !WALLS.contains(name) && *name != LUMEN;
         let obstacles = tube.obstacles.iter().map(|obstacle| obstacle.name.as_str());
         let patches = tube.patches.iter().map(|patch| patch.name.as_str());
         muscles
@@ -193,6 +219,7 @@ fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
             .chain(patches)
             .chain(ENDS)
             .chain(WALLS)
+            .chain([LUMEN])
     };
     let near = match problems.len() < MANY {
         true => nearest(name, names()),
@@ -248,6 +275,10 @@ fn apply(
         ("growth_through", drive.growth_through),
         ("displacement", drive.displacement),
         ("twist_degrees", drive.twist_degrees),
+        ("offset", drive.offset.map(|_| f64::NAN)),
+        ("tilt_degrees", drive.tilt_degrees.map(|_| f64::NAN)),
+        ("volume_ratio", drive.volume_ratio),
+        ("volume", drive.volume),
         ("pressure", drive.pressure),
         ("dead_load", drive.dead_load),
         ("radius", drive.radius),
@@ -280,6 +311,21 @@ fn apply(
             continue;
         }
         match driven {
+            Driven::Lumen(at_rest) => {
+                lumen::apply(&key, (target, value), (case, tube), at_rest, load, problems);
+            }
+            Driven::End(e) if matches!(target, "offset" | "tilt_degrees") => {
+                let (diameter, support) = (case.tube.diameter, tube.ends[e]);
+                sideways::apply(
+                    &key,
+                    target,
+                    drive,
+                    diameter,
+                    support,
+                    &mut load.ends[e],
+                    problems,
+                );
+            }
             Driven::Muscle(m, _) => {
                 load.muscles[m] = value;
                 check_stretch(&key, &tube.muscles[m], value, tube, problems);
@@ -306,6 +352,9 @@ fn apply(
                 match target {
                     "pressure" => wall.follower = value,
                     _ => wall.dead = value,
+                }
+                if (w, target) == (0, "pressure") {
+                    load.lumen_volume = None;
                 }
                 check_pressure(&key, value, case, problems);
                 if target == "pressure" && value != 0.0 {
@@ -338,7 +387,10 @@ pub(super) fn check_closed(key: &str, tube: &Tube, problems: &mut Problems) {
 
 /// Checks that ends which slide under a follower pressure stay in their planes.
 pub(super) fn check_end_planes(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
-    let pressed = |stage: &Stage| stage.load.pressures.iter().any(|p| p.follower != 0.0);
+    let pressed = |stage: &Stage| {
+        let load = &stage.load;
+        load.lumen_volume.is_some() || load.pressures.iter().any(|p| p.follower != 0.0)
+    };
     let sound = problems.are_sound(&["imperfections", "ends", "stages", "start"]);
     if !sound || !stages.iter().any(pressed) {
         return;

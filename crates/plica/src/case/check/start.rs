@@ -2,8 +2,9 @@
 
 use super::super::files::{Input, InputFile, OpenInput};
 use super::super::key::join;
-use super::super::keys::Case;
+use super::super::keys::{Case, Scheme};
 use super::super::problem::Problems;
+use super::sideways::check_support;
 use super::stages::{check_closed, check_held, check_stretch};
 use super::zone::{ROUNDING, length};
 use crate::activation::{Direction, Muscle};
@@ -41,7 +42,11 @@ pub(super) fn start(
     check_size(KEY, &state, case, tube, problems);
     check_layers(KEY, &state.layout, tube, problems);
     check_symmetry(&state.layout, mesh, symmetry, problems);
-    let load = load(&state, tube, problems);
+    let mut load = load(&state, tube, problems);
+    if !matches!(case.solver.scheme, Scheme::Static) {
+        // The pressure holds the volume as well.
+        load.lumen_volume = None;
+    }
     (problems.len() == before).then_some(Start { file, load, state })
 }
 
@@ -154,8 +159,12 @@ fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Load {
         if motion.twist != 0.0 {
             check_held(KEY, "twist_degrees", support, problems);
         }
+        if motion.is_sideways() {
+            check_support(KEY, support, problems);
+        }
     }
     load.pressures = state.load.pressures;
+    load.lumen_volume = state.load.lumen_volume;
     if load
         .pressures
         .iter()

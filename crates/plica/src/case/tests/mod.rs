@@ -194,6 +194,7 @@ fn state() -> SavedState {
             muscles: vec![],
             ends: Default::default(),
             pressures: Default::default(),
+            lumen_volume: None,
             obstacles: vec![],
             patches: vec![],
         },

@@ -43,6 +43,23 @@ const OF_RING: &[Rule] = &[
         &["0.00099999", "0.5"],
     ),
     rule(
+        "tube.diameter_along",
+        "tube.diameter_along = @",
+        &["[[0.0, 1.0], [3.0, 0.8]]", "[[1.0, 0.1201]]"],
+        &[
+            "[]",
+            "[[1.0, 1.0], [0.5, 1.0]]",
+            "[[0.0, 1.0], [3.1, 1.0]]",
+            "[[0.0, 1.0], [1.0, 0.12]]",
+        ],
+    ),
+    rule(
+        "tube.thickness_along",
+        "tube.thickness_along = @",
+        &["[[0.0, 0.06], [3.0, 0.03]]", "[[1.0, 0.499]]"],
+        &["[[-0.1, 0.06]]", "[[0.0, 0.06], [1.0, 0.5]]"],
+    ),
+    rule(
         "friction",
         "contact = true\nfriction = @",
         &["0.0", "2.0"],
@@ -465,6 +482,24 @@ const AFTER_RING: &[Rule] = &[
         "[[stages]]\ndrive.ileum.twist_degrees = 10\n[ends]\nileum = @",
         &["'fixed'"],
         &["'sliding'", "'free'"],
+    ),
+    rule(
+        "stages[2].drive.lumen.volume_ratio",
+        "[[stages]]\ndrive.lumen.volume_ratio = 1.2\n[ends]\nileum = @",
+        &["'fixed'", "'sliding'"],
+        &["'free'"],
+    ),
+    rule(
+        "stages[2].drive.lumen.volume",
+        "[[stages]]\ndrive.lumen.volume = @",
+        &["0.002", "18000"],
+        &["-1.0", "0.001", "19000"],
+    ),
+    rule(
+        "stages[3].drive.inner-wall.pressure",
+        "[[stages]]\ndrive.lumen.volume_ratio = 1.2\n[[stages]]\ndrive = { @inner-wall.pressure = 0.01 }",
+        &[""],
+        &["lumen.volume_ratio = 1.5, "],
     ),
     rule(
         "stages[2].drive.ileum.displacement",

@@ -74,6 +74,28 @@ pub fn loads(row: &Row, scale: &Scale, muscles_by_name: bool) -> Vec<NamedLoad> 
         loads.push(load(moved, end.displacement, length));
         loads.push(load(twist, end.twist_deg, "°"));
     }
+    for end in row.ends.iter().filter(|end| end.sideways.is_some()) {
+        let sideways = end.sideways.clone().unwrap_or_default();
+        for (axis, shift, tilt) in [
+            ("x", sideways.shift[0], sideways.tilt_deg[0]),
+            ("y", sideways.shift[1], sideways.tilt_deg[1]),
+        ] {
+            loads.push(load(
+                format!("{} end along {axis}", end.name),
+                shift,
+                length,
+            ));
+            loads.push(load(
+                format!("{} end tilted about {axis}", end.name),
+                tilt,
+                "°",
+            ));
+        }
+    }
+    if row.lumen_pressure.is_some() {
+        let unit = format!("{length}³");
+        loads.push(load("volume of the lumen".into(), row.lumen_volume, &unit));
+    }
     for (name, value) in [
         ("pressure inside", row.inner_pressure),
         ("pressure outside", row.outer_pressure),

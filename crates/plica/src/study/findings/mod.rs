@@ -5,6 +5,7 @@ mod extremes;
 mod loads;
 mod obstacles;
 mod place;
+mod pressure;
 mod returned;
 mod table;
 #[cfg(test)]
@@ -15,6 +16,7 @@ pub use extremes::{Extreme, Jump};
 pub use loads::NamedLoad;
 pub use obstacles::{LargestForce, ObstacleContacts};
 pub use place::{Interval, Place};
+pub use pressure::PressureExtreme;
 pub use returned::Return;
 
 use super::{Row, Scale};
@@ -33,6 +35,8 @@ pub struct Findings {
     pub stages: Vec<StageEnd>,
     /// Minima and maxima of the strain energy inside the stages.
     pub extremes: Vec<Extreme>,
+    /// Maxima and minima of the pressure inside the stages, in a run that drives the volume of the lumen.
+    pub pressure_extremes: Vec<PressureExtreme>,
     /// Steps made by relaxation after Newton's method had failed; the tube may have jumped to another branch.
     pub jumps: Vec<Jump>,
     /// States of square shape.
@@ -72,6 +76,10 @@ pub struct Findings {
     pub length_unit: String,
     /// Unit of energies.
     pub energy_unit: String,
+    /// Unit of stresses.
+    pub stress_unit: String,
+    /// Unit of volumes.
+    pub volume_unit: String,
     /// Unit of forces.
     pub force_unit: String,
 }
@@ -186,6 +194,7 @@ impl Findings {
         Self {
             stages: stages.map(stage).collect(),
             extremes: extremes::extremes(&path),
+            pressure_extremes: pressure::extremes(&path),
             jumps: extremes::jumps(&path),
             square: path.intervals(|row| row.shape == Shape::Square),
             overhanging: path.intervals(Row::overhangs),
@@ -210,6 +219,8 @@ impl Findings {
             },
             length_unit: scale.length_name.clone(),
             energy_unit: scale.energy_name.clone(),
+            stress_unit: scale.stress_name.clone(),
+            volume_unit: format!("{}³", scale.length_name),
             force_unit: scale.force_name.clone(),
         }
     }

@@ -26,6 +26,7 @@ impl Findings {
         let mut lines = vec![];
         lines.extend(self.stages.iter().map(|stage| self.stage_line(stage)));
         lines.extend(self.energy_lines());
+        lines.extend(self.pressure_lines());
         lines.extend(self.shape_lines());
         lines.extend(self.returned.iter().map(|found| self.returned_line(found)));
         lines.extend(self.caution_lines());
@@ -103,6 +104,23 @@ impl Findings {
             lines.insert(0, ("energy minimum".into(), none));
         }
         lines
+    }
+
+    /// Describes extremes of the pressure in a driven lumen.
+    fn pressure_lines(&self) -> impl Iterator<Item = Line> {
+        self.pressure_extremes.iter().map(|extreme| {
+            let name = match extreme.is_maximum {
+                true => "pressure maximum",
+                false => "pressure minimum",
+            };
+            let [pressure, volume] = [extreme.pressure, extreme.volume].map(|x| number(x, 4));
+            let (stress, cubic) = (&self.stress_unit, &self.volume_unit);
+            let line = format!(
+                "{pressure} {stress} at a volume of {volume} {cubic}, near {}",
+                extreme.at
+            );
+            (name.to_owned(), line)
+        })
     }
 
     /// Describes when the wall is square, overhangs and invaginates.
