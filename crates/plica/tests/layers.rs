@@ -43,6 +43,26 @@ fn the_carotid_artery_has_the_radii_that_its_case_describes() {
     }
 }
 
+#[test]
+fn an_artery_of_three_layers_has_the_radii_that_its_case_describes() {
+    let text = include_str!("../../../cases/three-layer-artery.toml");
+    let (study, states) = run(text);
+    let inner = study.tube().tube.inner_radius();
+    for (stage, expected) in [
+        ("diastolic", [7.50876041, 8.31909222]),
+        ("systolic", [7.78303495, 8.56287970]),
+    ] {
+        let state = states.iter().rfind(|state| state.stage == stage).unwrap();
+        let [a, b] = [inner, 0.5].map(|radius| 14.0 * place(&study, state, radius).0);
+        assert!((a / expected[0] - 1.0).abs() < 1e-6, "{a}");
+        assert!((b / expected[1] - 1.0).abs() < 1e-6, "{b}");
+        let printed = expected
+            .iter()
+            .all(|radius| text.contains(&format!("{radius:.8}")));
+        assert!(printed, "{stage}");
+    }
+}
+
 /// A short tube of two layers; `keys` are those of the outer one.
 fn two_layers(keys: &str, rest: &str) -> String {
     format!(
