@@ -2,6 +2,7 @@
 
 use crate::args::CaseArguments;
 use crate::failure::Failure;
+use crate::law_text::law_name;
 use crate::{case_file, console};
 use plica::activation::AngularSector;
 use plica::material::{Material, NeoHookean, Volumetric};
@@ -181,24 +182,17 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
 
 /// Describes a layer: thickness, elements, law, fibres and residual stretches.
 fn layer_row(tube: &Tube, layer: &WallLayer, elements: usize) -> String {
-    let (law, fibres) = match &layer.material {
-        Material::NeoHookean(_) => ("neo-Hookean", 0),
-        Material::MooneyRivlin(_) => ("Mooney–Rivlin", 0),
-        Material::Custom(_) => ("a law of its own", 0),
-        Material::Composite(law) => (law.matrix.name(), law.fibres.len()),
-    };
     let mut text = format!(
-        "{}, {:.4} D thick, {elements} elements, {law}",
+        "{}, {:.4} D thick, {elements} elements, {}",
         layer.name,
-        layer.share * tube.thickness
+        layer.share * tube.thickness,
+        law_name(&layer.material)
     );
-    match fibres {
-        0 => {}
-        1 => text += ", 1 family of fibres",
-        n => text += &format!(", {n} families of fibres"),
-    }
     if layer.material.has_tone() {
         text += ", an active tension";
+    }
+    if let Some(opening) = &layer.residual.opening {
+        text += &format!(", opens by {:.1}°", 360.0 * (1.0 - opening.fraction));
     }
     for (name, [inner, outer]) in [
         ("around", layer.residual.around),

@@ -9,6 +9,7 @@ mod existing_run;
 mod export;
 mod failure;
 mod interrupt;
+mod law_text;
 mod materials;
 mod new;
 mod page_directory;

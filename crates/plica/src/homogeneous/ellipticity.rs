@@ -83,7 +83,8 @@ pub fn loses_ellipticity(law: &Material, test: MechanicalTest, limit: f64) -> Op
     };
     let at = |step: usize| limit.powf(step as f64 / STEPS as f64);
     let mut before = 1.0;
-    for step in 0..=STEPS {
+    let steps = if limit == 1.0 { 0 } else { STEPS };
+    for step in 0..=steps {
         let stretch = at(step);
         if stiffness(stretch)? > 0.0 {
             before = stretch;
