@@ -8,7 +8,7 @@ use plica::activation::AngularSector;
 use plica::material::{Material, NeoHookean, Volumetric};
 use plica::run_directory::DiskUse;
 use plica::spline::Circle;
-use plica::study::{Plan, check_memory, forecast};
+use plica::study::{Plan, Stage, check_memory, forecast};
 use plica::tube::{
     End, Foundation, Imperfection, Integration, Outline, Part, Patch, Region, Shape,
     SpringDirection, Symmetry, Tube, WallLayer,
@@ -230,7 +230,7 @@ fn stretches(plan: &Plan) -> Vec<String> {
     for stage in &plan.stages {
         let described = tube.muscles.iter().enumerate().map(|(m, muscle)| {
             let (mut least, mut largest) = (1.0_f64, 1.0_f64);
-            for load in [&before, &stage.load] {
+            for load in stage.loads().chain([&before]) {
                 let ratio = load.muscles[m];
                 least = least.min(muscle.smallest_stretch(ratio, tube.length));
                 // The stretch is linear in the ratio, and 1 at 1.

@@ -15,13 +15,7 @@ use std::f64::consts::PI;
 use std::fmt::Display;
 
 fn muscle(direction: Direction, zone: [f64; 2], profile: Profile) -> Muscle {
-    Muscle {
-        name: String::new(),
-        direction,
-        zone,
-        profile,
-        sector: None,
-    }
+    Muscle::new(String::new(), direction, zone, profile)
 }
 
 /// Activation 1 everywhere in the zone.

@@ -20,3 +20,4 @@ mod stability;
 mod study;
 mod tangents;
 mod three_dimensions;
+mod waves;

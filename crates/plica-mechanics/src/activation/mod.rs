@@ -7,12 +7,18 @@
 //! - longitudinal: θζ(z) = 1 + (Lmax/L − 1) L/∫s dz · s(z), driven by the length ratio Lmax/L,
 //!   so that the grown tube is Lmax long.
 //!
+//! A driven shift c moves the zone along the tube: s(z − c) takes the place of s(z). A zone with repeats is there at
+//! every distance d from itself, so that a shift makes a travelling wave. Where several muscles of a direction act at a
+//! point, their θ multiply.
+//!
 //! | letter | meaning | unit | Rust |
 //! |---|---|---|---|
 //! | ζ, η, ξ | along, around, through the wall | – | [`Direction`] |
 //! | θζ, θη | grown over ungrown length | – | [`Muscle::stretch`] |
 //! | s | profile, 0 to 1 | – | [`Profile::value`] |
 //! | a, b | ends of the zone | D | [`Muscle::zone`] |
+//! | c | shift of the zone | D | [`crate::tube::Load::shifts`] |
+//! | d | distance between repeats | D | [`Muscle::repeat`] |
 
 mod angular_sector;
 mod profile;
@@ -36,8 +42,10 @@ pub struct Muscle {
     pub name: String,
     /// Its direction.
     pub direction: Direction,
-    /// Ends of the zone along the tube, in D.
+    /// Ends of the zone along the tube, in D, before any shift.
     pub zone: [f64; 2],
+    /// Distance between repeats of the zone along the tube, in D, at least the length of the zone; none for one zone.
+    pub repeat: Option<f64>,
     /// Distribution of the activity over the zone.
     pub profile: Profile,
     /// Sector of the circumference that it acts in; none for all around. Its function multiplies θ − 1.
@@ -45,7 +53,27 @@ pub struct Muscle {
 }
 
 impl Muscle {
-    /// Returns the grown stretch θ at z for a target ratio (Dmin/D or Lmax/L) and the length of the tube, in its sector.
+    /// A muscle on one zone, in all layers and all around the tube.
+    pub fn new(name: String, direction: Direction, zone: [f64; 2], profile: Profile) -> Self {
+        Self {
+            name,
+            direction,
+            zone,
+            repeat: None,
+            profile,
+            sector: None,
+        }
+    }
+
+    /// Returns the place z − c in the zone before its shift, or between it and its next repeat.
+    pub fn unshifted(&self, z: f64, shift: f64) -> f64 {
+        let (z, from) = (z - shift, self.zone[0]);
+        self.repeat
+            .map_or(z, |distance| from + (z - from).rem_euclid(distance))
+    }
+
+    /// Returns the grown stretch θ at a place that [`Muscle::unshifted`] returns, for a target ratio (Dmin/D, or Lmax/L
+    /// by one whole zone) and the length of the tube.
     pub fn stretch(&self, z: f64, ratio: f64, length: f64) -> f64 {
         let [a, b] = self.zone;
         if z < a || z > b {
@@ -60,6 +88,16 @@ impl Muscle {
         match self.direction {
             Direction::Circular => (ratio - 1.0) / self.profile.largest(),
             Direction::Longitudinal => (ratio - 1.0) * length / ((b - a) * self.profile.integral()),
+        }
+    }
+
+    /// Returns the target ratio at which θ is `stretch` where the profile is largest.
+    pub fn ratio_of(&self, stretch: f64, length: f64) -> f64 {
+        match self.direction {
+            Direction::Circular => stretch,
+            Direction::Longitudinal => {
+                1.0 + (stretch - 1.0) / (self.extreme_stretch(2.0, length) - 1.0)
+            }
         }
     }
 
@@ -80,13 +118,7 @@ mod tests {
     use crate::spline::gauss_legendre;
 
     fn muscle(direction: Direction, profile: Profile) -> Muscle {
-        Muscle {
-            name: "m".into(),
-            direction,
-            zone: [0.5, 1.0],
-            profile,
-            sector: None,
-        }
+        Muscle::new("m".into(), direction, [0.5, 1.0], profile)
     }
 
     #[test]
@@ -120,6 +152,33 @@ mod tests {
         let contracted = muscle(Direction::Circular, low);
         assert!((contracted.stretch(0.75, 0.25, 3.0) - 0.25).abs() < 1e-14);
         assert!((contracted.smallest_stretch(0.25, 3.0) - 0.25).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_zone_is_shifted_and_repeated() {
+        let mut m = muscle(Direction::Circular, Profile::RaisedCosine);
+        let at = |m: &Muscle, z: f64, shift| m.stretch(m.unshifted(z, shift), 0.25, 3.0);
+        for (z, shift, theta) in [(0.75, 0.0, 0.25), (0.75, 0.5, 1.0), (1.25, 0.5, 0.25)] {
+            assert!((at(&m, z, shift) - theta).abs() < 1e-14, "{z} {shift}");
+        }
+        m.repeat = Some(0.8);
+        // In the zone at 0.5, in the gap, in the repeats at 1.3 and −0.3, and the same with the shift of a repeat.
+        for shift in [0.0, 0.8, -1.6] {
+            for (z, theta) in [(0.75, 0.25), (1.15, 1.0), (1.55, 0.25), (-0.05, 0.25)] {
+                assert!((at(&m, z, shift) - theta).abs() < 1e-12, "{z} {shift}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_target_gives_the_stretch_that_it_was_made_from() {
+        for direction in [Direction::Circular, Direction::Longitudinal] {
+            let m = muscle(direction, Profile::Table(vec![(0.0, 0.2), (1.0, 0.7)]));
+            for stretch in [0.3, 1.0, 1.8] {
+                let ratio = m.ratio_of(stretch, 3.0);
+                assert!((m.extreme_stretch(ratio, 3.0) - stretch).abs() < 1e-14);
+            }
+        }
     }
 
     #[test]

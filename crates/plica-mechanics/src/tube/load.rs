@@ -1,4 +1,5 @@
-//! Loads of a tube: targets of the muscles, displacements of the ends, pressures on the walls, placements of obstacles, growth of patches.
+//! Loads of a tube: targets and shifts of the muscles, displacements of the ends, pressures on the walls, placements of
+//! obstacles, growth of patches.
 
 use super::Placement;
 
@@ -7,6 +8,8 @@ use super::Placement;
 pub struct Load {
     /// Target of each muscle of the tube, in the order of the tube: Dmin/D or Lmax/L.
     pub muscles: Vec<f64>,
+    /// Shift of the zone of each muscle along the tube, in D.
+    pub shifts: Vec<f64>,
     /// Motion of the colon end and the ileum end.
     pub ends: [EndMotion; 2],
     /// Pressure on the inner wall, acting outwards, and on the outer wall, acting inwards.
@@ -78,13 +81,10 @@ impl Load {
             radius: mix(a.radius, b.radius),
             position: std::array::from_fn(|i| mix(a.position[i], b.position[i])),
         };
+        let all = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(&a, &b)| mix(a, b)).collect();
         Self {
-            muscles: self
-                .muscles
-                .iter()
-                .zip(&other.muscles)
-                .map(|(&a, &b)| mix(a, b))
-                .collect(),
+            muscles: all(&self.muscles, &other.muscles),
+            shifts: all(&self.shifts, &other.shifts),
             ends: [end(0), end(1)],
             pressures: [pressure(0), pressure(1)],
             lumen_volume: match [self.lumen_volume, other.lumen_volume] {
@@ -115,6 +115,7 @@ mod tests {
     fn every_part_of_a_load_is_interpolated_linearly() {
         let load = |x: f64| Load {
             muscles: vec![x, 2.0 * x],
+            shifts: vec![11.0 * x, 12.0 * x],
             ends: [3.0, 4.0].map(|s| EndMotion {
                 displacement: s * x,
                 twist: 10.0 * s * x,

@@ -25,6 +25,9 @@ pub use wall_layer::{Opening, ResidualStretch, WallLayer};
 
 use crate::activation::{Direction, Muscle};
 
+/// Points at which the grown length is integrated where zones overlap, repeat or leave the tube.
+const LENGTH_POINTS: usize = 4096;
+
 /// A circular tube of outer diameter 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tube {
@@ -34,7 +37,7 @@ pub struct Tube {
     pub thickness: f64,
     /// Layers of the wall from the inside out, at least one. Their shares of the thickness add up to one.
     pub layers: Vec<WallLayer>,
-    /// Muscles of the wall. Zones of muscles of one direction do not overlap in a layer.
+    /// Muscles of the wall.
     pub muscles: Vec<Muscle>,
     /// Supports of the colon end (z = 0) and the ileum end (z = L).
     pub ends: [Support; 2],
@@ -128,6 +131,7 @@ impl Tube {
     pub fn rest(&self) -> Load {
         Load {
             muscles: vec![1.0; self.muscles.len()],
+            shifts: vec![0.0; self.muscles.len()],
             ends: [EndMotion::default(); 2],
             pressures: [Pressure::default(); 2],
             lumen_volume: None,
@@ -150,8 +154,8 @@ impl Tube {
     /// θ − 1 of each muscle multiplied by [`Tube::strength`]. If no muscle is modified it equals [`Tube::stretches`] to the
     /// bit.
     pub fn stretches_at(&self, layer: usize, z: f64, phi: f64, load: &Load) -> (f64, f64) {
-        self.grown(layer, z, load, |m, theta| {
-            match self.strength([layer, m], z, phi) {
+        self.grown(layer, z, load, |(m, in_zone), theta| {
+            match self.strength([layer, m], [in_zone, z], phi) {
                 1.0 => theta,
                 strength => 1.0 + strength * (theta - 1.0),
             }
@@ -167,13 +171,14 @@ impl Tube {
             || self.patches.iter().any(patched)
     }
 
-    /// Returns the strength of a muscle in a layer at z and the angle `phi`, in radians: 1 + Σ a f(φ, z) over its
-    /// imperfections, whose shapes span its zone, times the functions of its sector and of patches.
-    pub fn strength(&self, [layer, m]: [usize; 2], z: f64, phi: f64) -> f64 {
+    /// Returns the strength of a muscle in a layer at z, of which the place before the shift of its zone comes first, and
+    /// the angle `phi`, in radians: 1 + Σ a f(φ, z) over its imperfections, whose shapes span its zone, times the functions
+    /// of its sector and of patches.
+    pub fn strength(&self, [layer, m]: [usize; 2], [in_zone, z]: [f64; 2], phi: f64) -> f64 {
         let imperfections = self.imperfections.iter();
         let of_it = imperfections.filter(|imperfection| imperfection.of == Part::Muscle(m));
         let strength = of_it.fold(1.0, |sum, imperfection| {
-            let f = imperfection.shape.value(phi, z, self.muscles[m].zone);
+            let f = imperfection.shape.value(phi, in_zone, self.muscles[m].zone);
             sum + imperfection.amplitude * f
         });
         let sector = self.muscles[m].sector;
@@ -223,21 +228,24 @@ impl Tube {
         patches.chain(self.foundations.iter().map(|foundation| &foundation.region))
     }
 
-    /// Returns the products of the stretches of the muscles of a layer along and around, each θ changed by `change`.
+    /// Returns the products of the stretches of the muscles of a layer along and around, each θ changed by `change`, which
+    /// is given the number of the muscle and the place before the shift of its zone.
     fn grown(
         &self,
         layer: usize,
         z: f64,
         load: &Load,
-        change: impl Fn(usize, f64) -> f64,
+        change: impl Fn((usize, f64), f64) -> f64,
     ) -> (f64, f64) {
         let idle = &self.layers[layer].idle_muscles;
         let (mut along, mut around) = (1.0, 1.0);
-        for (m, (muscle, &ratio)) in self.muscles.iter().zip(&load.muscles).enumerate() {
+        for (m, muscle) in self.muscles.iter().enumerate() {
             if idle.contains(&m) {
                 continue;
             }
-            let theta = change(m, muscle.stretch(z, ratio, self.length));
+            let z = muscle.unshifted(z, load.shifts[m]);
+            let theta = muscle.stretch(z, load.muscles[m], self.length);
+            let theta = change((m, z), theta);
             match muscle.direction {
                 Direction::Longitudinal => along *= theta,
                 Direction::Circular => around *= theta,
@@ -246,12 +254,42 @@ impl Tube {
         (along, around)
     }
 
-    /// Returns the grown length over the length, Lmax/L.
+    /// Returns the grown length over the length, Lmax/L. Muscles in different layers count as if they acted in the same.
     pub fn length_ratio(&self, load: &Load) -> f64 {
-        1.0 + self
-            .ratios(load, Direction::Longitudinal)
-            .map(|ratio| ratio - 1.0)
-            .sum::<f64>()
+        if self.each_zone_is_whole(load) {
+            let changes = self.ratios(load, Direction::Longitudinal);
+            return 1.0 + changes.map(|ratio| ratio - 1.0).sum::<f64>();
+        }
+        let along = |z: f64| {
+            let muscles = self.muscles.iter().enumerate();
+            let along = muscles.filter(|(_, muscle)| muscle.direction == Direction::Longitudinal);
+            let theta = |(m, muscle): (usize, &Muscle)| {
+                let z = muscle.unshifted(z, load.shifts[m]);
+                muscle.stretch(z, load.muscles[m], self.length)
+            };
+            along.map(theta).product::<f64>()
+        };
+        let middles = (0..LENGTH_POINTS).map(|i| (i as f64 + 0.5) / LENGTH_POINTS as f64);
+        middles.map(|x| along(x * self.length)).sum::<f64>() / LENGTH_POINTS as f64
+    }
+
+    /// Returns true if every longitudinal muscle acts on one zone, which lies within the tube and apart from the others.
+    fn each_zone_is_whole(&self, load: &Load) -> bool {
+        let muscles = self.muscles.iter().zip(&load.shifts);
+        let along = muscles.filter(|(muscle, _)| muscle.direction == Direction::Longitudinal);
+        let mut zones = vec![];
+        for (muscle, shift) in along {
+            let zone = muscle.zone.map(|z| z + shift);
+            let moved = muscle.repeat.is_some() || *shift != 0.0;
+            if moved && (muscle.repeat.is_some() || zone[0] < 0.0 || zone[1] > self.length) {
+                return false;
+            }
+            zones.push(zone);
+        }
+        zones.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        zones
+            .windows(2)
+            .all(|pair| pair[0][1] <= pair[1][0] * (1.0 + 1e-12))
     }
 
     /// Returns the smallest grown diameter over the diameter, Dmin/D, of the circular muscles.
@@ -288,13 +326,12 @@ mod tests {
             layers: vec![WallLayer::of(Material::NeoHookean(NeoHookean::new(
                 1.0, 0.495,
             )))],
-            muscles: vec![Muscle {
-                name: "m".into(),
-                direction: Direction::Circular,
-                zone: [0.5, 1.0],
-                profile: Profile::RaisedCosine,
-                sector: None,
-            }],
+            muscles: vec![Muscle::new(
+                "m".into(),
+                Direction::Circular,
+                [0.5, 1.0],
+                Profile::RaisedCosine,
+            )],
             ends: [Support::Fixed; 2],
             obstacles: vec![],
             patches: vec![],
@@ -311,12 +348,13 @@ mod tests {
     fn ratios_and_stretches_are_those_of_all_muscles() {
         let mut tube = tube(Wave::new(0, 0.0, Axial::Uniform));
         tube.imperfections.clear();
-        let level = |direction, zone| Muscle {
-            name: String::new(),
-            direction,
-            zone,
-            profile: Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)]),
-            sector: None,
+        let level = |direction, zone| {
+            Muscle::new(
+                String::new(),
+                direction,
+                zone,
+                Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)]),
+            )
         };
         let (along, around) = (Direction::Longitudinal, Direction::Circular);
         tube.muscles = vec![
@@ -346,6 +384,43 @@ mod tests {
         }
         let ratio = |load: &Load| (tube.length_ratio(load), tube.diameter_ratio(load));
         assert_eq!(ratio(&tube.rest()), (1.0, 1.0));
+    }
+
+    #[test]
+    fn zones_that_overlap_multiply_and_count_within_the_tube() {
+        let mut tube = tube(Wave::new(0, 0.0, Axial::Uniform));
+        tube.imperfections.clear();
+        let along = Direction::Longitudinal;
+        let even = Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)]);
+        let level = |zone, repeat| Muscle {
+            repeat,
+            ..Muscle::new(String::new(), along, zone, even.clone())
+        };
+        tube.muscles = vec![level([0.0, 1.0], None), level([0.75, 1.5], Some(1.5))];
+        let mut load = tube.rest();
+        load.muscles = [(0, 1.3), (1, 0.8)]
+            .map(|(m, stretch)| tube.muscles[m].ratio_of(stretch, 3.0))
+            .to_vec();
+        // 1.3 on [0, 1], and 0.8 on [0.75, 1.5] and [2.25, 3].
+        let along = |z, load: &Load| tube.stretches(0, z, load).0;
+        for (z, theta) in [
+            (0.5, 1.3),
+            (0.9, 1.3 * 0.8),
+            (1.2, 0.8),
+            (2.0, 1.0),
+            (2.9, 0.8),
+        ] {
+            assert!((along(z, &load) - theta).abs() < 1e-14, "{z}");
+        }
+        let length = 3.0 + 0.3 - 1.5 * 0.2 - 0.25 * 0.3 * 0.2;
+        assert!((tube.length_ratio(&load) - length / 3.0).abs() < 1e-3);
+        // The first leaves the tube by a half, the second moves to where it was before.
+        load.shifts = vec![-0.5, 1.5];
+        for (z, theta) in [(0.4, 1.3), (0.6, 1.0), (0.9, 0.8)] {
+            assert!((along(z, &load) - theta).abs() < 1e-14, "{z}");
+        }
+        let length = 3.0 + 0.15 - 1.5 * 0.2;
+        assert!((tube.length_ratio(&load) - length / 3.0).abs() < 1e-3);
     }
 
     #[test]

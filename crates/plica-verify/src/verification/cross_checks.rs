@@ -18,13 +18,12 @@ fn small_tube(around: usize) -> TubeModel {
     let mut model = TubeModel::new(3.0, 0.06, 0.495, [24, around, 2]);
     model.tube.ends = [Support::Fixed; 2];
     for direction in [Direction::Circular, Direction::Longitudinal] {
-        model.tube.muscles.push(Muscle {
-            name: String::new(),
+        model.tube.muscles.push(Muscle::new(
+            String::new(),
             direction,
-            zone: [0.5, 1.5],
-            profile: Profile::RaisedCosine,
-            sector: None,
-        });
+            [0.5, 1.5],
+            Profile::RaisedCosine,
+        ));
     }
     model
 }

@@ -108,13 +108,12 @@ pub fn contraction(recorder: &mut Recorder<'_>) -> Result<(), VerificationError>
             ..TubeModel::new(3.0, 0.2, 0.4999, elements)
         };
         model.tube.ends = [Support::Fixed; 2];
-        model.tube.muscles.push(Muscle {
-            name: String::new(),
-            direction: Direction::Circular,
-            zone: [0.5, 2.5],
-            profile: Profile::RaisedCosine,
-            sector: None,
-        });
+        model.tube.muscles.push(Muscle::new(
+            String::new(),
+            Direction::Circular,
+            [0.5, 2.5],
+            Profile::RaisedCosine,
+        ));
         let load = Load {
             muscles: vec![0.6],
             ..model.tube.rest()

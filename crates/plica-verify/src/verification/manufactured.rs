@@ -44,14 +44,9 @@ fn exact_solution(z: f64, R: f64) -> ([f64; 2], [[f64; 2]; 2]) {
 }
 
 fn tube() -> Tube {
-    let muscle = |direction| Muscle {
-        name: "m".into(),
-        direction,
-        // Smooth along the whole tube.
-        zone: [0.0, LENGTH],
-        profile: Profile::RaisedCosine,
-        sector: None,
-    };
+    // Smooth along the whole tube.
+    let muscle =
+        |direction| Muscle::new("m".into(), direction, [0.0, LENGTH], Profile::RaisedCosine);
     Tube {
         length: LENGTH,
         thickness: THICKNESS,

@@ -65,13 +65,12 @@ impl TubeModel {
 
     /// Adds a muscle of uniform activation along the whole tube.
     pub fn with_uniform_muscle(mut self, direction: Direction) -> Self {
-        self.tube.muscles.push(Muscle {
-            name: "even".into(),
+        self.tube.muscles.push(Muscle::new(
+            "even".into(),
             direction,
-            zone: [0.0, self.tube.length],
-            profile: Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)]),
-            sector: None,
-        });
+            [0.0, self.tube.length],
+            Profile::Table(vec![(0.0, 1.0), (1.0, 1.0)]),
+        ));
         self
     }
 

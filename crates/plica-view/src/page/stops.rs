@@ -61,6 +61,12 @@ pub fn of_state(state: &SavedState) -> Parts {
         .map(|(name, _)| format!("muscle {name}"));
     // The target of a muscle at rest is 1.
     let muscles = names.zip(load.muscles.iter().map(|target| target - 1.0));
+    let names = state
+        .muscles
+        .iter()
+        .map(|(name, _)| format!("shift {name}"));
+    let shifts = names.zip(load.shifts.iter().copied());
+    let shifts = shifts.filter(|(_, shift)| *shift != 0.0);
     let [inner, outer] = load.pressures;
     let pressures = [inner.follower, outer.follower, inner.dead, outer.dead];
     let [colon, ileum] = load.ends;
@@ -70,6 +76,7 @@ pub fn of_state(state: &SavedState) -> Parts {
         colon.twist,
         ileum.twist,
     ];
+    let muscles = muscles.chain(shifts);
     muscles.chain(external(ends, pressures)).collect()
 }
 

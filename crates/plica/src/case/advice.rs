@@ -2,7 +2,7 @@
 
 use crate::activation::Profile;
 use crate::spline::Circle;
-use crate::study::Plan;
+use crate::study::{Plan, Stage};
 use crate::tube::{Support, Symmetry};
 
 /// Number of elements along a zone that resolves a fold.
@@ -81,10 +81,8 @@ fn largest_stretch(plan: &Plan, name: &str) -> f64 {
         return 1.0;
     };
     let muscle = &plan.tube.muscles[m];
-    let stretches = plan.stages.iter().map(|stage| {
-        let ratio = stage.load.muscles[m];
-        muscle.extreme_stretch(ratio, plan.tube.length)
-    });
+    let loads = plan.stages.iter().flat_map(Stage::loads);
+    let stretches = loads.map(|load| muscle.extreme_stretch(load.muscles[m], plan.tube.length));
     stretches.fold(1.0, f64::max)
 }
 

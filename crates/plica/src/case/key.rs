@@ -34,6 +34,8 @@ pub(super) enum Kind {
     Points,
     /// `{ name = number, … }`; the user chooses the names.
     Numbers,
+    /// A number, or `[[time, value], …]`
+    Course,
     /// A table with these keys.
     Table(&'static [Key]),
     /// A list of tables with these keys.

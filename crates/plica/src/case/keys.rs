@@ -1,6 +1,7 @@
 //! All keys of the case file. A key is declared here, and nowhere else: its doc comment, default, unit
 //! and range are what the reference page, the schema and the checks are made of.
 
+use super::course::Course;
 use super::key::{Key, Kind, LENGTH, STIFFNESS, STRESS, default, described, required};
 pub(super) use super::law_keys::{
     Fibres, Fung, Law, Material, MooneyRivlin, NamedMaterial, NeoHookean, Residual, Tone,
@@ -141,9 +142,11 @@ table! {
     Muscle {
         /// The direction of its fibres: around the tube or along it.
         direction: Direction = required("circular");
-        /// The part of the tube that it acts on, from the colon end. Zones of muscles of the same
-        /// direction do not overlap, unless they act in different layers.
+        /// The part of the tube that it acts on, from the colon end. A stage can move it along the tube. Where zones of
+        /// muscles of the same direction overlap, their stretches multiply.
         zone: [f64; 2] = required("[0.5, 1.0]").unit(LENGTH);
+        /// The distance after which its zone repeats along the tube, from the start of one zone to the start of the next.
+        repeat: Option<f64> = described("one zone", "1.0").unit(LENGTH).above(0.0);
         /// The distribution of its activity over the zone: ½(1 − cos 2πx), or sin πx, which has kinks at
         /// the edges of the zone.
         profile: Profile = default("raised-cosine");
@@ -269,7 +272,7 @@ table! {
         /// Zones with smaller elements along the tube; `refine = []` is a uniform mesh. Where zones
         /// overlap, the largest factor holds.
         refine: Option<Vec<Refine>> =
-            described("the zones of the muscles, factor 3", "[{ zone = [0.5, 1.0], factor = 3.0 }]");
+            described("the zones of the muscles that stay in place, factor 3", "[{ zone = [0.5, 1.0], factor = 3.0 }]");
         /// The thickness of the innermost element of the wall over that of the outermost; those in
         /// between form a geometric sequence. Above 1 the elements become thinner towards the outer
         /// surface, where a fold creases; 1 is uniform. `"reduced"` integration and several layers need 1.
@@ -324,8 +327,12 @@ table! {
         name: Option<String> = described("stage-1, stage-2, …", "stage-1");
         /// The number of equal load steps. Each ends in a state of the history.
         steps: usize = default("20").from(1.0).to(100_000.0);
+        /// Its duration, in any unit of time. If a stage has one, the history has a column `time`.
+        duration: Option<f64> = described("1", "12.0").above(0.0).to(1e9);
         /// The targets at its end: of muscles, obstacles and patches, by their names, of the ends `colon` and `ileum`, of
-        /// the surfaces `inner-wall` and `outer-wall`, and of the `lumen`.
+        /// the surfaces `inner-wall` and `outer-wall`, and of the `lumen`. A target that is a number is reached linearly. A
+        /// list of points `[time, value]` is followed from point to point, with times from the start of the stage; after its
+        /// last point the value stays.
         drive: BTreeMap<String, Drive> = default("{}");
     }
 }
@@ -334,21 +341,25 @@ table! {
     Drive meant by target {
         /// Target of a circular muscle: the smallest (or largest) stress-free diameter over the diameter
         /// at rest, Dmin/D.
-        diameter_ratio: Option<f64> = described(BEFORE_1, "1.0").above(0.0).to(10.0);
+        diameter_ratio: Option<Course> = described(BEFORE_1, "1.0").above(0.0).to(10.0);
         /// Target of a longitudinal muscle: the stress-free length of the whole tube over its length at
         /// rest, Lmax/L.
-        length_ratio: Option<f64> = described(BEFORE_1, "1.0").above(0.0).to(10.0);
+        length_ratio: Option<Course> = described(BEFORE_1, "1.0").above(0.0).to(10.0);
+        /// Target of a muscle: the stress-free stretch where its profile is largest. It takes the place of the two above.
+        stretch: Option<Course> = described(BEFORE_1, "1.0").above(0.0).to(100.0);
+        /// Target of a muscle: the shift of its zone along the tube from where it was at rest.
+        shift: Option<Course> = described(BEFORE_0, "0.0").unit(LENGTH);
         /// Target of a patch: the stress-free thickness of the wall over its thickness at rest, in the middle of the patch.
-        growth_through: Option<f64> = described(BEFORE_1, "1.5").from(0.1).to(10.0);
+        growth_through: Option<Course> = described(BEFORE_1, "1.5").from(0.1).to(10.0);
         /// Target of a fixed or sliding end: its axial displacement from rest.
-        displacement: Option<f64> = described(BEFORE_0, "0.0").unit(LENGTH);
+        displacement: Option<Course> = described(BEFORE_0, "0.0").unit(LENGTH);
         /// Target of a fixed end: its rotation about the axis.
-        twist_degrees: Option<f64> =
+        twist_degrees: Option<Course> =
             described(BEFORE_0, "0.0").unit("degrees").from(-3600.0).to(3600.0);
         /// Target of a surface: follower pressure, per deformed area and normal to the deformed surface.
         /// It pushes the inner wall outwards and the outer wall inwards. Both ends must be held (fixed or
         /// sliding).
-        pressure: Option<f64> = described(BEFORE_0, "0.0").unit(STRESS);
+        pressure: Option<Course> = described(BEFORE_0, "0.0").unit(STRESS);
         /// Target of `lumen`: the volume between the ends over that at rest. The pressure that holds it is a result, so that
         /// the path goes on past a maximum of the pressure. The pressure is taken over from the stage before, and the other
         /// way round. Both ends must be held.
@@ -361,9 +372,9 @@ table! {
         /// length of this vector; after that by `twist_degrees`.
         tilt_degrees: Option<[f64; 2]> = described(BEFORE_0, "[0.0, 30.0]").unit("degrees");
         /// Target of a surface: a dead load, per area at rest and normal to the surface at rest.
-        dead_load: Option<f64> = described(BEFORE_0, "0.0").unit(STRESS);
+        dead_load: Option<Course> = described(BEFORE_0, "0.0").unit(STRESS);
         /// Target of an obstacle: its radius. Not of a plate.
-        radius: Option<f64> = described(BEFORE, "0.3").unit(LENGTH).above(0.0);
+        radius: Option<Course> = described(BEFORE, "0.3").unit(LENGTH).above(0.0);
         /// Target of an obstacle: its position.
         position: Option<[f64; 3]> = described(BEFORE, "[0.0, 0.0, 1.5]").unit(LENGTH);
     }

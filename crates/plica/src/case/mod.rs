@@ -30,6 +30,7 @@
 
 mod advice;
 mod check;
+mod course;
 mod difference;
 mod edit;
 mod ellipticity;

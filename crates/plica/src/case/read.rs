@@ -511,7 +511,7 @@ fn finite(problems: &mut Problems, path: &str, pair: [&Value; 2]) -> Option<[f64
     None
 }
 
-fn in_range(problems: &mut Problems, key: &Key, path: &str, x: f64) -> Option<f64> {
+pub(super) fn in_range(problems: &mut Problems, key: &Key, path: &str, x: f64) -> Option<f64> {
     let finite = (!x.is_finite()).then(|| "must be a finite number".to_owned());
     let Some(rule) = finite.or_else(|| key.rule.range.broken_by(x)) else {
         return Some(x);
@@ -526,7 +526,7 @@ fn in_range(problems: &mut Problems, key: &Key, path: &str, x: f64) -> Option<f6
 }
 
 /// Returns the number that is written, of either type.
-fn number(value: &Value) -> Option<f64> {
+pub(super) fn number(value: &Value) -> Option<f64> {
     match value.get_ref() {
         DeValue::Float(x) => x.as_str().parse().ok(),
         DeValue::Integer(n) => {
@@ -538,7 +538,12 @@ fn number(value: &Value) -> Option<f64> {
 }
 
 /// Reports a value of the wrong type.
-fn wrong_type<T>(problems: &mut Problems, key: &Key, path: &str, value: &Value) -> Option<T> {
+pub(super) fn wrong_type<T>(
+    problems: &mut Problems,
+    key: &Key,
+    path: &str,
+    value: &Value,
+) -> Option<T> {
     let rule = match key.kind {
         Kind::Text => "must be text, in quotes",
         Kind::Boolean => "must be true or false",
@@ -548,12 +553,13 @@ fn wrong_type<T>(problems: &mut Problems, key: &Key, path: &str, value: &Value) 
         Kind::Position => "must be [x, y, z], three numbers",
         Kind::Points => "must be a list of points [x, s]",
         Kind::Numbers => "must be a table of numbers",
+        Kind::Course => "must be a number, or a list of points [time, value]",
         Kind::List(_) => "must be a list of tables",
         Kind::Table(_) | Kind::Named(_) | Kind::Choice(..) | Kind::Either(..) => "must be a table",
     };
     let is_integer = matches!(key.kind, Kind::Integer);
     let help = match value.get_ref() {
-        DeValue::String(text) if is_integer || matches!(key.kind, Kind::Number) => {
+        DeValue::String(text) if is_integer || matches!(key.kind, Kind::Number | Kind::Course) => {
             let number: Option<f64> = text.trim().parse().ok();
             let number = number.filter(|x| x.is_finite() && !(is_integer && x.fract() != 0.0));
             number.map(|_| format!("write {}, without quotes", text.trim()))

@@ -94,6 +94,7 @@ fn row(path: &str, key: &Key) -> String {
         Kind::Position => "`[x, y, z]`".to_owned(),
         Kind::Points => "`[[x, s], …]`".to_owned(),
         Kind::Numbers => "`{ name = number, … }`".to_owned(),
+        Kind::Course => "number, or `[[time, value], …]`".to_owned(),
         Kind::List(_) => "list of tables".to_owned(),
         Kind::Table(_) | Kind::Named(_) | Kind::Choice([], _) | Kind::Either(..) => {
             "table".to_owned()

@@ -1,6 +1,6 @@
 //! The JSON schema of the case file, for editors that complete and check a case.
 
-use super::key::{Key, Kind, Limit};
+use super::key::{Key, Kind, Limit, Range};
 use super::keys::Case;
 use super::read::Table;
 use serde_json::{Map, Value, json};
@@ -79,6 +79,13 @@ fn value(key: &Key) -> Map<String, Value> {
         Kind::Position => numbers(3),
         Kind::Points => json!({ "type": "array", "items": pair, "minItems": 2 }),
         Kind::Numbers => json!({ "type": "object", "additionalProperties": { "type": "number" } }),
+        Kind::Course => json!({ "anyOf": [
+            number_in(&key.rule.range),
+            { "type": "array", "minItems": 1, "items": {
+                "type": "array", "minItems": 2, "maxItems": 2,
+                "prefixItems": [{ "type": "number", "minimum": 0 }, number_in(&key.rule.range)],
+            } },
+        ] }),
         Kind::Table(keys) => return table(keys),
         Kind::List(keys) => json!({ "type": "array", "items": table(keys) }),
         Kind::Named(keys) => json!({ "type": "object", "additionalProperties": table(keys) }),
@@ -98,12 +105,26 @@ fn value(key: &Key) -> Map<String, Value> {
     let Value::Object(mut value) = value else {
         return Map::new();
     };
-    if matches!(key.kind, Kind::Numbers) {
-        return value;
+    match key.kind {
+        Kind::Numbers | Kind::Course => {}
+        _ => value.extend(limits(&key.rule.range)),
     }
+    value
+}
+
+/// Returns the schema of a number in a range.
+fn number_in(range: &Range) -> Value {
+    let mut value = limits(range);
+    value.insert("type".into(), "number".into());
+    Value::Object(value)
+}
+
+/// Returns the limits of a range.
+fn limits(range: &Range) -> Map<String, Value> {
+    let mut value = Map::new();
     let limits = [
-        (key.rule.range.low, ["minimum", "exclusiveMinimum"]),
-        (key.rule.range.high, ["maximum", "exclusiveMaximum"]),
+        (range.low, ["minimum", "exclusiveMinimum"]),
+        (range.high, ["maximum", "exclusiveMaximum"]),
     ];
     for (limit, [inclusive, exclusive]) in limits {
         let (name, x) = match limit {

@@ -238,11 +238,7 @@ mod tests {
         };
         load.ends[1].displacement = 0.05;
         let name = "inflate".into();
-        plan.stages = vec![Stage {
-            name,
-            load,
-            steps: 2,
-        }];
+        plan.stages = vec![Stage::new(name, load, 2)];
         let mut study = Study::new(&plan).unwrap();
         let state = study.by_ref().last().unwrap().unwrap();
         let [first, second] = state.reactions.map(|end| end.axial_force());

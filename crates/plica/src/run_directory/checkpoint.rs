@@ -162,11 +162,12 @@ impl Checkpoint {
         if 2 * (own.len() - lost.len()) < present {
             return Err("it was written with another history.csv".into());
         }
-        let Some([from, to]) = self.clone().into_continuation().segment(plan) else {
+        let Some(segment) = self.clone().into_continuation().segment(plan) else {
             return Err("the case has no such stage".into());
         };
-        let expected = from.towards(&to, self.path.reached).without_multiplier();
-        if self.state.load.clone().without_multiplier() != expected {
+        let [from, to] = &segment.loads;
+        let expected = from.towards(to, segment.fraction(self.path.reached));
+        if self.state.load.clone().without_multiplier() != expected.without_multiplier() {
             return Err("its load is not on the path of the case".into());
         }
         Ok((own, lost))

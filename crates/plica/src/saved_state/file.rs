@@ -239,6 +239,7 @@ mod tests {
             muscles: vec![("ring".into(), Direction::Circular)],
             load: Load {
                 muscles: vec![1.0 / 7.0],
+                shifts: vec![-1.0 / 19.0],
                 ends: [
                     EndMotion::default(),
                     EndMotion {

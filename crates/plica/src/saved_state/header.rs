@@ -61,6 +61,9 @@ struct MuscleHeader {
     name: String,
     direction: DirectionHeader,
     ratio: f64,
+    /// Shift of its zone.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    shift: f64,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
@@ -125,6 +128,11 @@ struct LayerHeader {
     elements: usize,
 }
 
+#[allow(clippy::trivially_copy_pass_by_ref)] // Serde passes references.
+fn is_zero(shift: &f64) -> bool {
+    *shift == 0.0
+}
+
 fn uniform() -> f64 {
     1.0
 }
@@ -153,14 +161,19 @@ struct RefineHeader {
 impl SavedState {
     /// Returns the header, with a blank checksum.
     pub(super) fn header(&self) -> Header {
-        let muscle = |((name, direction), &ratio): (&(String, Direction), &f64)| MuscleHeader {
-            name: name.clone(),
-            direction: match direction {
-                Direction::Circular => DirectionHeader::Circular,
-                Direction::Longitudinal => DirectionHeader::Longitudinal,
-            },
-            ratio,
-        };
+        let drives = self.load.muscles.iter().zip(&self.load.shifts);
+        let muscle =
+            |((name, direction), (&ratio, &shift)): (&(String, Direction), (&f64, &f64))| {
+                MuscleHeader {
+                    name: name.clone(),
+                    direction: match direction {
+                        Direction::Circular => DirectionHeader::Circular,
+                        Direction::Longitudinal => DirectionHeader::Longitudinal,
+                    },
+                    ratio,
+                    shift,
+                }
+            };
         let end = |motion: EndMotion| EndHeader {
             displacement: motion.displacement,
             twist_radians: motion.twist,
@@ -203,12 +216,7 @@ impl SavedState {
             row: self.row,
             along: self.along,
             load: LoadHeader {
-                muscles: self
-                    .muscles
-                    .iter()
-                    .zip(&self.load.muscles)
-                    .map(muscle)
-                    .collect(),
+                muscles: self.muscles.iter().zip(drives).map(muscle).collect(),
                 colon: end(self.load.ends[0]),
                 ileum: end(self.load.ends[1]),
                 inner_wall: wall(self.load.pressures[0]),
@@ -314,6 +322,7 @@ impl SavedState {
             along: header.along,
             load: Load {
                 muscles: muscles.iter().map(|m| m.ratio).collect(),
+                shifts: muscles.iter().map(|m| m.shift).collect(),
                 ends: [end(header.load.colon), end(header.load.ileum)],
                 pressures: [wall(header.load.inner_wall), wall(header.load.outer_wall)],
                 lumen_volume: header.load.lumen_volume_ratio,

@@ -32,7 +32,7 @@ impl PreviousPoint {
 /// Everything that a path needs beside its accepted state to continue as if it had never stopped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContinuationState {
-    /// Position of the state on its segment, 0 to 1.
+    /// Position of the state on its segment.
     pub reached: f64,
     /// Number of halvings with which the next step begins.
     pub halving_level: usize,

@@ -87,7 +87,7 @@ fn there_and_back(settings: &Settings) -> Vec<f64> {
             let t = f64::from(n) / 8.0;
             let mut resumed = Path::resume(
                 Slider::new(),
-                [from, to],
+                Segment::between(from, to),
                 path.state().load,
                 path.state().u.clone(),
                 path.continuation_state(),

@@ -67,7 +67,7 @@ pub use failure::{Cause, Failure};
 pub use lowest::{Lowest, Search, lowest};
 pub use newton::newton;
 pub use operator::Operator;
-pub use path::{Path, PathError, Step};
+pub use path::{Path, PathError, Segment, Step};
 pub use relaxation::relaxation;
 pub use settings::{Integrator, PseudoTime, Scheme, Settings};
 pub use state::{Effort, Method, Solution, State};

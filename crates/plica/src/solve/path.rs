@@ -24,7 +24,7 @@ const REPETITIONS: usize = 2;
 const PREDICTION: f64 = 1e-4;
 
 /// A path of equilibrium states. It consists of segments; on each the load goes straight from one
-/// value to another with t from 0 to 1. The path owns its last accepted state.
+/// value to another, with t from 0 to 1 or in another range. The path owns its last accepted state.
 pub struct Path<P: Equilibrium> {
     problem: P,
     settings: Settings,
@@ -34,9 +34,33 @@ pub struct Path<P: Equilibrium> {
     solver: Option<SolverOf<P>>,
     /// du/dt at the state, once it has been computed; None inside if there is none.
     tangent: Option<Option<Vec<f64>>>,
-    from: P::Load,
-    to: P::Load,
+    segment: Segment<P::Load>,
     continuation: ContinuationState,
+}
+
+/// A segment of a path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segment<L> {
+    /// Positions t of its ends.
+    pub range: [f64; 2],
+    /// Loads at its ends.
+    pub loads: [L; 2],
+}
+
+impl<L> Segment<L> {
+    /// A segment between two loads with t from 0 to 1.
+    pub fn between(from: L, to: L) -> Self {
+        Self {
+            range: [0.0, 1.0],
+            loads: [from, to],
+        }
+    }
+
+    /// Returns the fraction of the segment at a position t.
+    pub fn fraction(&self, t: f64) -> f64 {
+        let [from, to] = self.range;
+        (t - from) / (to - from)
+    }
 }
 
 type SolverOf<P> = <<P as Equilibrium>::Tangent as Tangent>::Solver;
@@ -124,20 +148,19 @@ impl<P: Equilibrium> Path<P> {
             state,
             solver,
             tangent: None,
-            from: load.clone(),
-            to: load,
+            segment: Segment::between(load.clone(), load),
             continuation,
         })
     }
 
-    /// Continues from an accepted state of a segment between two loads.
+    /// Continues from an accepted state of a segment.
     ///
     /// # Errors
     ///
     /// If the energy is not defined there.
     pub fn resume(
         mut problem: P,
-        [from, to]: [P::Load; 2],
+        segment: Segment<P::Load>,
         load: P::Load,
         u: Vec<f64>,
         continuation: ContinuationState,
@@ -145,8 +168,7 @@ impl<P: Equilibrium> Path<P> {
     ) -> Result<Self, P::EvaluationError> {
         problem.begin_step(&load, &u, &continuation.history);
         Ok(Self {
-            from,
-            to,
+            segment,
             continuation,
             ..Self::begin_with(problem, load, u, vec![], settings)?
         })
@@ -182,8 +204,13 @@ impl<P: Equilibrium> Path<P> {
         self.solver.as_ref()
     }
 
-    /// Begins a segment from the load of the last accepted state to another.
+    /// Begins a segment from the load of the last accepted state to another, with t from 0 to 1.
     pub fn begin_segment(&mut self, to: P::Load) {
+        self.begin_segment_over([0.0, 1.0], to);
+    }
+
+    /// Begins a segment from the load of the last accepted state to another, with t in a range.
+    pub fn begin_segment_over(&mut self, range: [f64; 2], to: P::Load) {
         let ContinuationState {
             velocity,
             mut history,
@@ -195,8 +222,12 @@ impl<P: Equilibrium> Path<P> {
         let State { load, u, .. } = &self.state;
         let from = (self.problem).begin_segment(load.clone(), &to, u, &mut history);
         self.switch(from.clone());
-        (self.from, self.to, self.tangent) = (from, to, None);
-        self.continuation = ContinuationState::at_start(velocity, history);
+        let loads = [from, to];
+        (self.segment, self.tangent) = (Segment { range, loads }, None);
+        self.continuation = ContinuationState {
+            reached: range[0],
+            ..ContinuationState::at_start(velocity, history)
+        };
     }
 
     /// Takes another load for the last accepted state, under which it is in equilibrium, too; its stability may differ.
@@ -210,7 +241,7 @@ impl<P: Equilibrium> Path<P> {
         (self.state.load, self.state.u, self.solver) = (load, u, solver);
     }
 
-    /// Returns the position of the last accepted state on its segment, 0 to 1.
+    /// Returns the position of the last accepted state on its segment.
     pub fn reached(&self) -> f64 {
         self.continuation.reached
     }
@@ -422,7 +453,8 @@ impl<P: Equilibrium> Path<P> {
 
     /// Returns the load at position `t` of the segment.
     pub fn load_at(&self, t: f64) -> P::Load {
-        self.problem.between(&self.from, &self.to, t)
+        let [from, to] = &self.segment.loads;
+        self.problem.between(from, to, self.segment.fraction(t))
     }
 
     /// Counts the solves of a failed attempt, and begins the step again.

@@ -258,7 +258,7 @@ fn a_resumed_path_begins_with_its_halving_level() {
             halving_level,
             ..ContinuationState::at_start(vec![0.0], vec![])
         };
-        let (loads, settings) = ([0.0, 0.5], Settings::default());
+        let (loads, settings) = (Segment::between(0.0, 0.5), Settings::default());
         let path = Path::resume(&spring, loads, 0.0, vec![0.0], continuation, settings);
         let mut path = path.unwrap();
         let step = path.advance(1.0, &mut ()).unwrap();

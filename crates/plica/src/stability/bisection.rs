@@ -3,7 +3,7 @@
 use super::{Harmonics, Quantity, StabilityError, Transition};
 use crate::equilibrium::TubeProblem;
 use crate::monitor::Monitor;
-use crate::solve::{ContinuationState, Method, Path, Settings, State};
+use crate::solve::{ContinuationState, Method, Path, Segment, Settings, State};
 use crate::tube::Load;
 
 /// Largest difference of two solutions that count as the same state, in D.
@@ -155,7 +155,7 @@ impl Bisection<'_> {
     ) -> Result<Option<Found>, StabilityError> {
         let begun = Path::resume(
             self.problem.clone(),
-            [a.load.clone(), a.load.clone()],
+            Segment::between(a.load.clone(), a.load.clone()),
             a.load.clone(),
             a.u.clone(),
             ContinuationState::at_start(vec![0.0; a.u.len()], a.history.clone()),

@@ -10,7 +10,7 @@ use crate::matrix::NoEigenpairs;
 use crate::monitor::{Monitor, Part};
 use crate::run_directory::RunDirectory;
 use crate::saved_state::SavedState;
-use crate::solve::{ContinuationState, Path, Scheme, Settings};
+use crate::solve::{ContinuationState, Path, Scheme, Segment, Settings};
 use crate::study::Plan;
 use std::path::{self, PathBuf};
 
@@ -137,7 +137,7 @@ impl<'a> CriticalLoads<'a> {
         let history = state.history().to_vec();
         let path = Path::resume(
             self.problem.clone(),
-            [load.clone(), load.clone()],
+            Segment::between(load.clone(), load.clone()),
             load,
             u,
             ContinuationState::at_start(vec![0.0; state.u.len()], history),

@@ -135,12 +135,8 @@ mod tests {
 
     #[test]
     fn the_driven_quantity_is_the_one_that_changes_most() {
-        let muscle = |name: &str, direction| Muscle {
-            name: name.into(),
-            direction,
-            zone: [0.5, 1.0],
-            profile: Profile::RaisedCosine,
-            sector: None,
+        let muscle = |name: &str, direction| {
+            Muscle::new(name.into(), direction, [0.5, 1.0], Profile::RaisedCosine)
         };
         let tube = Tube {
             length: 3.0,

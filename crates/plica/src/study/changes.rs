@@ -52,9 +52,14 @@ pub fn forbidden_changes(old: &Plan, new: &Plan, progress: Option<(usize, f64)>)
                 .filter(|_| is_done)
         };
         let of = |plan: &Plan| {
-            plan.stages
-                .get(k)
-                .map(|stage| (stage.name.clone(), stage.load.clone()))
+            plan.stages.get(k).map(|stage| {
+                (
+                    stage.name.clone(),
+                    stage.load.clone(),
+                    stage.course.clone(),
+                    stage.duration,
+                )
+            })
         };
         let name = &old.stages[k].name;
         let same = of(old) == of(new) && steps(old) == steps(new);
@@ -73,11 +78,7 @@ mod tests {
     fn completed_stages_must_stay_and_later_ones_may_change() {
         let mut old = fixture::plan(Symmetry::Axisymmetric);
         for name in ["a", "b", "c"] {
-            old.stages.push(Stage {
-                name: name.into(),
-                load: old.tube.rest(),
-                steps: 4,
-            });
+            old.stages.push(Stage::new(name.into(), old.tube.rest(), 4));
         }
         let change = |change: fn(&mut Plan)| {
             let mut new = old.clone();

@@ -159,18 +159,13 @@ fn states_not_round(plan: &Plan) -> usize {
     for stage in &plan.stages {
         let is_beyond = |step: &usize| {
             let t = *step as f64 / stage.steps as f64;
-            let between = |a: f64, b: f64| a + t * (b - a);
-            let pressed = [&from, &stage.load].map(|load| {
-                let [inner, outer] = load.pressures.map(|wall| wall.follower + wall.dead);
-                outer - inner
-            });
+            let load = stage.load_at(&from, t);
+            let [inner, outer] = load.pressures.map(|wall| wall.follower + wall.dead);
             let muscles = plan.tube.muscles.iter().enumerate();
             let stretches = muscles.filter(|(_, m)| m.direction == Direction::Longitudinal);
-            let mut stretches = stretches.map(|(m, muscle)| {
-                let ratio = between(from.muscles[m], stage.load.muscles[m]);
-                muscle.extreme_stretch(ratio, plan.tube.length)
-            });
-            between(pressed[0], pressed[1]) > critical_pressure(plan)
+            let mut stretches = stretches
+                .map(|(m, muscle)| muscle.extreme_stretch(load.muscles[m], plan.tube.length));
+            outer - inner > critical_pressure(plan)
                 || stretches.any(|stretch| stretch > TILTING_STRETCH)
         };
         count += (1..=stage.steps).filter(is_beyond).count();

@@ -7,7 +7,7 @@ use super::{Lost, Phase, Plan, State, StudyError, check_memory};
 use crate::assembly::SplineTube;
 use crate::equilibrium::{TubeProblem, segment_start, test_stability};
 use crate::monitor::{Monitor, Part};
-use crate::solve::{ContinuationState, Effort, Failure, Method, Path, PathError, Step};
+use crate::solve::{ContinuationState, Effort, Failure, Method, Path, PathError, Segment, Step};
 use crate::tube::Load;
 use std::time::Instant;
 
@@ -62,16 +62,23 @@ pub struct Continuation {
 }
 
 impl Continuation {
-    /// Returns the loads at both ends of the load segment that the path is in; none if the plan has no such stage.
-    pub fn segment(&self, plan: &Plan) -> Option<[Load; 2]> {
-        let first = plan.first_load();
-        let end = |stage: usize| Some(plan.stages.get(stage)?.load.clone());
-        let [from, to] = match self.stage {
-            None => [first.clone(), first],
-            Some(0) => [first, end(0)?],
-            Some(stage) => [end(stage - 1)?, end(stage)?],
+    /// Returns the segment of the load that the path is in; none if the plan has no such stage.
+    pub fn segment(&self, plan: &Plan) -> Option<Segment<Load>> {
+        let Some(number) = self.stage else {
+            let first = plan.first_load();
+            return Some(Segment::between(first.clone(), first));
         };
-        Some([segment_start(from, &to, &self.path.history), to])
+        let stage = plan.stages.get(number)?;
+        let reached = self.path.reached;
+        let completed = stage.completed_steps(reached);
+        // A state at the end of a step belongs to that step.
+        let ends_step = completed as f64 / stage.steps as f64 == reached;
+        let step = completed.saturating_sub(usize::from(ends_step));
+        let Segment { range, loads } = stage.segment(&plan.load_before(number), step);
+        let [from, to] = loads;
+        let from = segment_start(from, &to, &self.path.history);
+        let loads = [from, to];
+        Some(Segment { range, loads })
     }
 }
 
@@ -123,7 +130,7 @@ impl Study {
         let path =
             path.map_err(|error| StudyError::Resume(format!("its state is not a wall: {error}")))?;
         if let Some(stage) = from.stage {
-            study.completed_steps = completed_steps(plan.stages[stage].steps, path.reached());
+            study.completed_steps = plan.stages[stage].completed_steps(path.reached());
         }
         let state = (&path.state().load, path.state().u.as_slice());
         let forces = path.problem().forces_on_tube(state.0, state.1);
@@ -280,19 +287,24 @@ impl Study {
     fn advance(&mut self, monitor: &mut dyn Monitor) -> Option<State> {
         let path = self.path.as_mut()?;
         let ended = |stage: usize| self.completed_steps >= self.plan.stages[stage].steps;
-        let stage = match self.stage {
-            Some(stage) if !ended(stage) => stage,
+        let (stage, is_new) = match self.stage {
+            Some(stage) if !ended(stage) => (stage, false),
             before => {
                 let next = before.map_or(0, |stage| stage + 1);
-                let Some(stage) = self.plan.stages.get(next) else {
+                if next == self.plan.stages.len() {
                     self.ending = Some(Ending::Complete);
                     return None;
-                };
-                path.begin_segment(stage.load.clone());
+                }
                 (self.stage, self.completed_steps) = (Some(next), 0);
-                next
+                (next, true)
             }
         };
+        let Segment { range, loads } =
+            self.plan.stages[stage].segment(&self.plan.load_before(stage), self.completed_steps);
+        if is_new || range[0] == path.reached() {
+            let [_, to] = loads;
+            path.begin_segment_over(range, to);
+        }
         let (name, steps) = {
             let stage = &self.plan.stages[stage];
             (stage.name.clone(), stage.steps)
@@ -350,6 +362,10 @@ impl Study {
             stage,
             ends_stage,
             stage_fraction: path.reached(),
+            time: match self.stage {
+                Some(stage) => self.plan.time_at(stage, path.reached()),
+                None => self.plan.first_time(),
+            },
         };
         let seconds = self.since.elapsed().as_secs_f64();
         let (mut state, work_point) = State::evaluate(
@@ -399,10 +415,4 @@ impl Iterator for Study {
     fn next(&mut self) -> Option<Self::Item> {
         self.next_state(&mut ())
     }
-}
-
-/// Returns how many of a stage's equal steps are completed at a fraction of the stage.
-fn completed_steps(steps: usize, reached: f64) -> usize {
-    let completed = |n: &usize| *n as f64 / steps as f64 <= reached;
-    (1..=steps).take_while(completed).count()
 }

@@ -39,12 +39,19 @@ impl LimitPoint {
 fn quantities(plan: &Plan, load: &Load) -> Vec<(String, f64, String)> {
     let scale = Scale::of(plan.units.as_ref());
     let mut all = vec![];
-    for (muscle, ratio) in plan.tube.muscles.iter().zip(&load.muscles) {
+    let drives = load.muscles.iter().zip(&load.shifts);
+    for (muscle, (ratio, shift)) in plan.tube.muscles.iter().zip(drives) {
         let target = match muscle.direction {
             Direction::Circular => "diameter_ratio",
             Direction::Longitudinal => "length_ratio",
         };
         all.push((format!("{}.{target}", muscle.name), *ratio, String::new()));
+        let shift = scale.length * shift;
+        all.push((
+            format!("{}.shift", muscle.name),
+            shift,
+            scale.length_name.clone(),
+        ));
     }
     for (end, motion) in plan.end_names.iter().zip(&load.ends) {
         let displacement = scale.length * motion.displacement;
@@ -133,12 +140,8 @@ mod tests {
     #[test]
     fn every_quantity_that_changes_has_its_limit_in_the_unit_of_the_case() {
         let mut plan = plan(Symmetry::Axisymmetric);
-        let muscle = |name: &str, direction| Muscle {
-            name: name.into(),
-            direction,
-            zone: [0.1, 0.8],
-            profile: Profile::RaisedCosine,
-            sector: None,
+        let muscle = |name: &str, direction| {
+            Muscle::new(name.into(), direction, [0.1, 0.8], Profile::RaisedCosine)
         };
         plan.tube.muscles = vec![
             muscle("ring", Direction::Circular),
@@ -152,6 +155,7 @@ mod tests {
         });
         let load = |x: f64| Load {
             muscles: vec![1.0 - x, 1.0 + x],
+            shifts: vec![0.0, -x],
             ends: [1.0, -2.0].map(|sign| EndMotion {
                 displacement: sign * x,
                 twist: sign * x.to_radians(),
@@ -170,6 +174,7 @@ mod tests {
         let expected = [
             "ring.diameter_ratio has a minimum near 0.8",
             "long.length_ratio has a maximum near 1.2",
+            "long.shift has a minimum near -5 mm",
             "colon.displacement has a maximum near 5 mm",
             "colon.twist_degrees has a maximum near 0.2 degrees",
             "ileum.displacement has a minimum near -10 mm",

@@ -26,6 +26,7 @@ mod obstacle_row;
 mod patch_row;
 mod plan;
 mod row;
+mod stage;
 mod start;
 mod state;
 mod table;
@@ -44,10 +45,9 @@ pub use limit_point::LimitPoint;
 pub use lost::{Location, Lost, Phase};
 pub use obstacle_row::ObstacleRow;
 pub use patch_row::PatchRow;
-pub use plan::{
-    LengthUnit, MaterialFile, ModeShape, Output, Plan, Stage, Start, StressUnit, Units,
-};
+pub use plan::{LengthUnit, MaterialFile, ModeShape, Output, Plan, Start, StressUnit, Units};
 pub use row::{EndRow, MuscleRow, Row, SidewaysRow};
+pub use stage::Stage;
 pub use start::inverted_by_imperfections;
 pub use state::{MuscleState, ObstacleState, PatchState, State};
 pub use table::{Cell, Quantity, RowReader};

@@ -1,5 +1,6 @@
 //! The plan of a study: the checked, dimensionless content of a case.
 
+use super::Stage;
 use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
 use crate::saved_state::{Layout, SavedState, SavedStateError};
@@ -69,17 +70,6 @@ pub struct MaterialFile {
     pub file: String,
     /// Its content.
     pub text: String,
-}
-
-/// A stage: a straight segment in the space of loads.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stage {
-    /// Its name.
-    pub name: String,
-    /// The load at its end. It starts from the end of the previous stage; the first starts from rest or from the start state.
-    pub load: Load,
-    /// Number of equal steps, at least one; each ends in an accepted state.
-    pub steps: usize,
 }
 
 /// Output of a run beside its history.
@@ -211,6 +201,33 @@ impl Plan {
         }
     }
 
+    /// Returns the load at which a stage begins, counted from 0.
+    pub fn load_before(&self, stage: usize) -> Load {
+        match stage.checked_sub(1) {
+            Some(before) => self.stages[before].load.clone(),
+            None => self.first_load(),
+        }
+    }
+
+    /// Returns the time at a fraction of a stage, counted from 0; none in a study without times.
+    pub fn time_at(&self, stage: usize, fraction: f64) -> Option<f64> {
+        let durations = self.stages[..stage].iter().map(|stage| stage.duration);
+        let before = durations.sum::<Option<f64>>()?;
+        Some(before + fraction * self.stages[stage].duration?)
+    }
+
+    /// Returns the time of the first state; none in a study without times.
+    pub fn first_time(&self) -> Option<f64> {
+        self.stages.first()?.duration.map(|_| 0.0)
+    }
+
+    /// Returns whether a stage moves the zone of a muscle.
+    pub fn shifts_muscle(&self, muscle: usize) -> bool {
+        let first = self.first_load();
+        let mut loads = self.stages.iter().flat_map(Stage::loads);
+        first.shifts[muscle] != 0.0 || loads.any(|load| load.shifts[muscle] != 0.0)
+    }
+
     /// Returns the number of steps of all stages.
     pub fn steps(&self) -> usize {
         self.stages.iter().map(|stage| stage.steps).sum()
@@ -260,7 +277,7 @@ impl Plan {
     /// Returns the loads at the start, if it is not at rest, and at the ends of the stages.
     fn loads(&self) -> impl Iterator<Item = &Load> {
         let start = self.start.iter().map(|start| &start.load);
-        start.chain(self.stages.iter().map(|stage| &stage.load))
+        start.chain(self.stages.iter().flat_map(Stage::loads))
     }
 }
 

@@ -15,6 +15,8 @@ pub struct Row {
     pub step: usize,
     /// Name of the stage.
     pub stage: String,
+    /// Time; the column exists only if the stages have durations.
+    pub time: Option<f64>,
     /// Grown length over length, Lmax/L.
     pub length_ratio: f64,
     /// Narrowest grown diameter over diameter, Dmin/D.
@@ -114,6 +116,8 @@ pub struct MuscleRow {
     pub target: f64,
     /// Its growth stretch where it is furthest from one.
     pub stretch: f64,
+    /// Shift of its zone along the tube; the column exists only if a stage moves the zone.
+    pub shift: Option<f64>,
     /// Work that it has done so far.
     pub work: f64,
 }
@@ -166,6 +170,7 @@ impl Row {
             name: muscle.name.clone(),
             target: muscle.target,
             stretch: muscle.stretch,
+            shift: muscle.shift.map(|shift| length * shift),
             work: 0.0,
         });
         let patches = state.patches.iter().map(|patch| PatchRow {
@@ -190,6 +195,7 @@ impl Row {
         Self {
             step: state.number,
             stage: state.stage.clone(),
+            time: state.time,
             length_ratio: state.length_ratio(),
             diameter_ratio: state.diameter_ratio(),
             muscles: muscles.collect(),
@@ -372,6 +378,7 @@ impl Row {
         Self {
             step: 0,
             stage: String::new(),
+            time: None,
             length_ratio: 0.0,
             diameter_ratio: 0.0,
             muscles: muscles.iter().map(muscle).collect(),
@@ -465,17 +472,19 @@ impl Row {
     pub(super) fn visit(&mut self, visitor: &mut impl Visitor) {
         use Quantity::{
             Area, Count, Degrees, Energy, Force, Length, Moment, Ratio, Seconds, Stress, Text,
-            Volume,
+            Time, Volume,
         };
         let v = visitor;
         v.cell("step", Count, &mut self.step);
         v.cell("stage", Text, &mut self.stage);
+        v.optional("time", Time, &mut self.time);
         v.cell("length_ratio", Ratio, &mut self.length_ratio);
         v.cell("diameter_ratio", Ratio, &mut self.diameter_ratio);
         for muscle in &mut self.muscles {
             let name = &muscle.name;
             v.cell(&format!("target_{name}"), Ratio, &mut muscle.target);
             v.cell(&format!("stretch_{name}"), Ratio, &mut muscle.stretch);
+            v.optional(&format!("shift_{name}"), Length, &mut muscle.shift);
         }
         for (quantity, of, field) in [
             ("displacement", Length, displacement as OfEnd),

@@ -21,6 +21,8 @@ pub struct State {
     pub ends_stage: bool,
     /// Fraction of the stage that is completed, 0 to 1.
     pub stage_fraction: f64,
+    /// Time, in the unit of time of the case; none in a study without times.
+    pub time: Option<f64>,
     /// The load.
     pub load: Load,
     /// The muscles, in the order of the tube.
@@ -91,6 +93,8 @@ pub struct MuscleState {
     pub target: f64,
     /// Its growth stretch where it is furthest from one.
     pub stretch: f64,
+    /// Shift of its zone, in D; none if no stage moves it.
+    pub shift: Option<f64>,
 }
 
 /// An obstacle in a state.
@@ -119,6 +123,7 @@ pub(super) struct Milestone<'a> {
     pub stage: &'a str,
     pub ends_stage: bool,
     pub stage_fraction: f64,
+    pub time: Option<f64>,
 }
 
 impl State {
@@ -169,6 +174,7 @@ impl State {
             muscles: muscles(plan, &accepted.load),
             end_names: plan.end_names.clone(),
             stage_fraction: at.stage_fraction,
+            time: at.time,
             energy: above_rounding(forces.energy),
             energy_ungrown_volume: above_rounding(forces.energy_ungrown),
             potential: above_rounding(forces.potential),
@@ -255,11 +261,11 @@ fn patches(plan: &Plan, load: &Load) -> Vec<PatchState> {
 
 /// Returns the muscles of a plan under a load.
 fn muscles(plan: &Plan, load: &Load) -> Vec<MuscleState> {
-    let muscles = plan.tube.muscles.iter().zip(&load.muscles);
-    let state = |(muscle, &target): (&Muscle, &f64)| MuscleState {
+    let state = |(m, muscle): (usize, &Muscle)| MuscleState {
         name: muscle.name.clone(),
-        target,
-        stretch: muscle.extreme_stretch(target, plan.tube.length),
+        target: load.muscles[m],
+        stretch: muscle.extreme_stretch(load.muscles[m], plan.tube.length),
+        shift: plan.shifts_muscle(m).then_some(load.shifts[m]),
     };
-    muscles.map(state).collect()
+    plan.tube.muscles.iter().enumerate().map(state).collect()
 }

@@ -18,6 +18,8 @@ pub enum Quantity {
     Degrees,
     /// Seconds of wall time.
     Seconds,
+    /// A time, in the unit of the durations of the case.
+    Time,
     /// A length.
     Length,
     /// An area.

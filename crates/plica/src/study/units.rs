@@ -103,7 +103,7 @@ impl Scale {
             Quantity::Stress => self.stress,
             Quantity::Energy => self.energy,
             Quantity::Text | Quantity::Count | Quantity::Ratio => 1.0,
-            Quantity::Degrees | Quantity::Seconds => 1.0,
+            Quantity::Degrees | Quantity::Seconds | Quantity::Time => 1.0,
         }
     }
 
@@ -119,7 +119,7 @@ impl Scale {
             Quantity::Energy => Some(&self.energy_name),
             Quantity::Degrees => Some("°"),
             Quantity::Seconds => Some("s"),
-            Quantity::Text | Quantity::Count | Quantity::Ratio => None,
+            Quantity::Text | Quantity::Count | Quantity::Ratio | Quantity::Time => None,
         }
     }
 }

@@ -45,9 +45,9 @@ impl Work {
 pub(super) struct WorkPoint {
     load: Load,
     u: Vec<f64>,
-    /// ∂W/∂t of each muscle whose target has changed in the step before.
-    muscle_forces: Vec<Option<f64>>,
-    /// The same for each patch.
+    /// ∂W/∂t and ∂W/∂c of each muscle whose target t or shift c has changed in the step before.
+    muscle_forces: Vec<[Option<f64>; 2]>,
+    /// ∂W/∂t of each patch likewise.
     patch_forces: Vec<Option<f64>>,
     /// For each wall, the work of a unit follower pressure and of a unit dead load since rest.
     unit_work: [[f64; 2]; 2],
@@ -60,6 +60,9 @@ pub(super) struct WorkPoint {
 /// Change of the extreme stretch of a muscle, relative to its smallest stretch, in central differences: their error is
 /// about 1e-8, and the rounding of the energy adds about 1e-12.
 const STRETCH_STEP: f64 = 1e-4;
+
+/// Change of the shift of a muscle, in lengths of its zone, in central differences.
+const SHIFT_STEP: f64 = 1e-5;
 
 impl WorkPoint {
     /// Evaluates a state, whose forces are known.
@@ -78,7 +81,7 @@ impl WorkPoint {
             unknowns.map(|i| [u[i], forces.residual[i]]).collect()
         };
         Self {
-            muscle_forces: vec![None; load.muscles.len()],
+            muscle_forces: vec![[None; 2]; load.muscles.len()],
             patch_forces: vec![None; load.patches.len()],
             unit_work: match plan.has_pressures() {
                 true => tube.work_of_unit_pressures(u),
@@ -97,10 +100,10 @@ impl WorkPoint {
         &self.contacts
     }
 
-    /// Returns ∂W/∂t of a muscle.
-    fn muscle_force(&self, tube: &SplineTube, m: usize) -> f64 {
-        let known = self.muscle_forces[m];
-        known.unwrap_or_else(|| muscle_force(tube, &self.load, &self.u, m))
+    /// Returns ∂W/∂t of a muscle, or ∂W/∂c for its shift.
+    fn muscle_force(&self, tube: &SplineTube, m: usize, drive: MuscleDrive) -> f64 {
+        let known = self.muscle_forces[m][drive as usize];
+        known.unwrap_or_else(|| muscle_force(tube, &self.load, &self.u, m, drive))
     }
 
     /// Returns ∂W/∂t of a patch.
@@ -114,12 +117,14 @@ impl WorkPoint {
         let trapezoid = |force: [f64; 2], change: f64| 0.5 * (force[0] + force[1]) * change;
         let mut muscles = vec![0.0; self.load.muscles.len()];
         for (m, work) in muscles.iter_mut().enumerate() {
-            let change = next.load.muscles[m] - self.load.muscles[m];
-            if change != 0.0 {
-                let from = self.muscle_force(tube, m);
-                let to = next.muscle_force(tube, m);
-                next.muscle_forces[m] = Some(to);
-                *work = trapezoid([from, to], change);
+            for drive in [MuscleDrive::Target, MuscleDrive::Shift] {
+                let change = drive.change(&self.load, &next.load, m);
+                if change != 0.0 {
+                    let from = self.muscle_force(tube, m, drive);
+                    let to = next.muscle_force(tube, m, drive);
+                    next.muscle_forces[m][drive as usize] = Some(to);
+                    *work += trapezoid([from, to], change);
+                }
             }
         }
         let mut patches = vec![0.0; self.load.patches.len()];
@@ -170,12 +175,49 @@ impl WorkPoint {
     }
 }
 
-/// Returns the derivative of the strain energy of the whole tube by the target of a muscle, at fixed displacements.
-fn muscle_force(tube: &SplineTube, load: &Load, u: &[f64], m: usize) -> f64 {
+/// A quantity that drives a muscle.
+#[derive(Clone, Copy)]
+enum MuscleDrive {
+    /// Its target.
+    Target = 0,
+    /// The shift of its zone.
+    Shift = 1,
+}
+
+impl MuscleDrive {
+    fn of(self, load: &mut Load, m: usize) -> &mut f64 {
+        match self {
+            Self::Target => &mut load.muscles[m],
+            Self::Shift => &mut load.shifts[m],
+        }
+    }
+
+    /// Returns the change between two loads.
+    fn change(self, from: &Load, to: &Load, m: usize) -> f64 {
+        match self {
+            Self::Target => to.muscles[m] - from.muscles[m],
+            Self::Shift => to.shifts[m] - from.shifts[m],
+        }
+    }
+}
+
+/// Returns the derivative of the strain energy of the whole tube by the target or the shift of a muscle, at fixed
+/// displacements.
+fn muscle_force(tube: &SplineTube, load: &Load, u: &[f64], m: usize, drive: MuscleDrive) -> f64 {
     let (muscle, target, length) = (&tube.tube.muscles[m], load.muscles[m], tube.tube.length);
-    let slope = muscle.extreme_stretch(1.0, length) - muscle.extreme_stretch(0.0, length);
-    let h = STRETCH_STEP * muscle.smallest_stretch(target, length) / slope;
-    energy_slope(tube, (load, u), h, |load, h| load.muscles[m] += h)
+    let smallest = muscle.smallest_stretch(target, length);
+    let h = match drive {
+        MuscleDrive::Target => {
+            let slope = muscle.extreme_stretch(1.0, length) - muscle.extreme_stretch(0.0, length);
+            STRETCH_STEP * smallest / slope
+        }
+        MuscleDrive::Shift => {
+            let change = (muscle.extreme_stretch(target, length) - 1.0).abs();
+            let zone = muscle.zone[1] - muscle.zone[0];
+            SHIFT_STEP * zone * smallest / change.max(smallest)
+        }
+    };
+    energy_slope(tube, (load, u), h, |load, h| *drive.of(load, m) += h)
 }
 
 /// Returns the derivative of the strain energy of the whole tube by the growth of a patch, at fixed displacements.
@@ -215,12 +257,8 @@ mod tests {
     /// A tube with two muscles, pressures on both walls and a pushed and twisted end, all driven at a time.
     fn driven(steps: usize) -> Plan {
         let mut plan = plan(Symmetry::Axisymmetric);
-        let muscle = |name: &str, direction| Muscle {
-            name: name.into(),
-            direction,
-            zone: [0.1, 0.8],
-            profile: Profile::RaisedCosine,
-            sector: None,
+        let muscle = |name: &str, direction| {
+            Muscle::new(name.into(), direction, [0.1, 0.8], Profile::RaisedCosine)
         };
         plan.tube.muscles = vec![
             muscle("circular", Direction::Circular),
@@ -233,6 +271,7 @@ mod tests {
         let pressure = |follower, dead| Pressure { follower, dead };
         let load = Load {
             muscles: vec![0.8, 1.1],
+            shifts: vec![0.1, -0.05],
             ends: [
                 EndMotion {
                     displacement: -0.05,
@@ -253,11 +292,7 @@ mod tests {
             muscles: vec![0.7, 1.0],
             ..load.clone()
         };
-        let stage = |name: &str, load| Stage {
-            name: name.into(),
-            load,
-            steps,
-        };
+        let stage = |name: &str, load| Stage::new(name.into(), load, steps);
         plan.stages = vec![stage("all", load), stage("back", back)];
         plan
     }
@@ -408,11 +443,7 @@ mod tests {
                 obstacles: signs.iter().map(|sign| placement(0.515 * sign)).collect(),
                 ..plan.tube.rest()
             };
-            plan.stages = vec![Stage {
-                name: "press".into(),
-                load,
-                steps: 3,
-            }];
+            plan.stages = vec![Stage::new("press".into(), load, 3)];
             rows(&plan).pop().unwrap()
         };
         let half = pressed(Symmetry::Fold(2), &[1.0]);

@@ -228,13 +228,12 @@ fn residual_stretch_is_growth() {
         crate::activation::Direction::Longitudinal,
         crate::activation::Direction::Circular,
     ] {
-        active.muscles.push(crate::activation::Muscle {
-            name: String::new(),
+        active.muscles.push(crate::activation::Muscle::new(
+            String::new(),
             direction,
-            zone: [0.0, 1.5],
-            profile: even.clone(),
-            sector: None,
-        });
+            [0.0, 1.5],
+            even.clone(),
+        ));
     }
     let mut load = active.rest();
     load.muscles = vec![1.1, 0.8];

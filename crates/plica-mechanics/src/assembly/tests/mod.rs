@@ -30,13 +30,8 @@ pub(in crate::assembly) fn tube_and_load(
     elements: [usize; 3],
     rings: usize,
 ) -> TubeAndLoad {
-    let muscle = |direction, zone| Muscle {
-        name: String::new(),
-        direction,
-        zone,
-        profile: Profile::RaisedCosine,
-        sector: None,
-    };
+    let muscle =
+        |direction, zone| Muscle::new(String::new(), direction, zone, Profile::RaisedCosine);
     let tube = Tube {
         length: 1.5,
         thickness: 0.15,

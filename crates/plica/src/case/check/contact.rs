@@ -3,7 +3,7 @@
 use super::super::keys::Case;
 use super::super::problem::Problems;
 use crate::study::Stage;
-use crate::tube::{Symmetry, Tube, WallLayer};
+use crate::tube::{Load, Symmetry, Tube, WallLayer};
 
 const CONTACT: &str = "contact";
 
@@ -44,8 +44,8 @@ pub(super) fn check(
         let rule = "must be false if fibres of one hand twist the tube";
         problems.value(CONTACT, rule, help);
     }
-    let twists = |stage: &Stage| stage.load.ends.iter().any(|end| end.twist != 0.0);
-    if stages.iter().any(twists) {
+    let twists = |load: &Load| load.ends.iter().any(|end| end.twist != 0.0);
+    if stages.iter().flat_map(Stage::loads).any(twists) {
         let help = "set `contact = false`, leave the ends untwisted, or set `symmetry = \"none\"`";
         problems.value(
             CONTACT,

@@ -388,7 +388,8 @@ pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Prob
         }
         let smallest = stages
             .iter()
-            .map(|stage| muscle.smallest_stretch(stage.load.muscles[m], tube.length))
+            .flat_map(Stage::loads)
+            .map(|load| muscle.smallest_stretch(load.muscles[m], tube.length))
             .fold(1.0, f64::min);
         let smallest = 1.0 - strongest * (1.0 - smallest);
         if smallest < SMALLEST_STRETCH {

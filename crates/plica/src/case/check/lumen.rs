@@ -5,7 +5,7 @@ use super::super::problem::Problems;
 use super::muscles::ENDS;
 use crate::assembly::SplineTube;
 use crate::study::Stage;
-use crate::tube::{Load, Mesh, Part, Support, Symmetry, Tube};
+use crate::tube::{Mesh, Part, Support, Symmetry, Tube};
 use std::f64::consts::PI;
 
 /// The name of the lumen in a stage.
@@ -48,15 +48,14 @@ pub(super) fn volume_at_rest(
     PI * tube.inner_radius().powi(2) * tube.length
 }
 
-/// Applies a target of the lumen to a load; a pressure inside no longer is driven. `at_rest` is the volume at rest.
-pub(super) fn apply(
+/// Returns the volume over that at rest of a target of the lumen. `at_rest` is the volume at rest.
+pub(super) fn ratio(
     key: &str,
     (target, value): (&str, f64),
     (case, tube): (&Case, &Tube),
     at_rest: f64,
-    load: &mut Load,
     problems: &mut Problems,
-) {
+) -> f64 {
     let ratio = match target {
         "volume" => value / case.tube.diameter.powi(3) / at_rest,
         _ => value,
@@ -83,8 +82,21 @@ pub(super) fn apply(
             "leave solver.scheme out, or drive inner-wall.pressure",
         );
     }
-    load.lumen_volume = Some(ratio);
-    load.pressures[0].follower = 0.0;
+    ratio
+}
+
+/// Reports a stage with lists of points that begins to drive the volume, or the pressure: only the run knows where the other
+/// begins.
+pub(super) fn report_course(stage: &str, is_volume: bool, problems: &mut Problems) {
+    let (driven, before) = match is_volume {
+        true => ("lumen", "pressure"),
+        false => ("inner-wall", "volume"),
+    };
+    let key = format!("{stage}.drive.{driven}");
+    if problems.are_sound(&[stage]) {
+        let rule = format!("a stage that takes over from a driven {before} has no lists of points");
+        problems.key(&key, rule, "write a stage of its own before this one");
+    }
 }
 
 /// Checks what a stage drives beside the volume.

@@ -95,7 +95,7 @@ pub(super) fn mesh(case: &Case, tube: &Tube, problems: &mut Problems) -> (Mesh, 
 /// Returns the zones with smaller elements: as written, or those of the muscles.
 fn refinements(case: &Case, tube: &Tube, problems: &mut Problems) -> Vec<Refinement> {
     let Some(list) = &case.mesh.refine else {
-        return zones_of_muscles(tube);
+        return zones_of_muscles(case, tube);
     };
     let mut refinements = Vec::new();
     for (i, refine) in list.iter().enumerate() {
@@ -107,10 +107,18 @@ fn refinements(case: &Case, tube: &Tube, problems: &mut Problems) -> Vec<Refinem
     refinements
 }
 
-/// Returns the zones of the muscles, cut at the kinks of profiles, so that elements end there.
-fn zones_of_muscles(tube: &Tube) -> Vec<Refinement> {
+/// Returns the zones of the muscles, cut at the kinks of profiles, so that elements end there. Zones that move or repeat
+/// have no elements of their own.
+fn zones_of_muscles(case: &Case, tube: &Tube) -> Vec<Refinement> {
     let mut refinements = Vec::new();
     for muscle in &tube.muscles {
+        let drives = case
+            .stages
+            .iter()
+            .filter_map(|stage| stage.drive.get(&muscle.name));
+        if muscle.repeat.is_some() || drives.into_iter().any(|drive| drive.shift.is_some()) {
+            continue;
+        }
         let [a, b] = muscle.zone;
         let mut cuts = vec![a];
         cuts.extend(muscle.profile.kinks().iter().map(|x| a + x * (b - a)));

@@ -22,6 +22,7 @@ mod sideways;
 mod solver;
 mod stages;
 mod start;
+mod targets;
 mod tube;
 mod zone;
 

@@ -1,13 +1,12 @@
 //! The names, zones and profiles of the muscles.
 
 use super::super::key::join;
-use super::super::keys::{self, Case};
+use super::super::keys::Case;
 use super::super::problem::Problems;
 use super::lumen::LUMEN;
 use super::region;
-use super::zone::{ROUNDING, zone};
+use super::zone::{ROUNDING, moving_zone, zone};
 use crate::activation::{Muscle, Profile};
-use std::collections::BTreeSet;
 
 /// The names of the ends in a stage, in the order of the load.
 pub(super) const ENDS: [&str; 2] = ["colon", "ileum"];
@@ -20,18 +19,23 @@ pub(super) fn muscles(case: &Case, length: f64, problems: &mut Problems) -> Vec<
     for (name, muscle) in &case.muscles {
         let path = join("muscles", name);
         check_name(&path, name, problems);
+        let drives = case.stages.iter().filter_map(|stage| stage.drive.get(name));
+        let is_shifted = drives.into_iter().any(|drive| drive.shift.is_some());
         let key = format!("{path}.zone");
+        let zone = match is_shifted || muscle.repeat.is_some() {
+            true => moving_zone(&key, case, muscle.zone, problems),
+            false => zone(&key, case, muscle.zone, length, problems),
+        };
+        let profile = profile(&path, &muscle.profile, problems);
+        let repeat = repeat(&path, case, zone, muscle.repeat, problems);
         let sector = muscle.sector.as_ref();
         muscles.push(Muscle {
-            name: name.clone(),
-            direction: muscle.direction,
-            zone: zone(&key, case, muscle.zone, length, problems),
-            profile: profile(&path, &muscle.profile, problems),
+            repeat,
             sector: sector
                 .map(|own| region::sector(&format!("{path}.sector"), own, case, problems)),
+            ..Muscle::new(name.clone(), muscle.direction, zone, profile)
         });
     }
-    check_overlaps(case, problems);
     muscles
 }
 
@@ -76,60 +80,23 @@ fn check_name(path: &str, name: &str, problems: &mut Problems) {
     }
 }
 
-/// Checks that zones of muscles of the same direction do not overlap in a layer, even where a zone is not within
-/// the tube.
-fn check_overlaps(case: &Case, problems: &mut Problems) {
-    let layers = case.muscles.values().filter_map(|m| m.layer.as_deref());
-    let mut layers: Vec<Option<&str>> = layers.map(Some).collect();
-    layers.push(None);
-    layers.sort_unstable();
-    layers.dedup();
-    let mut reported = BTreeSet::new();
-    for layer in layers {
-        // Muscles of a layer, and those that act in all of them.
-        let acts = |m: &keys::Muscle| m.layer.is_none() || m.layer.as_deref() == layer;
-        check_overlaps_of(case, acts, &mut reported, problems);
-    }
-}
-
-/// Checks the zones of the muscles that act in a layer.
-fn check_overlaps_of(
+/// Checks the distance between repeats of a zone, and returns it in D.
+fn repeat(
+    path: &str,
     case: &Case,
-    acts: impl Fn(&keys::Muscle) -> bool,
-    reported: &mut BTreeSet<String>,
+    [from, to]: [f64; 2],
+    repeat: Option<f64>,
     problems: &mut Problems,
-) {
-    let mut zones: [Vec<(f64, f64, usize, &str)>; 2] = Default::default();
-    for (i, (name, muscle)) in case.muscles.iter().enumerate() {
-        let path = join("muscles", name);
-        let is_as_written = |key| problems.is_as_written(&format!("{path}.{key}"));
-        let [from, to] = muscle.zone.map(|z| z / case.tube.diameter);
-        if from < to && acts(muscle) && is_as_written("direction") && is_as_written("zone") {
-            zones[muscle.direction as usize].push((from, to, i, name));
-        }
+) -> Option<f64> {
+    let repeat = repeat? / case.tube.diameter;
+    let (key, zone) = (format!("{path}.repeat"), format!("{path}.zone"));
+    if repeat < (to - from) * (1.0 - ROUNDING) && problems.are_sound(&[&key, &zone]) {
+        let least = super::zone::length(case, to - from);
+        let rule = format!("must be at least the length of the zone, {least}");
+        problems.value(&key, rule, "");
     }
-    for mut zones in zones {
-        zones.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
-        // Of the zones before, the one that ends last.
-        let mut farthest: Option<(f64, f64, usize, &str)> = None;
-        for zone in zones {
-            if let Some(other) = farthest.filter(|other| zone.0 < other.1 - ROUNDING) {
-                let (first, second) = match other.2 < zone.2 {
-                    true => (other.3, zone.3),
-                    false => (zone.3, other.3),
-                };
-                let key = format!("{}.zone", join("muscles", second));
-                if reported.insert(key.clone()) {
-                    let rule =
-                        format!("overlaps the zone of {first}, a muscle of the same direction");
-                    problems.value(&key, rule, "let one zone end where the other begins");
-                }
-            }
-            if farthest.is_none_or(|other| zone.1 > other.1) {
-                farthest = Some(zone);
-            }
-        }
-    }
+    // A repeat as long as the zone leaves no gap by rounding.
+    Some(repeat.max(to - from))
 }
 
 /// Checks a profile. Returns another one if it cannot be evaluated.

@@ -193,11 +193,9 @@ fn check_ends(
             ObstacleShape::Ball => true,
             ObstacleShape::Plate { normal } => normal[0] != 0.0,
         };
-    let loads = std::iter::once(begin).chain(stages.iter().map(|stage| &stage.load));
+    let mut loads = std::iter::once(begin).chain(stages.iter().flat_map(Stage::loads));
     let pushes_across = symmetry == Symmetry::None
-        && loads
-            .clone()
-            .any(|load| !obstacle.is_axisymmetric(&load.obstacles[i]));
+        && loads.any(|load| !obstacle.is_axisymmetric(&load.obstacles[i]));
     if pushes_across && !tube.ends.contains(&Support::Fixed) {
         let rule = "the obstacle can push the tube sideways, and no end holds it";
         problems.key(&key, rule, "write \"fixed\" for an end in [ends]");
@@ -237,7 +235,7 @@ fn check_fixed_ends(
     let mut before = begin;
     for (s, stage) in stages.iter().enumerate() {
         let steps = stage.steps.min(LARGEST_COUNT);
-        if (1..=steps).any(|n| meets(&before.towards(&stage.load, n as f64 / steps as f64))) {
+        if (1..=steps).any(|n| meets(&stage.load_at(before, n as f64 / steps as f64))) {
             let key = format!("stages[{}]", s + 1);
             let rule = format!("{} runs into the edge of a fixed end", obstacle.name);
             let help = "write \"sliding\" or \"free\" for the end in [ends], or let the obstacle widen inside the tube";

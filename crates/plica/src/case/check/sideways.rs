@@ -1,6 +1,5 @@
 //! Ends that leave their axis.
 
-use super::super::keys::Drive;
 use super::super::problem::Problems;
 use super::muscles::ENDS;
 use crate::study::Stage;
@@ -9,28 +8,12 @@ use crate::tube::{EndMotion, Support, Symmetry};
 /// Largest angle of a tilt, in degrees.
 const LARGEST: f64 = 180.0;
 
-/// Applies the offset or the tilt of an end to its motion.
-pub(super) fn apply(
-    key: &str,
-    target: &str,
-    drive: &Drive,
-    diameter: f64,
-    support: Support,
-    motion: &mut EndMotion,
-    problems: &mut Problems,
-) {
-    match (target, drive.offset, drive.tilt_degrees) {
-        ("offset", Some(offset), _) => motion.shift = offset.map(|x| x / diameter),
-        ("tilt_degrees", _, Some(tilt)) => {
-            if tilt[0].hypot(tilt[1]) > LARGEST {
-                let rule = format!("must be a rotation by at most {LARGEST} degrees");
-                problems.value(key, rule, "");
-            }
-            motion.tilt = tilt.map(f64::to_radians);
-        }
-        _ => {}
+/// Checks the size of a tilt, in degrees.
+pub(super) fn check_tilt(key: &str, tilt: [f64; 2], problems: &mut Problems) {
+    if tilt[0].hypot(tilt[1]) > LARGEST {
+        let rule = format!("must be a rotation by at most {LARGEST} degrees");
+        problems.value(key, rule, "");
     }
-    check_support(key, support, problems);
 }
 
 /// Checks that an end is held in all directions.

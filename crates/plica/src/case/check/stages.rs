@@ -1,26 +1,20 @@
-//! The stages: their targets, and whether the wall can be loaded so.
+//! The stages: their loads over time, and whether the wall can be loaded so.
 
+use super::super::course::{Course, value_at};
 use super::super::key::join;
-use super::super::keys::{Case, Drive};
+use super::super::keys::Case;
 use super::super::problem::Problems;
-use super::super::spelling::{nearest, target};
-use super::lumen::{self, LUMEN};
-use super::material::youngs_modulus;
-use super::muscles::{ENDS, WALLS};
-use super::obstacles::in_tube;
-use super::sideways;
-use super::zone::{stress, tidy};
-use crate::activation::{Direction, Muscle};
+use super::lumen;
+use super::muscles::ENDS;
+use super::targets::{self, Driven, Target, unknown_name};
+use super::zone::{ROUNDING, length, stress, tidy};
+use crate::activation::Muscle;
 use crate::study::Stage;
-use crate::tube::{EndDirection, Load, ObstacleShape, Part, Support, Tube};
+use crate::tube::{EndDirection, Load, Part, Support, Tube};
 use std::collections::HashMap;
 
 /// Names of state 0 in tables, which no stage may have.
 const RESERVED: [&str; 2] = ["rest", "start"];
-/// Number of names that a message lists.
-const NAMES: usize = 12;
-/// Number of problems from which on no similar names are searched for.
-const MANY: usize = 200;
 /// Largest pressure, in E.
 const LARGEST_PRESSURE: f64 = 10.0;
 /// Smallest and largest stress-free stretch.
@@ -29,7 +23,7 @@ const LARGEST_STRETCH: f64 = 100.0;
 /// Smallest and largest distance of the ends over that at rest.
 const DISTANCES: std::ops::RangeInclusive<f64> = 0.05..=10.0;
 
-/// Returns the stages with the loads at their ends; the first begins at `begin`.
+/// Returns the stages with their loads; the first begins at `begin`.
 pub(super) fn stages(
     case: &Case,
     tube: &Tube,
@@ -42,6 +36,7 @@ pub(super) fn stages(
     let mut names: HashMap<String, usize> = HashMap::new();
     let muscles = tube.muscles.iter().map(|muscle| muscle.name.as_str());
     let muscles: HashMap<&str, usize> = muscles.zip(0..).collect();
+    let have_durations = case.stages.iter().any(|stage| stage.duration.is_some());
     for (i, stage) in case.stages.iter().enumerate() {
         let path = format!("stages[{}]", i + 1);
         let name = stage.name.clone();
@@ -58,14 +53,18 @@ pub(super) fn stages(
             let rule = "state 0 has this name";
             problems.value(&key, rule, "choose another name");
         }
+        let mut driven = vec![];
         for (target, drive) in &stage.drive {
             let key = join(&format!("{path}.drive"), target);
-            let driven = match Driven::find(target, tube, &muscles) {
+            let found = match Driven::find(target, tube, &muscles) {
                 Some(Driven::Lumen(_)) => Some(Driven::Lumen(volume_at_rest)),
-                driven => driven,
+                found => found,
             };
-            match driven {
-                Some(driven) => apply(&key, target, driven, drive, case, tube, &mut load, problems),
+            match found {
+                Some(name) => {
+                    let context = (case, tube);
+                    driven.extend(targets::read(&key, target, name, drive, context, problems));
+                }
                 None => unknown_name(&key, target, tube, problems),
             }
         }
@@ -81,13 +80,125 @@ pub(super) fn stages(
             |key| given.iter().any(|one| one == key),
             problems,
         );
+        let duration = stage.duration.unwrap_or(1.0);
+        let (end, course) = course(&load, &driven, duration, problems);
+        let switches = load.lumen_volume.is_some() != end.lumen_volume.is_some();
+        if switches && !course.is_empty() {
+            lumen::report_course(&path, end.lumen_volume.is_some(), problems);
+        }
+        load = end;
         stages.push(Stage {
-            name,
-            load: load.clone(),
-            steps: stage.steps,
+            course,
+            duration: have_durations.then_some(duration),
+            ..Stage::new(name, load.clone(), stage.steps)
         });
     }
+    check_waves(case, tube, begin, &stages, problems);
     stages
+}
+
+/// Returns the load at the end of a stage that begins at a load, and the loads at the corners of its course.
+fn course(
+    begin: &Load,
+    driven: &[Target],
+    duration: f64,
+    problems: &mut Problems,
+) -> (Load, Vec<(f64, Load)>) {
+    let mut end = begin.clone();
+    let mut courses = vec![];
+    for target in driven {
+        let before = target.quantity.get(begin);
+        if let Some((rule, help)) = target.course.broken_by(duration) {
+            if problems.are_sound(&[&target.key]) {
+                problems.value(&target.key, rule, help);
+            }
+            continue;
+        }
+        if let Course::Points(points) = &target.course
+            && let Some(&[0.0, first]) = points.first()
+            && (first - before).abs() > ROUNDING * before.abs().max(1.0)
+            && problems.are_sound(&[&target.key, "start"])
+        {
+            let rule = "its value at time 0 is not the one at which the stage begins";
+            let help = "begin at that value, or with a later time: loads do not jump";
+            problems.value(&target.key, rule, help);
+        }
+        let points = target.course.fractions(before, duration);
+        target.quantity.set(&mut end, value_at(&points, 1.0));
+        courses.push((target.quantity, points));
+    }
+    let mut corners: Vec<f64> = courses
+        .iter()
+        .flat_map(|(_, points)| points.iter().map(|point| point[0]))
+        .filter(|fraction| 0.0 < *fraction && *fraction < 1.0)
+        .collect();
+    corners.sort_by(f64::total_cmp);
+    corners.dedup();
+    let at = |fraction: f64| {
+        let mut load = begin.towards(&end, fraction);
+        for (quantity, points) in &courses {
+            quantity.set(&mut load, value_at(points, fraction));
+        }
+        (fraction, load)
+    };
+    let corners = corners.into_iter().map(at).collect();
+    (end, corners)
+}
+
+/// Checks that the zones of muscles are where their targets need them.
+fn check_waves(case: &Case, tube: &Tube, begin: &Load, stages: &[Stage], problems: &mut Problems) {
+    for (m, muscle) in tube.muscles.iter().enumerate() {
+        let own = join("muscles", &muscle.name);
+        if muscle.repeat.is_none() && problems.are_sound(&[&own, "tube", "start"]) {
+            check_run_off(case, tube, m, stages, problems);
+        }
+        let [from, to] = muscle.zone;
+        let is_whole = |load: &Load| {
+            let (from, to) = (from + load.shifts[m], to + load.shifts[m]);
+            let within = from >= -ROUNDING && to <= tube.length * (1.0 + ROUNDING);
+            muscle.repeat.is_none() && (within || load.muscles[m] == 1.0)
+        };
+        let mut loads = stages.iter().flat_map(Stage::loads).chain([begin]);
+        if loads.all(is_whole) {
+            continue;
+        }
+        for i in 1..=case.stages.len() {
+            let key = format!("stages[{i}].drive.{}.length_ratio", muscle.name);
+            let drive = case.stages[i - 1].drive.get(&muscle.name);
+            let is_written = drive.is_some_and(|drive| drive.length_ratio.is_some());
+            if is_written && problems.are_sound(&[&key, &own, "tube"]) {
+                let rule = "the length of the tube is not defined by a zone that repeats, or leaves the tube";
+                let help = "write `stretch`, the largest stretch in the zone, instead";
+                problems.key(&key, rule, help);
+            }
+        }
+    }
+}
+
+/// Checks that no stage moves the zone of a muscle farther out of the tube than by its own length.
+fn check_run_off(case: &Case, tube: &Tube, m: usize, stages: &[Stage], problems: &mut Problems) {
+    let muscle = &tube.muscles[m];
+    let [from, to] = muscle.zone;
+    for (i, stage) in stages.iter().enumerate() {
+        let key = format!("stages[{}].drive.{}.shift", i + 1, muscle.name);
+        let drive = case.stages[i].drive.get(&muscle.name);
+        if drive.is_none_or(|drive| drive.shift.is_none()) || !problems.are_sound(&[&key]) {
+            continue;
+        }
+        for load in stage.loads() {
+            let shift = load.shifts[m];
+            let leaves = match shift > 0.0 {
+                true => tube.length - from,
+                false => -to,
+            };
+            if (shift - leaves) * shift.signum() > (to - from) + ROUNDING {
+                let rule = format!("the zone has left the tube at {}", length(case, leaves));
+                let help = "let it go on by its own length at most, or set `repeat` in the muscle";
+                problems.value(&key, rule, help);
+                break;
+            }
+        }
+    }
 }
 
 /// Checks the rules that concern all stages: something is driven, and the ends keep a distance.
@@ -98,7 +209,10 @@ pub(super) fn check_all(tube: &Tube, begin: &Load, stages: &[Stage], problems: &
     let drives: Vec<String> = (1..=stages.len())
         .map(|i| format!("stages[{i}].drive"))
         .collect();
-    let nothing = stages.iter().all(|stage| stage.load == *begin);
+    let nothing = stages
+        .iter()
+        .flat_map(Stage::loads)
+        .all(|load| load == begin);
     if nothing
         && problems.is_as_written("stages")
         && drives.iter().all(|drive| problems.are_sound(&[drive]))
@@ -131,242 +245,8 @@ pub(super) fn check_all(tube: &Tube, begin: &Load, stages: &[Stage], problems: &
     }
 }
 
-/// What a name in a stage stands for.
-#[derive(Clone, Copy)]
-enum Driven {
-    /// A muscle, by its index in the tube.
-    Muscle(usize, Direction),
-    /// The colon end or the ileum end.
-    End(usize),
-    /// The inner wall or the outer wall.
-    Wall(usize),
-    /// The lumen, with its volume at rest in D³.
-    Lumen(f64),
-    /// An obstacle, by its index in the tube, and whether it has a radius.
-    Obstacle(usize, bool),
-    /// A patch, by its index in the tube.
-    Patch(usize),
-}
-
-impl Driven {
-    fn find(name: &str, tube: &Tube, muscles: &HashMap<&str, usize>) -> Option<Self> {
-        if let Some(end) = ENDS.iter().position(|&end| end == name) {
-            return Some(Self::End(end));
-        }
-        if let Some(wall) = WALLS.iter().position(|&wall| wall == name) {
-            return Some(Self::Wall(wall));
-        }
-        if name == LUMEN {
-            return Some(Self::Lumen(f64::NAN));
-        }
-        if let Some(i) = tube
-            .obstacles
-            .iter()
-            .position(|obstacle| obstacle.name == name)
-        {
-            let is_plate = matches!(tube.obstacles[i].shape, ObstacleShape::Plate { .. });
-            return Some(Self::Obstacle(i, !is_plate));
-        }
-        if let Some(i) = tube.patches.iter().position(|patch| patch.name == name) {
-            return Some(Self::Patch(i));
-        }
-        let m = *muscles.get(name)?;
-        Some(Self::Muscle(m, tube.muscles[m].direction))
-    }
-
-    fn targets(self) -> &'static [&'static str] {
-        match self {
-            Self::Muscle(_, Direction::Circular) => &["diameter_ratio"],
-            Self::Muscle(_, Direction::Longitudinal) => &["length_ratio"],
-            Self::End(_) => &["displacement", "twist_degrees", "offset", "tilt_degrees"],
-            Self::Wall(_) => &["pressure", "dead_load"],
-            Self::Lumen(_) => &lumen::TARGETS,
-            Self::Obstacle(_, true) => &["radius", "position"],
-            Self::Obstacle(_, false) => &["position"],
-            Self::Patch(_) => &["growth_through"],
-        }
-    }
-
-    fn words(self) -> &'static str {
-        match self {
-            Self::Muscle(_, Direction::Circular) => "a circular muscle",
-            Self::Muscle(_, Direction::Longitudinal) => "a longitudinal muscle",
-            Self::End(_) => "an end of the tube",
-            Self::Wall(_) => "a surface of the tube",
-            Self::Lumen(_) => "the lumen",
-            Self::Obstacle(_, true) => "an obstacle",
-            Self::Obstacle(_, false) => "a plate",
-            Self::Patch(_) => "a patch",
-        }
-    }
-}
-
-/// Reports a name that is neither a muscle, nor an end, nor a surface, nor the lumen.
-fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut Problems) {
-    let muscle = join("muscles", name);
-    if !problems.are_sound(&[&muscle, "obstacles", "patches"]) {
-        return problems.replaced(path);
-    }
-    let names = || {
-        let muscles = tube.muscles.iter().map(|muscle| muscle.name.as_str());
-        // A muscle of such a name is reported by itself.
-        let is_free = |name: &&str| !ENDS.contains(name) && !WALLS.contains(name) && *name != LUMEN;
-        let obstacles = tube.obstacles.iter().map(|obstacle| obstacle.name.as_str());
-        let patches = tube.patches.iter().map(|patch| patch.name.as_str());
-        muscles
-            .filter(is_free)
-            .chain(obstacles)
-            .chain(patches)
-            .chain(ENDS)
-            .chain(WALLS)
-            .chain([LUMEN])
-    };
-    let near = match problems.len() < MANY {
-        true => nearest(name, names()),
-        false => None,
-    };
-    let help = match near {
-        Some(near) => format!("did you mean {near}?"),
-        None if target(name).is_some() => {
-            let drive = path.rsplit_once('.').map_or(path, |(drive, _)| drive);
-            format!("write {drive}.{}", target(name).unwrap_or_default())
-        }
-        None => {
-            let some: Vec<&str> = names().take(NAMES).collect();
-            let more = if names().count() > NAMES { ", …" } else { "" };
-            format!("add [{muscle}], or drive {}{more}", some.join(", "))
-        }
-    };
-    let rule = match tube.patches.is_empty() {
-        true => "there is no muscle or obstacle of this name",
-        false => "there is no muscle, obstacle or patch of this name",
-    };
-    problems.key(path, rule, help);
-}
-
-/// Applies the targets of one muscle, end or surface to the load.
-#[expect(clippy::too_many_arguments, reason = "all of it is context of one key")]
-fn apply(
-    path: &str,
-    name: &str,
-    driven: Driven,
-    drive: &Drive,
-    case: &Case,
-    tube: &Tube,
-    load: &mut Load,
-    problems: &mut Problems,
-) {
-    if !matches!(driven, Driven::Muscle(..)) && case.muscles.contains_key(name) {
-        // A muscle of a name that is taken, which has been reported.
-        return problems.replaced(path);
-    }
-    let targets = driven.targets();
-    if problems.is_as_written(&format!("{}.direction", join("muscles", name))) {
-        problems.advise_unknown(path, |unknown| {
-            match nearest(unknown, targets.iter().copied()) {
-                Some(near) => format!("did you mean {near}?"),
-                None => format!("{} has {}", driven.words(), targets.join(" and ")),
-            }
-        });
-    }
-    let written = [
-        ("diameter_ratio", drive.diameter_ratio),
-        ("length_ratio", drive.length_ratio),
-        ("growth_through", drive.growth_through),
-        ("displacement", drive.displacement),
-        ("twist_degrees", drive.twist_degrees),
-        ("offset", drive.offset.map(|_| f64::NAN)),
-        ("tilt_degrees", drive.tilt_degrees.map(|_| f64::NAN)),
-        ("volume_ratio", drive.volume_ratio),
-        ("volume", drive.volume),
-        ("pressure", drive.pressure),
-        ("dead_load", drive.dead_load),
-        ("radius", drive.radius),
-        // Its value is applied below.
-        ("position", drive.position.map(|_| f64::NAN)),
-    ];
-    let nothing = written.iter().all(|(_, value)| value.is_none()) && drive.position.is_none();
-    if nothing && problems.are_sound(&[path]) {
-        let help = format!("add {}", targets.join(" or "));
-        problems.key(path, "has no target", help);
-    }
-    for (target, value) in written {
-        let Some(value) = value else { continue };
-        let key = format!("{path}.{target}");
-        if !targets.contains(&target) {
-            if !problems.is_as_written(&key) {
-                // A misspelt key, which has been reported.
-                continue;
-            }
-            if !problems.is_as_written(&format!("{}.direction", join("muscles", name))) {
-                problems.replaced(key);
-                continue;
-            }
-            let rule = format!("not a target of {}", driven.words());
-            problems.key(
-                &key,
-                rule,
-                format!("did you mean {}?", targets.join(" or ")),
-            );
-            continue;
-        }
-        match driven {
-            Driven::Lumen(at_rest) => {
-                lumen::apply(&key, (target, value), (case, tube), at_rest, load, problems);
-            }
-            Driven::End(e) if matches!(target, "offset" | "tilt_degrees") => {
-                let (diameter, support) = (case.tube.diameter, tube.ends[e]);
-                sideways::apply(
-                    &key,
-                    target,
-                    drive,
-                    diameter,
-                    support,
-                    &mut load.ends[e],
-                    problems,
-                );
-            }
-            Driven::Muscle(m, _) => {
-                load.muscles[m] = value;
-                check_stretch(&key, &tube.muscles[m], value, tube, problems);
-            }
-            Driven::End(e) => {
-                let end = &mut load.ends[e];
-                match target {
-                    "displacement" => end.displacement = value / case.tube.diameter,
-                    _ => end.twist = value.to_radians(),
-                }
-                check_held(&key, target, tube.ends[e], problems);
-            }
-            Driven::Obstacle(i, _) => {
-                let placement = &mut load.obstacles[i];
-                match (target, drive.position) {
-                    ("position", Some(position)) => placement.position = in_tube(position, case),
-                    _ => placement.radius = value / case.tube.diameter,
-                }
-            }
-            Driven::Patch(i) => load.patches[i] = value,
-            Driven::Wall(w) => {
-                let modulus = youngs_modulus(case);
-                let (wall, value) = (&mut load.pressures[w], value / modulus);
-                match target {
-                    "pressure" => wall.follower = value,
-                    _ => wall.dead = value,
-                }
-                if (w, target) == (0, "pressure") {
-                    load.lumen_volume = None;
-                }
-                check_pressure(&key, value, case, problems);
-                if target == "pressure" && value != 0.0 {
-                    check_closed(&key, tube, problems);
-                }
-            }
-        }
-    }
-}
-
 /// Checks the size of a pressure in E.
-fn check_pressure(key: &str, pressure: f64, case: &Case, problems: &mut Problems) {
+pub(super) fn check_pressure(key: &str, pressure: f64, case: &Case, problems: &mut Problems) {
     if pressure.abs() > LARGEST_PRESSURE && problems.are_sound(&[key, "material", "layers"]) {
         let largest = stress(case, LARGEST_PRESSURE);
         let rule = format!("must be from -{largest} to {largest}, ten times Young's modulus");
@@ -387,10 +267,10 @@ pub(super) fn check_closed(key: &str, tube: &Tube, problems: &mut Problems) {
 
 /// Checks that ends which slide under a follower pressure stay in their planes.
 pub(super) fn check_end_planes(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
-    let pressed = |stage: &Stage| {
-        let load = &stage.load;
+    let has_follower = |load: &Load| {
         load.lumen_volume.is_some() || load.pressures.iter().any(|p| p.follower != 0.0)
     };
+    let pressed = |stage: &Stage| stage.loads().any(has_follower);
     let sound = problems.are_sound(&["imperfections", "ends", "stages", "start"]);
     if !sound || !stages.iter().any(pressed) {
         return;

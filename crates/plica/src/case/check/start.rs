@@ -113,11 +113,12 @@ fn check_symmetry(from: &Layout, mesh: &Mesh, symmetry: Symmetry, problems: &mut
 /// Returns the load of a state on the muscles, ends and surfaces of the tube.
 fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Load {
     let mut load = tube.rest();
-    for ((name, direction), &ratio) in state.muscles.iter().zip(&state.load.muscles) {
+    let drives = state.load.muscles.iter().zip(&state.load.shifts);
+    for ((name, direction), (&ratio, &shift)) in state.muscles.iter().zip(drives) {
         let same = |m: &Muscle| m.name == *name && m.direction == *direction;
         if let Some(m) = tube.muscles.iter().position(same) {
             check_stretch(KEY, &tube.muscles[m], ratio, tube, problems);
-            load.muscles[m] = ratio;
+            (load.muscles[m], load.shifts[m]) = (ratio, shift);
         } else if ratio != 1.0 {
             let kind = match direction {
                 Direction::Circular => "circular",

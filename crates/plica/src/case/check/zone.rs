@@ -15,6 +15,24 @@ pub(super) fn zone(
     length: f64,
     problems: &mut Problems,
 ) -> [f64; 2] {
+    let [from, to] = moving_zone(key, case, zone, problems);
+    if !problems.are_sound(&[key, "tube.length", "tube.diameter"]) {
+        return [from, to];
+    }
+    if from < 0.0 || to > length * (1.0 + ROUNDING) {
+        let end = self::length(case, length);
+        problems.value(key, format!("must lie within the tube, 0 to {end}"), "");
+    }
+    [from, to.min(length)]
+}
+
+/// Checks a zone that may lie outside the tube, and returns it in D.
+pub(super) fn moving_zone(
+    key: &str,
+    case: &Case,
+    zone: [f64; 2],
+    problems: &mut Problems,
+) -> [f64; 2] {
     let [from, to] = zone.map(|z| z / case.tube.diameter);
     if !problems.are_sound(&[key]) {
         return [from, to];
@@ -25,17 +43,12 @@ pub(super) fn zone(
             false => String::new(),
         };
         problems.value(key, "must be [from, to] with from below to", help);
-    } else if !problems.are_sound(&["tube.length", "tube.diameter"]) {
-        return [from, to];
-    } else if from < 0.0 || to > length * (1.0 + ROUNDING) {
-        let end = self::length(case, length);
-        problems.value(key, format!("must lie within the tube, 0 to {end}"), "");
-    } else if to - from < 1e-3 {
+    } else if problems.are_sound(&["tube.length", "tube.diameter"]) && to - from < 1e-3 {
         let least = self::length(case, 1e-3);
         let rule = format!("must be at least a thousandth of the diameter long, {least}");
         problems.value(key, rule, "");
     }
-    [from, to.min(length)]
+    [from, to]
 }
 
 /// Writes a length, given in D, in the unit of the case.

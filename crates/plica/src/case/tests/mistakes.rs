@@ -398,7 +398,7 @@ fn only_targets_of_the_driven_thing_are_offered() {
     for (line, help) in [
         (
             "drive.ring.displacment = 1.0",
-            "a circular muscle has diameter_ratio",
+            "a circular muscle has diameter_ratio, stretch, and shift",
         ),
         (
             "drive.colon.diameter_rat = 0.5",

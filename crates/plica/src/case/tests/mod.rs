@@ -56,6 +56,7 @@ layer = "media"
 [muscles.next]
 direction = "circular"
 zone = [72.0, 76.0]
+repeat = 8.0
 profile = { smooth-box = { edge = 0.25 } }
 [muscles.long]
 direction = "longitudinal"
@@ -79,7 +80,7 @@ drive.colon.twist_degrees = 10
 [[stages]]
 drive.inner-wall.pressure = 0.5
 drive.outer-wall.dead_load = 0.25
-drive.next.diameter_ratio = 0.9
+drive.next = { diameter_ratio = 0.9, shift = 1.0 }
 drive.scar.growth_through = 1.5
 drive.bolus = { position = [0.0, 0.0, 4.0], radius = 3.0 }
 [[obstacles]]
@@ -192,6 +193,7 @@ fn state() -> SavedState {
         muscles: vec![],
         load: tube::Load {
             muscles: vec![],
+            shifts: vec![],
             ends: Default::default(),
             pressures: Default::default(),
             lumen_volume: None,

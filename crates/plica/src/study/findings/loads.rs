@@ -66,6 +66,11 @@ pub fn loads(row: &Row, scale: &Scale, muscles_by_name: bool) -> Vec<NamedLoad> 
             load("Dmin/D".into(), row.diameter_ratio, ""),
         ]
     };
+    for muscle in &row.muscles {
+        if let Some(shift) = muscle.shift {
+            loads.push(load(format!("shift of {}", muscle.name), shift, length));
+        }
+    }
     for end in &row.ends {
         let (moved, twist) = (
             format!("{} end moved", end.name),

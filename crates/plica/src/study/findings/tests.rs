@@ -366,6 +366,7 @@ fn muscles_that_the_ratios_do_not_tell_apart_have_their_names() {
             name: name.into(),
             target,
             stretch: target,
+            shift: None,
             work: 0.0,
         };
         ["upper", "lower"]
