@@ -543,7 +543,7 @@ mod tests {
         }
         let (length, stress) = (25.0_f64, 20.0);
         let factor = |name: &str| match name {
-            _ if name.starts_with("displacement_") => length,
+            _ if name.starts_with("displacement_") || name.starts_with("shift_") => length,
             "outer_radius_min" | "outer_radius_max" | "outer_radius_mid" => length,
             "z_at_min" | "overhang" | "gap" | "lumen" | "asymmetry" => length,
             "lumen_volume" => length.powi(3),
