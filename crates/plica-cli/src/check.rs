@@ -8,7 +8,7 @@ use plica::activation::AngularSector;
 use plica::material::{Material, NeoHookean, Volumetric};
 use plica::run_directory::DiskUse;
 use plica::spline::Circle;
-use plica::study::{Plan, Stage, check_memory, forecast};
+use plica::study::{Plan, check_memory, forecast};
 use plica::tube::{
     End, Foundation, Imperfection, Integration, Outline, Part, Patch, Region, Shape,
     SpringDirection, Symmetry, Tube, WallLayer,

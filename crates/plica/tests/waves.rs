@@ -132,6 +132,7 @@ fn the_work_of_a_travelling_wave_is_its_gain_of_energy() {
         let work: f64 = states.iter().map(|state| state.work.muscles[0]).sum();
         (work / states.last().unwrap().energy - 1.0).abs()
     };
-    let (coarse, fine) = (error(8), error(16));
-    assert!(fine < 0.35 * coarse && fine < 0.01, "{coarse} {fine}");
+    let (coarse, fine) = (error(16), error(32));
+    // Of second order in the step.
+    assert!(fine < 0.3 * coarse && fine < 0.06, "{coarse} {fine}");
 }

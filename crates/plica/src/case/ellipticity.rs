@@ -21,15 +21,12 @@ fn of_layer(plan: &Plan, layer: usize) -> Option<String> {
     let mut before = plan.first_load();
     let mut ranges = vec![];
     for stage in &plan.stages {
-        let [mut along, mut around] = range(plan, layer, &before);
-        for (own, other) in
-            [&mut along, &mut around]
-                .into_iter()
-                .zip(range(plan, layer, &stage.load))
-        {
-            *own = [own[0].min(other[0]), own[1].max(other[1])];
+        let mut own = range(plan, layer, &before);
+        for load in stage.loads() {
+            let other = range(plan, layer, load);
+            own = [0, 1].map(|i| [own[i][0].min(other[i][0]), own[i][1].max(other[i][1])]);
         }
-        ranges.push([along, around]);
+        ranges.push(own);
         before = stage.load.clone();
     }
     let own = &plan.tube.layers[layer];

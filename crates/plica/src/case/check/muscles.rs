@@ -22,7 +22,9 @@ pub(super) fn muscles(case: &Case, length: f64, problems: &mut Problems) -> Vec<
         let drives = case.stages.iter().filter_map(|stage| stage.drive.get(name));
         let is_shifted = drives.into_iter().any(|drive| drive.shift.is_some());
         let key = format!("{path}.zone");
-        let zone = match is_shifted || muscle.repeat.is_some() {
+        // A stage with a mistake may move it.
+        let may_move = is_shifted || muscle.repeat.is_some() || !problems.are_sound(&["stages"]);
+        let zone = match may_move {
             true => moving_zone(&key, case, muscle.zone, problems),
             false => zone(&key, case, muscle.zone, length, problems),
         };

@@ -187,11 +187,13 @@ fn check_run_off(case: &Case, tube: &Tube, m: usize, stages: &[Stage], problems:
         }
         for load in stage.loads() {
             let shift = load.shifts[m];
-            let leaves = match shift > 0.0 {
-                true => tube.length - from,
-                false => -to,
+            let leaves = if shift > 0.0 { tube.length - from } else { -to };
+            let beyond = if shift > 0.0 {
+                shift - leaves
+            } else {
+                leaves - shift
             };
-            if (shift - leaves) * shift.signum() > (to - from) + ROUNDING {
+            if shift != 0.0 && beyond > to - from + ROUNDING {
                 let rule = format!("the zone has left the tube at {}", length(case, leaves));
                 let help = "let it go on by its own length at most, or set `repeat` in the muscle";
                 problems.value(&key, rule, help);
