@@ -28,7 +28,7 @@ pub struct Column {
 }
 
 /// The columns that come first, in this order: name, words, use.
-const FIRST: [(&str, &str, Role); 21] = [
+const FIRST: [(&str, &str, Role); 22] = [
     ("length_ratio", "*L*_{max}/*L*", Role::Load),
     ("diameter_ratio", "*D*_{min}/*D*", Role::Load),
     ("energy", "strain energy *W*", Role::Table),
@@ -62,6 +62,7 @@ const FIRST: [(&str, &str, Role); 21] = [
     ),
     ("lumen", "smallest width of the lumen", Role::Table),
     ("lumen_volume", "volume of the lumen", Role::Other),
+    ("lumen_pressure", "pressure in the lumen", Role::Other),
     (
         "lumen_area_min",
         "smallest cross-section of the lumen",
@@ -85,9 +86,23 @@ const LOADS: [(&str, &str); 4] = [
 ];
 
 /// Columns of muscles and ends: prefix of the name, words before the name, words after it, use.
-const NAMED: [(&str, &str, &str, Role); 10] = [
+const NAMED: [(&str, &str, &str, Role); 14] = [
     ("displacement_", "displacement of the ", " end", Role::Load),
     ("twist_deg_", "twist of the ", " end", Role::Load),
+    (
+        "shift_x_",
+        "displacement along x of the ",
+        " end",
+        Role::Load,
+    ),
+    (
+        "shift_y_",
+        "displacement along y of the ",
+        " end",
+        Role::Load,
+    ),
+    ("tilt_x_deg_", "tilt about x of the ", " end", Role::Load),
+    ("tilt_y_deg_", "tilt about y of the ", " end", Role::Load),
     ("target_", "target of the muscle ", "", Role::Other),
     (
         "stretch_",

@@ -48,7 +48,7 @@ pub use patch_row::PatchRow;
 pub use plan::{LengthUnit, MaterialFile, ModeShape, Output, Plan, Start, StressUnit, Units};
 pub use row::{EndRow, MuscleRow, Row, SidewaysRow};
 pub use stage::Stage;
-pub use start::inverted_by_imperfections;
+pub use start::{inverted_by_imperfections, lumen_volume_at_rest};
 pub use state::{MuscleState, ObstacleState, PatchState, State};
 pub use table::{Cell, Quantity, RowReader};
 pub use units::Scale;

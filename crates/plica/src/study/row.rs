@@ -154,6 +154,16 @@ pub struct SidewaysRow {
     pub tilt_deg: [f64; 2],
 }
 
+impl SidewaysRow {
+    /// Returns number k of the shift along x and y and the tilt about x and y.
+    fn number(&mut self, k: usize) -> &mut f64 {
+        match k {
+            0 | 1 => &mut self.shift[k],
+            _ => &mut self.tilt_deg[k - 2],
+        }
+    }
+}
+
 impl Row {
     /// Converts a state to the units of its case; totals continue those of the row of the previous state. The columns of
     /// pressures are written only if the case has pressures.
@@ -499,22 +509,21 @@ impl Row {
                 v.cell(&name, of, field(end));
             }
         }
-        for end in &mut self.ends {
-            let SidewaysRow { shift, tilt_deg } = end.sideways.clone().unwrap_or_default();
-            let [mut x, mut y, mut about_x, mut about_y] =
-                [shift[0], shift[1], tilt_deg[0], tilt_deg[1]]
-                    .map(|value| end.sideways.as_ref().map(|_| value));
-            for (name, of, value) in [
-                ("shift_x", Length, &mut x),
-                ("shift_y", Length, &mut y),
-                ("tilt_x_deg", Degrees, &mut about_x),
-                ("tilt_y_deg", Degrees, &mut about_y),
-            ] {
-                v.optional(&format!("{name}_{}", end.name), of, value);
-            }
-            if let (Some(x), Some(y), Some(a), Some(b)) = (x, y, about_x, about_y) {
-                let (shift, tilt_deg) = ([x, y], [a, b]);
-                end.sideways = Some(SidewaysRow { shift, tilt_deg });
+        for (k, (quantity, of)) in [
+            ("shift_x", Length),
+            ("shift_y", Length),
+            ("tilt_x_deg", Degrees),
+            ("tilt_y_deg", Degrees),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            for end in &mut self.ends {
+                let mut value = end.sideways.as_mut().map(|row| *row.number(k));
+                v.optional(&format!("{quantity}_{}", end.name), of, &mut value);
+                if let Some(value) = value {
+                    *end.sideways.get_or_insert_default().number(k) = value;
+                }
             }
         }
         v.optional("inner_pressure", Stress, &mut self.inner_pressure);

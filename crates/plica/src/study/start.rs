@@ -74,6 +74,11 @@ pub fn inverted_by_imperfections(tube: &Tube, mesh: &Mesh, symmetry: Symmetry) -
     perfect.check_imperfections(&tube.imperfections).err()
 }
 
+/// Returns the volume of the lumen of a tube at rest, in D³.
+pub fn lumen_volume_at_rest(tube: &Tube, mesh: &Mesh, symmetry: Symmetry) -> f64 {
+    SplineTube::new(tube, mesh, mesh.rings(symmetry)).lumen_volume_at_rest()
+}
+
 /// Returns a tube without its imperfections.
 fn perfect(tube: &Tube) -> Tube {
     Tube {

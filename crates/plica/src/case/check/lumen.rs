@@ -3,8 +3,7 @@
 use super::super::keys::{Case, Drive, Scheme};
 use super::super::problem::Problems;
 use super::muscles::ENDS;
-use crate::assembly::SplineTube;
-use crate::study::Stage;
+use crate::study::{Stage, lumen_volume_at_rest};
 use crate::tube::{Mesh, Part, Support, Symmetry, Tube};
 use std::f64::consts::PI;
 
@@ -42,8 +41,7 @@ pub(super) fn volume_at_rest(
         "layers",
     ]);
     if given && varies && sound {
-        let rings = mesh.rings(symmetry);
-        return SplineTube::new(tube, mesh, rings).lumen_volume_at_rest();
+        return lumen_volume_at_rest(tube, mesh, symmetry);
     }
     PI * tube.inner_radius().powi(2) * tube.length
 }
