@@ -56,18 +56,18 @@ fn the_energy_balance_closes_with_a_patch_that_grows_on_a_foundation() {
 }
 
 /// A tube with a patch and a muscle in sectors, and a mesentery.
-fn sectors(symmetry: &str, repeat: usize, steps: usize) -> String {
+fn sectors(symmetry: &str, repeat: usize) -> String {
     let sector =
         |width: usize| format!("sector = {{ width_degrees = {width}, repeat = {repeat} }}");
     format!(
         "symmetry = {symmetry}\n\
          tube = {{ length = 1.5, thickness = 0.1 }}\n\
-         mesh = {{ control_points = {{ axial = 9, around = 12, thickness = 4 }}, refine = [] }}\n\
-         solver.tolerance = 1e-9\n\
+         mesh = {{ control_points = {{ axial = 8, around = 12, thickness = 4 }}, refine = [] }}\n\
+         output.stability_modes = 0\n\
          [muscles.ring]\ndirection = 'circular'\nzone = [0.3, 1.2]\n{}\n\
-         [[patches]]\nname = 'scar'\nzone = [0.2, 1.0]\nstiffness = 3.0\n{}\n\
+         [[patches]]\nname = 'scar'\nzone = [0.2, 1.0]\nstiffness = 2.0\n{}\n\
          [[foundations]]\nstiffness = 0.1\ndirection = 'normal'\n{}\n\
-         [[stages]]\nsteps = {steps}\ndrive.scar.growth_through = 1.3\ndrive.ring.diameter_ratio = 0.8\n",
+         [[stages]]\nsteps = 1\ndrive.scar.growth_through = 1.05\ndrive.ring.diameter_ratio = 0.9\n",
         sector(90),
         sector(60),
         sector(50),
@@ -77,7 +77,7 @@ fn sectors(symmetry: &str, repeat: usize, steps: usize) -> String {
 #[test]
 fn a_fold_has_the_path_of_the_whole_tube() {
     let [whole, fold] = [("'none'", 2), ("{ fold = 2 }", 1)]
-        .map(|(symmetry, repeat)| states(&sectors(symmetry, repeat, 2)).pop().unwrap());
+        .map(|(symmetry, repeat)| states(&sectors(symmetry, repeat)).pop().unwrap());
     for state in [&whole, &fold] {
         assert!(state.relative_residual < 1e-8 && state.measures.asymmetry.amplitude > 1e-3);
     }
@@ -94,10 +94,10 @@ fn a_fold_has_the_path_of_the_whole_tube() {
 fn the_sides_of_a_tube_whose_muscle_has_a_sector_differ() {
     let text = "symmetry = 'none'\n\
         tube = { length = 1.5, thickness = 0.1 }\n\
-        mesh = { control_points = { axial = 9, around = 12, thickness = 4 }, refine = [] }\n\
+        mesh = { control_points = { axial = 8, around = 12, thickness = 4 }, refine = [] }\n\
         [muscles.ring]\ndirection = 'circular'\nzone = [0.3, 1.2]\n\
         sector = { centre_degrees = 90, width_degrees = 180 }\n\
-        [[stages]]\nsteps = 2\ndrive.ring.diameter_ratio = 0.7\n";
+        [output]\nstability_modes = 0\n[[stages]]\nsteps = 1\ndrive.ring.diameter_ratio = 0.8\n";
     let state = states(text).pop().unwrap();
     assert!(state.relative_residual < 1e-7);
     let plan = case::read(text, "sector").unwrap();
@@ -111,7 +111,7 @@ fn the_sides_of_a_tube_whose_muscle_has_a_sector_differ() {
         study.tube().sample(&state.load, &state.unknowns, point)
     };
     let [active, passive, left, right] = [90.0, 270.0, 0.0, 180.0].map(at);
-    assert!((active.grown[1] - 0.7).abs() < 1e-12 && passive.grown[1] == 1.0);
+    assert!((active.grown[1] - 0.8).abs() < 1e-12 && passive.grown[1] == 1.0);
     // The mirror images of the two sides.
     let [a, b] = [left, right].map(|side| side.position);
     assert!((a[0] - b[0]).abs() < 1e-7 && (a[1] + b[1]).abs() < 1e-7 && (a[2] - b[2]).abs() < 1e-7);
