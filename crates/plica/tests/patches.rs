@@ -124,3 +124,53 @@ fn the_sides_of_a_tube_whose_muscle_has_a_sector_differ() {
         "{active:?}"
     );
 }
+
+/// Returns the last row of a case of the workspace on a small mesh, with some of its values changed.
+fn small(text: &str, changes: &[(&str, &str)]) -> Row {
+    let points = "{ axial = 16, around = 12, thickness = 4 }";
+    let all = [
+        ("mesh.control_points", points),
+        ("output.stability_modes", "0"),
+    ];
+    let changes: Vec<(&str, &str)> = all.iter().chain(changes).copied().collect();
+    rows(&case::edited(text, &changes).unwrap()).pop().unwrap()
+}
+
+#[test]
+fn cases_with_sectors_lean_to_the_side_that_their_comments_name() {
+    let contract = [
+        ("stages[1].steps", "1"),
+        ("stages[1].drive.circular.diameter_ratio", "0.8"),
+    ];
+    let half = small(
+        include_str!("../../../cases/half-circumference.toml"),
+        &contract,
+    );
+    assert!(half.residual < 1e-6 && half.asymmetry > 0.02, "{half:?}");
+    assert_eq!(half.asymmetry_mode, 1);
+    assert!(
+        (half.asymmetry_angle_deg.abs() - 180.0).abs() < 1e-3,
+        "{half:?}"
+    );
+
+    let hung = small(include_str!("../../../cases/mesentery.toml"), &contract);
+    assert!(hung.residual < 1e-6 && hung.asymmetry > 0.02, "{hung:?}");
+    let springs = hung.foundation_energy.unwrap();
+    assert!(
+        springs > 0.1 * hung.energy && springs < hung.energy,
+        "{hung:?}"
+    );
+
+    let grow = [
+        ("stages[1].steps", "1"),
+        ("stages[1].drive.polyp.growth_through", "1.2"),
+        ("stages[2].steps", "1"),
+        ("stages[2].drive.circular.diameter_ratio", "0.95"),
+    ];
+    let polyp = small(include_str!("../../../cases/lead-point.toml"), &grow);
+    assert!(polyp.residual < 1e-6 && polyp.patches[0].growth_through == 1.2);
+    assert!(
+        polyp.patches[0].work > 0.0 && polyp.lumen < 0.87,
+        "{polyp:?}"
+    );
+}

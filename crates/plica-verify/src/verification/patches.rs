@@ -48,7 +48,7 @@ pub fn growth(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
         ))?;
         let expected = [expected.radii[0], expected.radii[2]];
         let ring = (&problem, &state);
-        radii(recorder, 1e-6, ring, &wall, (expected, ONE));
+        radii(recorder, 1e-8, ring, &wall, (expected, ONE));
     }
     Ok(())
 }
@@ -83,7 +83,7 @@ pub fn foundation(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> 
         recorder.case(format!("ring on {name}, k = {k}, ℓ = {stretch}, p = {p}"))?;
         let expected = [expected.radii[0], expected.radii[1]];
         let ring = (&problem, &state);
-        radii(recorder, 1e-5, ring, &wall, (expected, ONE));
+        radii(recorder, 1e-8, ring, &wall, (expected, ONE));
     }
     // EA u″ = k P u with u(0) = 0 and u(L) = δ: the energy is ½ δ² √(EA k P) coth λL, P the circumference.
     let (length, thickness, k, pull) = (2.0, 0.02, 0.02, 1e-4);

@@ -34,6 +34,11 @@ pub(super) const OF_CONTACT: &[Field] = &[field("contact_pressure", &[], |points
     scalar(points, |point| stress * point.contact_pressure)
 })];
 
+/// The fields of runs with patches.
+pub(super) const OF_PATCHES: &[Field] = &[field("theta_xi", &[], |points, _| {
+    scalar(points, |point| point.grown_through)
+})];
+
 /// The fields of all runs.
 pub(super) const FIELDS: &[Field] = &[
     field("displacement", XYZ, |points, scale| {

@@ -9,6 +9,7 @@
 //! | `displacement` | position relative to the stress-free tube without imperfections |
 //! | `det_Fe` | elastic volume ratio |
 //! | `theta_zeta`, `theta_eta` | longitudinal and circumferential growth stretch |
+//! | `theta_xi` | growth stretch through the wall, in runs with patches |
 //! | `strain_energy_density` | w, per volume after growth |
 //! | `cauchy_stress` | σ in (x, y, z): xx, yy, zz, xy, yz, xz |
 //! | `axial_stress`, `radial_stress`, `hoop_stress` | normal components of σ along the meridian, through the wall and along the circle of the deformed wall |
@@ -24,7 +25,7 @@ mod points;
 
 use crate::sampled_tube::SampledTube;
 use crate::vtk::{Column, Document, Series};
-use fields::{FIELDS, OF_CONTACT};
+use fields::{FIELDS, OF_CONTACT, OF_PATCHES};
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row, Scale};
 use points::{Points, boundary_lattice, meridian_lattice, volume_lattice};
@@ -33,6 +34,7 @@ use points::{Points, boundary_lattice, meridian_lattice, volume_lattice};
 pub struct Exporter {
     tube: SampledTube,
     scale: Scale,
+    has_patches: bool,
 }
 
 /// Geometry written to a VTK file.
@@ -86,14 +88,16 @@ impl Exporter {
         Self {
             tube: SampledTube::of(plan),
             scale: Scale::of(plan.units.as_ref()),
+            has_patches: !plan.tube.patches.is_empty(),
         }
     }
 
-    /// Returns the fields, those of contact only if the run has it.
+    /// Returns the fields, those of contact and patches only if the run has them.
     fn fields(&self) -> impl Iterator<Item = &'static fields::Field> {
         let contact = self.tube.has_contact();
         let of_contact: &[fields::Field] = if contact { OF_CONTACT } else { &[] };
-        FIELDS.iter().chain(of_contact)
+        let of_patches: &[fields::Field] = if self.has_patches { OF_PATCHES } else { &[] };
+        FIELDS.iter().chain(of_contact).chain(of_patches)
     }
 
     /// Returns the bytes of the file of a state.
