@@ -63,6 +63,44 @@ fn a_train_of_waves_is_the_same_after_a_period() {
     assert!((energies[4] / energies[2] - 1.0).abs() > 1e-3);
 }
 
+#[test]
+fn the_wave_of_the_oesophagus_keeps_its_shape_and_leaves_the_tube_at_rest() {
+    let text = include_str!("../../../cases/oesophagus.toml");
+    let mut plan = plica::case::read(text, "oesophagus").unwrap();
+    (plan.mesh.axial, plan.mesh.thickness) = (60, 4);
+    (plan.contact, plan.output.stability_modes) = (false, 0);
+    plan.stages[1].steps = 20;
+    let states = states(&plan);
+    let energy = |shift: f64| {
+        let shift = shift / 20.0;
+        let at = |state: &&State| (state.muscles[1].shift.unwrap() - shift).abs() < 1e-9;
+        states.iter().rev().find(at).unwrap().energy
+    };
+    for shift in [64.0, 72.0, 80.0, 88.0, 96.0] {
+        assert_close(energy(shift), energy(80.0), 1e-3);
+    }
+    let last = states.last().unwrap();
+    assert!(last.energy.abs() < 1e-12 && last.time == Some(9.0));
+}
+
+#[test]
+fn a_lag_to_either_side_gives_mirror_images() {
+    let text = include_str!("../../../cases/phase-lag.toml");
+    let mut plan = plica::case::read(text, "phase-lag").unwrap();
+    (plan.mesh.axial, plan.mesh.thickness) = (90, 4);
+    (plan.contact, plan.output.stability_modes) = (false, 0);
+    plan.stages[2].steps = 16;
+    let states = states(&plan);
+    let overhang = |lag: usize| states[20 + lag].measures.overhang;
+    let side = |lag: usize| states[20 + lag].measures.side;
+    assert_eq!(overhang(8), 0.0);
+    for lag in [2, 4, 6] {
+        assert_close(overhang(8 + lag), overhang(8 - lag), 1e-4);
+        assert!(overhang(8 - lag) > 1e-3 && side(8 - lag) != side(8 + lag));
+    }
+    assert!(overhang(6) > 2.0 * overhang(4));
+}
+
 /// A wave that rises and falls while it travels.
 fn wave() -> Plan {
     plan(

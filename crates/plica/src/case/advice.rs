@@ -18,13 +18,14 @@ pub fn advice(plan: &Plan) -> Vec<String> {
     let mut advice = Vec::new();
     let (tube, mesh) = (&plan.tube, &plan.mesh);
     let breakpoints = mesh.breakpoints_along(tube.length);
-    for muscle in &tube.muscles {
+    for (m, muscle) in tube.muscles.iter().enumerate() {
         let [from, to] = muscle.zone;
+        let stays = muscle.repeat.is_none() && !plan.shifts_muscle(m);
         let middle = |w: &[f64]| 0.5 * (w[0] + w[1]);
         let inside = |w: &&[f64]| from < middle(w) && middle(w) < to;
         let across = breakpoints.windows(2).filter(inside).count();
         let name = &muscle.name;
-        if across < FINE {
+        if stays && across < FINE {
             advice.push(format!(
                 "the zone of muscles.{name} is only {across} elements long; a fold needs {FINE} or more"
             ));
