@@ -28,6 +28,7 @@ fn wall() -> LayeredWall {
 fn states(
     model: &TubeModel,
     rings: usize,
+    volumes: &[f64],
 ) -> Result<(TubeProblem, Vec<State<Load>>), VerificationError> {
     let problem = model.problem(rings).with_driven_lumen();
     let (rest, u) = (model.tube.rest(), vec![0.0; problem.tube.unknowns()]);
@@ -36,7 +37,7 @@ fn states(
     path.begin_segment(rest.clone());
     path.advance(1.0, &mut ())?;
     let mut found = vec![];
-    for volume in VOLUMES {
+    for &volume in volumes {
         path.begin_segment(Load {
             lumen_volume: Some(volume),
             ..rest.clone()
@@ -60,7 +61,7 @@ fn negative(problem: &TubeProblem, load: &Load, u: &[f64]) -> f64 {
 /// Records pressures and stability of a ring at driven volumes.
 pub fn ring(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     let wall = wall();
-    let (problem, states) = states(&model(&wall, &[8]), 1)?;
+    let (problem, states) = states(&model(&wall, &[8]), 1, &VOLUMES)?;
     let inner = problem.tube.tube.inner_radius();
     let one = |volume: f64| wall.pressure_at(inner * volume.sqrt());
     for (i, (state, volume)) in states.iter().zip(VOLUMES).enumerate() {
@@ -90,14 +91,16 @@ pub fn symmetries(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> 
     let wall = wall();
     let mut model = model(&wall, &[3]);
     model.elements[1] = 24;
+    // At the last one the tube has left the axisymmetric states, if it can: its softening side widens alone.
+    let volumes = &VOLUMES[..3];
     let pressures = |rings: usize| -> Result<Vec<f64>, VerificationError> {
-        let (_, states) = states(&model, rings)?;
+        let (_, states) = states(&model, rings, volumes)?;
         let pressure = |state: &State<Load>| state.load.pressures[0].follower;
         Ok(states.iter().map(pressure).collect())
     };
     let one = pressures(1)?;
     for rings in [6, 24] {
-        for ((p, expected), volume) in pressures(rings)?.into_iter().zip(&one).zip(VOLUMES) {
+        for ((p, expected), volume) in pressures(rings)?.into_iter().zip(&one).zip(volumes) {
             recorder.case(format!(
                 "active tube of {rings} rings, V = {volume} of that at rest"
             ))?;
