@@ -100,6 +100,8 @@ impl Libraries<'_> {
         let factor = match (row.stress, unit) {
             (None, _) => 1.0,
             (Some(from), Some(to)) => 10_f64.powi(from.power() - to.power()),
+            // The mistake is in the units.
+            (Some(_), None) if !problems.are_sound(&["units"]) => return None,
             (Some(from), None) => {
                 let rule = format!("its stresses are in {from}, and the case has no units");
                 let help = format!("write units = {{ length = \"mm\", stress = \"{from}\" }}");

@@ -403,7 +403,7 @@ fn only_targets_of_the_driven_thing_are_offered() {
         ),
         (
             "drive.colon.diameter_rat = 0.5",
-            "an end of the tube has displacement and twist_degrees and offset and tilt_degrees",
+            "an end of the tube has displacement, twist_degrees, offset, and tilt_degrees",
         ),
         (
             "drive.colon.displacment = 0.5",
