@@ -46,18 +46,14 @@ fn relation(tone: &keys::Tone, path: &str, problems: &mut Problems) -> Option<Le
         ("width", tone.width.is_some()),
         ("table", tone.table.is_some()),
     ];
-    let given: Vec<&str> = given.iter().filter(|key| key.1).map(|key| key.0).collect();
-    if !problems.are_sound(
-        &given
-            .iter()
-            .map(|name| key(name))
-            .collect::<Vec<_>>()
-            .iter()
-            .map(String::as_str)
-            .collect::<Vec<_>>(),
-    ) {
+    // A key that cannot be read is not as if it were left out.
+    if given
+        .iter()
+        .any(|(name, _)| !problems.are_sound(&[&key(name)]))
+    {
         return None;
     }
+    let given: Vec<&str> = given.iter().filter(|key| key.1).map(|key| key.0).collect();
     match (
         tone.best_stretch,
         tone.least_stretch,
