@@ -145,7 +145,8 @@ fn ends_that_move_together_carry_the_tube_along_without_stress() {
 
 #[test]
 fn opposite_tilts_bend_the_tube_with_the_moment_of_a_beam() {
-    let (length, angle) = (6.0, 0.2_f64);
+    // Small, as the ends do not approach each other, and a bent tube is longer than its chord.
+    let (length, angle) = (6.0, 0.04_f64);
     let half = 0.5 * angle;
     let text = whole(
         length,

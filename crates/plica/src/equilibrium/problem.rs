@@ -119,6 +119,16 @@ impl TubeProblem {
         self.lumen.as_ref().map(DrivenLumen::at_rest)
     }
 
+    /// Returns the smallest residual scale under a load: the rounding errors of a tube grow as its ends leave their axis.
+    fn smallest_scale(&self, load: &Load) -> f64 {
+        let numbers = load
+            .ends
+            .iter()
+            .flat_map(|end| end.shift.iter().chain(&end.tilt));
+        let away = numbers.fold(0.0_f64, |most, x| most.max(x.abs()));
+        self.at_rest * (1.0 + 100.0 * away)
+    }
+
     fn meridian_contact(&self) -> Option<&MeridianContact> {
         match self.contact.as_deref() {
             Some(SelfContact::Meridian(contact)) => Some(contact),
@@ -284,7 +294,7 @@ impl Equilibrium for TubeProblem {
         Ok(ResidualEvaluation {
             energy,
             residual: forces.residual,
-            residual_scale: forces.residual_scale.max(self.at_rest),
+            residual_scale: forces.residual_scale.max(self.smallest_scale(load)),
             // Every quadrature point adds a rounding error of its energy density.
             rounding: 4.0 * f64::EPSILON * self.volume + 1e-13 * strain.abs().max(energy.abs()),
         })
