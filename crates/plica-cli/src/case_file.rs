@@ -75,21 +75,8 @@ impl<'a> Folders<'a> {
                 use --within DIR to allow another folder";
             return Err(Error::new(ErrorKind::PermissionDenied, why).into());
         }
-        read_input(wanted, &file)
+        Input::read(wanted, &file)
     }
-}
-
-/// Reads a file of the kind that a case names.
-fn read_input(wanted: InputFile<'_>, file: &Path) -> Result<Input, SavedStateError> {
-    if !matches!(wanted, InputFile::Materials(..)) {
-        return SavedState::read(file).map(Into::into);
-    }
-    let about = std::fs::metadata(file)?;
-    if !about.is_file() || about.len() > LARGEST {
-        let why = "not a plain file of at most a megabyte";
-        return Err(Error::new(ErrorKind::InvalidInput, why).into());
-    }
-    Ok(Input::Text(std::fs::read_to_string(file)?))
 }
 
 /// Reads a case file with keys changed; `open` reads the files that it names.
@@ -221,7 +208,7 @@ fn kept(directory: &RunDirectory, wanted: InputFile<'_>) -> Result<Input, SavedS
         InputFile::Mode(number, _) => directory.imperfection(number),
         InputFile::Materials(number, _) => directory.materials(number),
     };
-    read_input(wanted, &path)
+    Input::read(wanted, &path)
 }
 
 /// Returns the name of a case: that of its file, without the extension.

@@ -35,7 +35,7 @@ pub mod export;
 pub mod law_chart;
 pub mod page;
 pub mod report;
-mod sampled_tube;
+pub mod sampled_tube;
 pub mod vtk;
 
 #[cfg(test)]

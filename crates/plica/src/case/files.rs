@@ -1,6 +1,7 @@
 //! The files that a case names: saved states, modes, and libraries of materials.
 
 use crate::saved_state::{SavedState, SavedStateError};
+use std::path::Path;
 
 /// A file that a case names, with its path as written there: relative to the folder of the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +38,26 @@ impl From<SavedState> for Input {
     }
 }
 
+/// Largest size of a file of text, in bytes.
+const LARGEST: u64 = 1 << 20;
+
 impl Input {
+    /// Reads a file of the kind that a case names.
+    ///
+    /// # Errors
+    /// As [`SavedState::read`]; if a text is not a plain file of at most a megabyte.
+    pub fn read(wanted: InputFile<'_>, file: &Path) -> Result<Self, SavedStateError> {
+        if !matches!(wanted, InputFile::Materials(..)) {
+            return SavedState::read(file).map(Into::into);
+        }
+        let about = std::fs::metadata(file)?;
+        if !about.is_file() || about.len() > LARGEST {
+            let why = "not a plain file of at most a megabyte";
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, why).into());
+        }
+        Ok(Self::Text(std::fs::read_to_string(file)?))
+    }
+
     /// Returns the saved state.
     pub(super) fn state(self) -> Result<SavedState, SavedStateError> {
         match self {
