@@ -1,0 +1,261 @@
+"""Tests of the module by the habits of its users."""
+
+from __future__ import annotations
+
+import io
+import json
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+from contextlib import redirect_stderr
+from pathlib import Path
+
+import numpy as np
+
+import plica
+
+SMALL = dict(
+    title="A ring contracts",
+    tube={"length": 2.0, "thickness": 0.1},
+    muscles={"ring": {"direction": "circular", "zone": [0.5, 1.5]}},
+    mesh={"control_points": {"axial": 24, "around": 12, "thickness": 4}},
+    output={"pictures": False, "stability_modes": 0},
+    stages=[{"name": "contract", "steps": 3, "drive": {"ring": {"stretch": 0.7}}}],
+)
+
+
+def energy_at(stretch: float) -> float:
+    """Return the energy of the small case; a function that processes can import."""
+    return float(plica.evaluate(plica.Case(**SMALL), {"stages[1].drive.ring.stretch": stretch})["energy"])
+
+
+class Cases(unittest.TestCase):
+    def test_keywords_and_text_describe_the_same_case(self) -> None:
+        case = plica.Case(**SMALL)
+        self.assertEqual(plica.Case.parse(case.text), case)
+        self.assertEqual((case.title, len(case)), ("A ring contracts", 4))
+        self.assertEqual(case.unknowns, 24 * 4 * 3)
+        self.assertIn("A ring contracts", repr(case))
+        self.assertIn("<pre>", case._repr_html_())
+
+    def test_all_problems_are_reported_with_their_place(self) -> None:
+        text = "[tube]\nlenght = 2.0\n[mesh]\ndegree = 9\n[[stages]]\ndrive.colon.displacement = 0.1\n"
+        with self.assertRaises(plica.CaseError) as raised:
+            plica.Case.parse(text, "tube")
+        problems = raised.exception.problems
+        self.assertEqual([(p.key, p.line) for p in problems], [("tube.lenght", 2), ("mesh.degree", 4)])
+        self.assertIn("length", str(problems[0].help))
+        self.assertIn("tube, line 4: mesh.degree = 9: must be at most 5", str(raised.exception))
+        copy = pickle.loads(pickle.dumps(raised.exception))
+        self.assertEqual(copy.problems, problems)
+
+    def test_a_changed_case_is_another_one(self) -> None:
+        case = plica.Case(**SMALL)
+        thin = case.with_({"tube.thickness": np.float64(0.05), "stages[1].steps": 2})
+        self.assertEqual((len(thin), len(case)), (3, 4))
+        with self.assertRaises(plica.CaseError):
+            case.with_({"tube.thickness": 0.7})
+        with self.assertRaises(ValueError):
+            case.with_({"title.x": 1})
+        with self.assertRaises(TypeError):
+            case.with_({"title": object()})
+        with self.assertRaises(AttributeError):
+            case.text = ""  # type: ignore[misc]
+        self.assertEqual(pickle.loads(pickle.dumps(thin)), thin)
+        self.assertEqual(len({case, thin, plica.Case(**SMALL)}), 2)
+
+    def test_the_starter_is_the_tube_that_invaginates(self) -> None:
+        self.assertIn("nvaginat", plica.Case.starter().title)
+
+
+class States(unittest.TestCase):
+    def test_states_are_streamed_with_numbers_and_unknowns(self) -> None:
+        seen: list[tuple[str, float]] = []
+        states = list(plica.Case(**SMALL).states(threads=1, progress=lambda *report: seen.append(report)))
+        self.assertEqual([state["step"] for state in states], [0, 1, 2, 3])
+        self.assertEqual((states[0]["stage"], states[0]["shape"]), ("rest", "straight"))
+        self.assertAlmostEqual(states[3].target_ring, 0.7)
+        self.assertGreater(states[3].energy, states[1].energy)
+        self.assertEqual(states[3].unknowns.shape, (24, 4, 3, 1))
+        self.assertFalse(states[3].unknowns.flags.writeable)
+        self.assertTrue(all(0.0 <= fraction <= 1.0 for _, fraction in seen))
+        self.assertEqual(states[3].units["energy"], "E D^3")
+        with self.assertRaises(KeyError):
+            states[0]["nothing"]
+        with self.assertRaises(AttributeError):
+            states[0].nothing
+
+    def test_fields_and_walls_have_the_shape_of_the_points(self) -> None:
+        *_, last = plica.Case(**SMALL).states()
+        z = np.linspace(0.0, 2.0, 41)
+        found = last.fields(["hoop_stress", "cauchy_stress", "position"], z[:, None], [0.4, 0.5])
+        self.assertEqual([found[n].shape for n in found], [(41, 2), (41, 2, 3, 3), (41, 2, 3)])
+        np.testing.assert_allclose(found["cauchy_stress"], found["cauchy_stress"].swapaxes(2, 3), atol=1e-12)
+        # At the middle of a symmetric tube the wall is normal to the radius: hoop stress is the last component.
+        np.testing.assert_allclose(found["hoop_stress"][20], found["cauchy_stress"][20, :, 2, 2], rtol=1e-9)
+        axis, radius = last.wall("outer", 41)
+        self.assertAlmostEqual(radius.min(), last.outer_radius_min, places=6)
+        np.testing.assert_allclose(axis, found["position"][:, 1, 2], atol=1e-12)
+        x, y, _ = last.surface("inner", (5, 9))
+        np.testing.assert_allclose(np.hypot(x, y), np.hypot(x, y)[:, :1].repeat(9, 1), atol=1e-12)
+        for wrong in (lambda: last.fields("colour", 0.0, 0.5), lambda: last.wall("middle")):
+            with self.assertRaises(ValueError):
+                wrong()
+
+    def test_units_are_those_of_the_case(self) -> None:
+        case = plica.Case(**SMALL).with_({"units": {"length": "mm", "stress": "kPa"}, "tube.diameter": 10.0, "tube.length": 20.0,
+                                         "tube.thickness": 1.0, "muscles.ring.zone": [5.0, 15.0]})
+        *_, last = case.states()
+        *_, plain = plica.Case(**SMALL).states()
+        self.assertEqual(last.units["outer_radius_min"], "mm")
+        self.assertAlmostEqual(last.outer_radius_min, 10.0 * plain.outer_radius_min, places=9)
+        self.assertEqual(last.field_units["hoop_stress"], "kPa")
+
+    def test_a_function_chooses_the_next_targets(self) -> None:
+        def choose(state: plica.State) -> dict[str, float] | None:
+            return {"ring.stretch": state["target_ring"] - 0.05} if state["outer_radius_min"] > 0.4 else None
+
+        states = list(plica.Case(**SMALL).follow(choose))
+        self.assertLessEqual(states[-1]["outer_radius_min"], 0.4)
+        self.assertGreater(states[-2]["outer_radius_min"], 0.4)
+        self.assertEqual([s["step"] for s in states], list(range(len(states))))
+
+    def test_an_optimiser_finds_a_radius(self) -> None:
+        low, high = 0.5, 1.0
+        case = plica.Case(**SMALL)
+        for _ in range(12):
+            middle = 0.5 * (low + high)
+            radius = plica.evaluate(case, {"stages[1].drive.ring.stretch": middle})["outer_radius_min"]
+            low, high = (middle, high) if radius < 0.4 else (low, middle)
+        self.assertAlmostEqual(plica.evaluate(case, {"stages[1].drive.ring.stretch": low})["outer_radius_min"], 0.4, places=3)
+
+
+class Runs(unittest.TestCase):
+    def setUp(self) -> None:
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = Path(self.folder.name) / "run"
+
+    def test_a_run_is_written_and_opened(self) -> None:
+        case = plica.Case(**SMALL)
+        run = case.run(self.path, progress=False)
+        self.assertEqual((run.verdict, len(run), run.title), ("complete", 4, "A ring contracts"))
+        streamed = [state.energy for state in case.states()]
+        np.testing.assert_array_equal(run["energy"], streamed)
+        self.assertEqual([state.energy for state in run], streamed)
+        self.assertEqual(run[-1].unknowns.shape, (24, 4, 3, 1))
+        self.assertEqual(run.case.text, case.text)
+        self.assertIn("stages", run.findings)
+        self.assertIn("stage contract", run.table)
+        self.assertEqual(run["stage"], ["rest"] + 3 * ["contract"])
+        with self.assertRaises(RuntimeError):
+            case.run(self.path, progress=False)
+        longer = case.with_({"stages[1].steps": 3}).text + "\n[[stages]]\nsteps = 1\ndrive.ring.stretch = 0.6\n"
+        more = plica.Case.parse(longer).run(self.path, resume=True, progress=False)
+        self.assertEqual(len(more), 5)
+        with self.assertRaises(ValueError):
+            case.with_({"tube.thickness": 0.2}).run(self.path, resume=True, progress=False)
+        with self.assertRaises(OSError):
+            plica.Run(self.path / "nothing")
+
+    def test_a_history_is_a_data_frame(self) -> None:
+        import pandas
+
+        frame = plica.Case(**SMALL).run(self.path, progress=False).history
+        self.assertIsInstance(frame, pandas.DataFrame)
+        self.assertEqual(list(frame.step), [0, 1, 2, 3])
+        self.assertEqual(frame.attrs["units"]["energy"], "E D^3")
+
+    def test_plots_use_axes_of_the_user(self) -> None:
+        import matplotlib
+
+        matplotlib.use("agg")
+        import matplotlib.pyplot as pyplot
+
+        run = plica.Case(**SMALL).run(self.path, progress=False)
+        figure, axes = pyplot.subplots(1, 2)
+        self.assertIs(run.plot.energy(axes[0]), axes[0])
+        self.assertEqual(len(run.plot.walls((0, -1), axes[1]).lines), 8)
+        pyplot.close(figure)
+
+    def test_ctrl_c_stops_cleanly_and_the_run_goes_on(self) -> None:
+        fine = plica.Case(**SMALL).with_({"stages[1].steps": 400})
+        script = f"import plica; plica.Case.load({str(self.path) + '.toml'!r}).run({str(self.path)!r}, progress=False)"
+        Path(f"{self.path}.toml").write_text(fine.text, encoding="utf-8")
+        process = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.PIPE, text=True)
+        history = self.path / "history.csv"
+        while not (history.exists() and history.read_text().count("\n") > 3) and process.poll() is None:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        self.assertIn("KeyboardInterrupt", errors)
+        stopped = plica.Run(self.path)
+        self.assertEqual(stopped.verdict, "stopped")
+        self.assertLess(len(stopped["step"]), 401)
+
+    def test_a_thread_of_python_goes_on_while_the_tube_is_followed(self) -> None:
+        ticks = []
+        done = threading.Event()
+
+        def tick() -> None:
+            while not done.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        list(plica.Case(**SMALL).with_({"stages[1].steps": 20}).states(threads=1))
+        done.set()
+        thread.join()
+        self.assertGreater(len(ticks), 20)
+
+
+class Processes(unittest.TestCase):
+    @unittest.skipUnless(hasattr(os, "fork"), "needs fork")
+    def test_a_forked_process_computes(self) -> None:
+        here = energy_at(0.8)  # uses threads before the fork
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            self.assertEqual(pool.map(energy_at, [0.8, 0.9])[0], here)
+
+    def test_many_studies_leave_no_memory_behind(self) -> None:
+        import resource
+
+        case = plica.Case(**SMALL)
+        for _ in range(5):
+            list(case.states(threads=1))
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        for _ in range(60):
+            list(case.states(threads=1))
+        grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+        self.assertLess(grown, 8000, "kilobytes")
+
+    def test_nothing_is_printed(self) -> None:
+        with redirect_stderr(io.StringIO()) as errors:
+            list(plica.Case(**SMALL).states(progress=True))
+        self.assertEqual(errors.getvalue(), "")
+
+    def test_the_examples_of_the_guide_run(self) -> None:
+        import matplotlib
+
+        matplotlib.use("agg")
+        guide = Path(__file__).parents[3] / "docs" / "python.md"
+        blocks = guide.read_text(encoding="utf-8").split("```python\n")[1:]
+        code = "\n".join(block.split("```")[0] for block in blocks)
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, "-"], input=code, cwd=folder, check=True, text=True, stdout=subprocess.DEVNULL)
+
+    def test_the_program_is_installed_with_the_module(self) -> None:
+        program = Path(sys.executable).parent / "plica"
+        schema = subprocess.run([program, "schema"], check=True, capture_output=True, text=True)
+        self.assertIn("stages", json.loads(schema.stdout)["properties"])
+
+
+if __name__ == "__main__":
+    unittest.main()
