@@ -35,7 +35,7 @@ impl TubeProblem {
             smooth
         };
         let seeds: Vec<Vec<f64>> = (0..block).map(|_| seed()).collect();
-        Some(lowest(&system, &seeds, search, monitor))
+        Some(lowest(&*system, &seeds, search, monitor))
     }
 }
 

@@ -57,7 +57,7 @@ pub enum TubeSolver {
     /// One ring.
     Direct(CoupledFactor),
     /// Several rings.
-    Harmonic(HarmonicSystem),
+    Harmonic(Box<HarmonicSystem>),
 }
 
 impl TubeProblem {
@@ -396,14 +396,20 @@ impl Tangent for TubeTangent {
     fn shifted(&self, alpha: f64) -> Result<TubeSolver, Singular> {
         match self {
             Self::Direct(tangent) => tangent.shifted(alpha).map(TubeSolver::Direct),
-            Self::Harmonic(tangent) => tangent.shifted(alpha).map(TubeSolver::Harmonic),
+            Self::Harmonic(tangent) => tangent.shifted(alpha).map(TubeSolver::harmonic),
         }
     }
     fn into_shifted(self, alpha: f64) -> Result<TubeSolver, Singular> {
         match self {
             Self::Direct(tangent) => tangent.into_shifted(alpha).map(TubeSolver::Direct),
-            Self::Harmonic(tangent) => tangent.into_shifted(alpha).map(TubeSolver::Harmonic),
+            Self::Harmonic(tangent) => tangent.into_shifted(alpha).map(TubeSolver::harmonic),
         }
+    }
+}
+
+impl TubeSolver {
+    fn harmonic(system: HarmonicSystem) -> Self {
+        Self::Harmonic(Box::new(system))
     }
 }
 
