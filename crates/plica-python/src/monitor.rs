@@ -1,82 +1,90 @@
-//! A monitor that reports progress to Python and notices Ctrl-C.
+//! Computations without the interpreter, which report to Python and end at Ctrl-C.
 
 use plica::monitor::Monitor;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use std::cell::{Cell, RefCell};
 use std::fmt::Display;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Time between two looks at Python's signals, and between two reports.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// Reports to a function of (activity, fraction), and asks Python for signals, without holding the interpreter in between.
-pub struct PythonMonitor {
-    report: Option<Py<PyAny>>,
-    last_look: Cell<Instant>,
+/// Reports to a function of (activity, fraction), and is cancelled by a flag.
+struct PythonMonitor<'a> {
+    report: Option<&'a Py<PyAny>>,
     last_report: Instant,
-    is_cancelled: Cell<bool>,
-    error: RefCell<Option<PyErr>>,
+    is_cancelled: &'a AtomicBool,
+    error: Option<PyErr>,
 }
 
-impl PythonMonitor {
-    /// Makes a monitor that reports to a function, if there is one.
-    pub fn new(report: Option<Py<PyAny>>) -> Self {
-        let now = Instant::now();
-        Self {
-            report,
-            last_look: Cell::new(now),
-            last_report: now,
-            is_cancelled: Cell::new(false),
-            error: RefCell::new(None),
-        }
-    }
-
-    /// Returns the error of a signal handler or of the function, which has cancelled the computation.
-    pub fn into_error(self) -> Option<PyErr> {
-        self.error.into_inner()
-    }
-
-    fn cancel(&self, error: PyErr) {
-        self.is_cancelled.set(true);
-        self.error.borrow_mut().get_or_insert(error);
-    }
-}
-
-impl Monitor for PythonMonitor {
+impl Monitor for PythonMonitor<'_> {
     fn working(&mut self, activity: &dyn Display, fraction: f64) {
-        let Some(report) = &self.report else { return };
-        if self.last_report.elapsed() < INTERVAL || self.is_cancelled.get() {
+        let Some(report) = self.report else { return };
+        if self.last_report.elapsed() < INTERVAL || self.is_cancelled() {
             return;
         }
         self.last_report = Instant::now();
         let text = activity.to_string();
         if let Err(error) = Python::attach(|py| report.call1(py, (text, fraction))) {
-            self.cancel(error);
+            self.is_cancelled.store(true, Ordering::Relaxed);
+            self.error.get_or_insert(error);
         }
     }
 
     fn is_cancelled(&self) -> bool {
-        if !self.is_cancelled.get() && self.last_look.get().elapsed() >= INTERVAL {
-            self.last_look.set(Instant::now());
-            if let Err(error) = Python::attach(|py| py.check_signals()) {
-                self.cancel(error);
-            }
-        }
-        self.is_cancelled.get()
+        self.is_cancelled.load(Ordering::Relaxed)
     }
 }
 
-/// Runs a computation on a number of threads without the interpreter. A pool of its own stays usable after a fork.
-pub fn on_threads<T: Send>(
+/// Computes on a number of threads without the interpreter, and cancels at a signal. A pool of its own stays usable after a
+/// fork.
+///
+/// # Errors
+/// The error of a signal handler, such as KeyboardInterrupt, or of the function that receives reports; if threads cannot be
+/// started.
+pub fn compute<T: Send>(
     py: Python<'_>,
     threads: Option<usize>,
-    compute: impl FnOnce() -> T + Send,
+    report: Option<&Py<PyAny>>,
+    computation: impl FnOnce(&mut dyn Monitor) -> T + Send,
 ) -> PyResult<T> {
     let available = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = threads.unwrap_or(available).clamp(1, available);
+    let failed = |why: &dyn Display| PyRuntimeError::new_err(format!("cannot compute: {why}"));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| {
-        pyo3::exceptions::PyRuntimeError::new_err(format!("cannot start threads: {error}"))
-    })?;
-    Ok(py.detach(|| pool.install(compute)))
+    let pool = pool.map_err(|error| failed(&error))?;
+    let is_cancelled = AtomicBool::new(false);
+    let caller = std::thread::current();
+    let (found, reported, signalled) = std::thread::scope(|scope| {
+        let worker = scope.spawn(|| {
+            let mut monitor = PythonMonitor {
+                report,
+                last_report: Instant::now(),
+                is_cancelled: &is_cancelled,
+                error: None,
+            };
+            let found = pool.install(|| computation(&mut monitor));
+            caller.unpark();
+            (found, monitor.error)
+        });
+        // Python handles signals in the thread that called.
+        let mut signalled = None;
+        while !worker.is_finished() {
+            py.detach(|| std::thread::park_timeout(INTERVAL));
+            if let Err(error) = py.check_signals() {
+                is_cancelled.store(true, Ordering::Relaxed);
+                signalled.get_or_insert(error);
+            }
+        }
+        match worker.join() {
+            Ok((found, reported)) => (Some(found), reported, signalled),
+            Err(_) => (None, None, signalled),
+        }
+    });
+    match (signalled.or(reported), found) {
+        (Some(error), _) => Err(error),
+        (None, Some(found)) => Ok(found),
+        (None, None) => Err(failed(&"an internal error, please report it")),
+    }
 }

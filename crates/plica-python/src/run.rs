@@ -1,13 +1,14 @@
 //! Run directories.
 
 use super::case::read_checked;
-use super::monitor::{PythonMonitor, on_threads};
+use super::monitor::compute;
 use super::state::{State, Tube, bytes};
 use plica::case::{self, Input, InputFile};
+use plica::monitor::Monitor;
 use plica::run_directory::{self, RunDirectory, RunError};
 use plica::saved_state::SavedState;
 use plica::study::{Findings, Plan, Row, Scale, forbidden_changes};
-use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyFileExistsError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::path::{Path, PathBuf};
@@ -29,15 +30,9 @@ pub fn run(
     report: Option<Py<PyAny>>,
 ) -> PyResult<(String, String)> {
     let plan = read_checked(text, name, &folder)?;
-    let mut monitor = PythonMonitor::new(report);
-    let (result, monitor) = on_threads(py, threads, move || {
-        let result = follow(&plan, text, &out, [overwrite, resume], &mut monitor);
-        (result, monitor)
-    })?;
-    if let Some(error) = monitor.into_error() {
-        return Err(error);
-    }
-    result
+    compute(py, threads, report.as_ref(), |monitor| {
+        follow(&plan, text, &out, [overwrite, resume], monitor)
+    })?
 }
 
 /// Follows a run to its end.
@@ -46,7 +41,7 @@ fn follow(
     text: &str,
     out: &Path,
     [overwrite, resume]: [bool; 2],
-    monitor: &mut PythonMonitor,
+    monitor: &mut dyn Monitor,
 ) -> PyResult<(String, String)> {
     let resumes = resume && RunDirectory::exists(out);
     let mut directory = match resumes {
@@ -112,9 +107,11 @@ fn plan_of(directory: &RunDirectory) -> PyResult<Plan> {
 
 /// Returns the exception for an error of a run.
 fn error_of(error: RunError) -> PyErr {
-    match error.is_about_files() {
-        true => PyOSError::new_err(error.to_string()),
-        false => PyRuntimeError::new_err(error.to_string()),
+    let text = error.to_string();
+    match error {
+        RunError::Occupied(_) => PyFileExistsError::new_err(text),
+        _ if error.is_about_files() => PyOSError::new_err(text),
+        _ => PyRuntimeError::new_err(text),
     }
 }
 

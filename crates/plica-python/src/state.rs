@@ -136,7 +136,7 @@ impl State {
                 angle: p[2],
             })
             .collect();
-        let columns = super::monitor::on_threads(py, None, || {
+        let columns = super::monitor::compute(py, None, None, |_| {
             let state = self.tube.sampled.state(&self.load, &self.u);
             let at = |point: &Point| -> Vec<Vec<f64>> {
                 let sample = state.at(*point);

@@ -1,7 +1,7 @@
 //! A study in memory.
 
 use super::case::read_checked;
-use super::monitor::{PythonMonitor, on_threads};
+use super::monitor::compute;
 use super::state::{State, Tube};
 use plica::study::{self, Row, StudyError};
 use pyo3::exceptions::PyRuntimeError;
@@ -32,7 +32,7 @@ impl Study {
         report: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let plan = read_checked(text, name, &folder)?;
-        let study = on_threads(py, threads, || study::Study::new(&plan))?;
+        let study = compute(py, threads, None, |_| study::Study::new(&plan))?;
         Ok(Self {
             study: study.map_err(|error| PyRuntimeError::new_err(error.to_string()))?,
             tube: Arc::new(Tube::of(plan)),
@@ -47,7 +47,9 @@ impl Study {
         let plan = read_checked(text, name, &folder)?;
         let ended = || PyRuntimeError::new_err("the study has ended early");
         let from = self.study.continuation().ok_or_else(ended)?;
-        let resumed = on_threads(py, self.threads, || study::Study::resume(&plan, from))?;
+        let resumed = compute(py, self.threads, None, |_| {
+            study::Study::resume(&plan, from)
+        })?;
         self.study = resumed.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
         self.tube = Arc::new(Tube::of(plan));
         Ok(())
@@ -59,14 +61,10 @@ impl Study {
 
     /// Computes the next state; none after the last.
     fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<State>> {
-        let mut monitor = PythonMonitor::new(self.report.as_ref().map(|f| f.clone_ref(py)));
-        let study = &mut self.study;
-        let (found, monitor) = on_threads(py, self.threads, move || {
-            (study.next_state(&mut monitor), monitor)
+        let (study, report) = (&mut self.study, self.report.as_ref());
+        let found = compute(py, self.threads, report, |monitor| {
+            study.next_state(monitor)
         })?;
-        if let Some(error) = monitor.into_error() {
-            return Err(error);
-        }
         let state = match found {
             None => return Ok(None),
             Some(Err(StudyError::Lost(lost))) => {
