@@ -156,6 +156,7 @@ fn the_columns_of_the_history_are_documented() {
     for obstacle in &mut row.obstacles {
         (obstacle.friction_force, obstacle.friction_work) = (Some(0.0), Some(0.0));
     }
+    (row.time, row.muscles[0].shift) = (Some(0.0), Some(0.0));
     let mut columns = row.header();
     columns.dedup();
 

@@ -78,7 +78,8 @@ const FIRST: [(&str, &str, Role); 22] = [
 ];
 
 /// Columns of the load whose names are fixed: name and words.
-const LOADS: [(&str, &str); 4] = [
+const LOADS: [(&str, &str); 5] = [
+    ("time", "time"),
     ("inner_pressure", "pressure on the inner wall"),
     ("outer_pressure", "pressure on the outer wall"),
     ("inner_dead_load", "dead load on the inner wall"),
@@ -86,23 +87,24 @@ const LOADS: [(&str, &str); 4] = [
 ];
 
 /// Columns of muscles and ends: prefix of the name, words before the name, words after it, use.
-const NAMED: [(&str, &str, &str, Role); 14] = [
+const NAMED: [(&str, &str, &str, Role); 15] = [
     ("displacement_", "displacement of the ", " end", Role::Load),
     ("twist_deg_", "twist of the ", " end", Role::Load),
     (
-        "shift_x_",
+        "offset_x_",
         "displacement along x of the ",
         " end",
         Role::Load,
     ),
     (
-        "shift_y_",
+        "offset_y_",
         "displacement along y of the ",
         " end",
         Role::Load,
     ),
     ("tilt_x_deg_", "tilt about x of the ", " end", Role::Load),
     ("tilt_y_deg_", "tilt about y of the ", " end", Role::Load),
+    ("shift_", "shift of the zone of ", "", Role::Load),
     ("target_", "target of the muscle ", "", Role::Other),
     (
         "stretch_",

@@ -21,6 +21,8 @@ pub enum Quantity {
     IleumDisplacement,
     /// Target of one muscle, if several change and their combination does not.
     Muscle(usize),
+    /// Shift of the zone of a muscle, in D.
+    Shift(usize),
     /// Volume of the lumen over that at rest.
     LumenVolume,
     /// Follower pressure on the inner (0) or the outer (1) wall, in E.
@@ -67,7 +69,8 @@ impl Quantity {
             std::iter::once(Self::Radius(i)).chain(position)
         };
         let patches = (0..tube.patches.len()).map(Self::Growth);
-        let others = obstacles.flat_map(of_obstacle).chain(patches);
+        let shifts = (0..tube.muscles.len()).map(Self::Shift);
+        let others = obstacles.flat_map(of_obstacle).chain(patches).chain(shifts);
         match most(&mut named.into_iter().chain(others)) {
             Some((quantity, change)) if change > ROUNDING => quantity,
             _ => most(&mut (0..tube.muscles.len()).map(Self::Muscle))
@@ -83,6 +86,7 @@ impl Quantity {
             Self::ColonDisplacement => load.ends[0].displacement,
             Self::IleumDisplacement => load.ends[1].displacement,
             Self::Muscle(m) => load.muscles[m],
+            Self::Shift(m) => load.shifts[m],
             Self::LumenVolume => load.lumen_volume.unwrap_or(1.0),
             Self::Pressure(wall) => load.pressures[wall].follower,
             Self::DeadLoad(wall) => load.pressures[wall].dead,
@@ -100,6 +104,7 @@ impl Quantity {
             Self::ColonDisplacement => "colon displacement/D".into(),
             Self::IleumDisplacement => "ileum displacement/D".into(),
             Self::Muscle(m) => format!("ratio of {}", tube.muscles[m].name),
+            Self::Shift(m) => format!("shift of {}/D", tube.muscles[m].name),
             Self::LumenVolume => "volume/volume at rest".into(),
             Self::Pressure(wall) => format!("pressure {}/E", WALLS[wall]),
             Self::DeadLoad(wall) => format!("dead load {}/E", WALLS[wall]),
@@ -147,7 +152,10 @@ mod tests {
             muscles: vec![
                 muscle("ring", Direction::Circular),
                 muscle("a", Direction::Longitudinal),
-                muscle("b", Direction::Longitudinal),
+                Muscle {
+                    zone: [1.0, 1.5],
+                    ..muscle("b", Direction::Longitudinal)
+                },
             ],
             imperfections: vec![],
             obstacles: vec![],
@@ -181,6 +189,9 @@ mod tests {
             muscles: vec![1.0, 1.5, 0.5],
             ..tube.rest()
         };
+        let mut moved = load.clone();
+        moved.shifts[2] = 0.1;
+        assert_eq!(Quantity::between(&tube, &load, &moved), Quantity::Shift(2));
         assert_eq!(Quantity::Muscle(1).of(&tube, &load), 1.5);
         assert_eq!(Quantity::Muscle(1).name(&tube), "ratio of a");
     }

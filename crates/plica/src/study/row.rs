@@ -510,8 +510,8 @@ impl Row {
             }
         }
         for (k, (quantity, of)) in [
-            ("shift_x", Length),
-            ("shift_y", Length),
+            ("offset_x", Length),
+            ("offset_y", Length),
             ("tilt_x_deg", Degrees),
             ("tilt_y_deg", Degrees),
         ]
