@@ -148,6 +148,8 @@ fn a_run_whose_files_are_removed_stops_keeps_its_history_and_resumes() {
         assert!(sent.unwrap().success());
     };
     signal("-STOP");
+    // Its threads stop a moment after the signal was sent.
+    std::thread::sleep(std::time::Duration::from_millis(200));
     for name in ["profiles", "states"] {
         let _ = fs::remove_dir_all(run.join(name));
     }
