@@ -174,7 +174,8 @@ fn label(quantity: Quantity, plan: &Plan) -> String {
         Quantity::Muscle(_)
         | Quantity::Radius(_)
         | Quantity::Position(..)
-        | Quantity::Growth(_) => quantity.name(&plan.tube),
+        | Quantity::Growth(_)
+        | Quantity::Shift(_) => quantity.name(&plan.tube),
     }
 }
 
