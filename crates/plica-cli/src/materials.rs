@@ -21,7 +21,7 @@ pub struct MaterialsArguments {
     /// A library of your own, instead of that of Plica
     #[arg(long, value_name = "FILE", global = true)]
     file: Option<PathBuf>,
-    /// What to do [default: list the materials]
+    /// The action [default: list the materials]
     #[command(subcommand)]
     command: Option<MaterialsCommand>,
 }

@@ -155,7 +155,7 @@ impl Run {
         self.directory.verdict().to_string()
     }
 
-    /// What is damaged.
+    /// The damages of its files, in words.
     #[getter]
     fn faults(&self) -> Vec<String> {
         self.faults.clone()

@@ -1,4 +1,4 @@
-//! What makes a wall differ from the plain one at its quadrature points: a stress-free shape, and patches. The kernels
+//! Differences of a wall from the plain one at its quadrature points: a stress-free shape, and patches. The kernels
 //! skip all of it in a plain wall.
 
 use super::SplineTube;

@@ -27,7 +27,7 @@ table! {
         doi: Option<String> = described("not given", "10.1023/A:1010835316564");
         /// The range of the data that the numbers are fitted to.
         valid: Option<String> = described("not given", "stretches up to 1.4");
-        /// What else a user should know.
+        /// A remark for users.
         note: Option<String> = described("none", "passive");
         /// The unit of its stresses.
         stress: Option<StressUnit> = described("that of the case", "kPa");
@@ -53,7 +53,7 @@ pub struct LibraryMaterial {
     pub doi: Option<String>,
     /// The range of the data that the numbers are fitted to.
     pub valid: Option<String>,
-    /// What else a user should know.
+    /// A remark for users.
     pub note: Option<String>,
     /// The unit of its stresses; none for that of the case.
     pub unit: Option<StressUnit>,

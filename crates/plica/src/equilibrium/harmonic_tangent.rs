@@ -485,7 +485,7 @@ impl HarmonicSystem {
     /// average is the mean of the tangents rotated to every ring and mirrored, and the boundary conditions do not
     /// change under rotation and mirroring.
     ///
-    /// Where the volume of the lumen is driven, only harmonic 0 of the average contains its term, and the others prove
+    /// If the volume of the lumen is driven, only harmonic 0 of the average contains its term, and the others prove
     /// nothing if the state is not axisymmetric.
     pub fn average_is_indefinite(&self) -> bool {
         let proving = match self.state.term {

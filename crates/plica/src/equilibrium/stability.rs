@@ -32,7 +32,7 @@ const ITERATIONS: usize = 80;
 /// `modes` is zero, which skips the test, or if a twisted axisymmetric state has no negative eigenvalue in mode 0:
 /// higher modes, whose phase travels along a twisted tube, are not tested.
 ///
-/// Where the load drives the volume of the lumen, the state is tested at a held volume, which matters to mode 0.
+/// If the load drives the volume of the lumen, the state is tested at a held volume, which matters to mode 0.
 ///
 /// Uses the solver that the path has at its state, and makes it if needed. Friction has no energy of its own, and is left
 /// out.

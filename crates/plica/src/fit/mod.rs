@@ -31,7 +31,7 @@ pub enum FitError {
     /// A table without a column that it needs.
     #[error("the table has no column of a {what}")]
     Missing {
-        /// What there is no column of.
+        /// The missing quantity.
         what: &'static str,
     },
     /// Stresses in several units.

@@ -58,7 +58,7 @@ pub struct State {
     pub dimensions: Dimensions,
     /// Pressure on the inner wall, in a study that drives the volume of the lumen in any stage.
     pub lumen_pressure: Option<f64>,
-    /// Whether an end leaves its axis in any stage of the study.
+    /// True if an end leaves its axis in any stage of the study.
     pub has_sideways_ends: bool,
     /// Reactions at z = 0 and z = L.
     pub reactions: [Reaction; 2],

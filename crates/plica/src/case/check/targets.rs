@@ -93,7 +93,7 @@ impl Quantity {
     }
 }
 
-/// What a name in a stage stands for.
+/// The thing that a name in a stage stands for.
 #[derive(Clone, Copy)]
 pub(super) enum Driven {
     /// A muscle, by its index in the tube.
