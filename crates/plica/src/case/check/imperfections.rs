@@ -5,7 +5,7 @@ use super::super::key::join;
 use super::super::keys::{self, Case};
 use super::super::problem::Problems;
 use super::super::spelling::nearest;
-use super::stages::SMALLEST_STRETCH;
+use super::stages::broken_by_strength;
 use super::start::check_size;
 use super::zone::{length, tidy, zone};
 use crate::study::{ModeShape, Stage, inverted_by_imperfections};
@@ -386,18 +386,7 @@ pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Prob
         if !keys.all(|key| problems.are_sound(&[&key])) {
             continue;
         }
-        let smallest = stages
-            .iter()
-            .flat_map(Stage::loads)
-            .map(|load| muscle.smallest_stretch(load.muscles[m], tube.length))
-            .fold(1.0, f64::min);
-        let smallest = 1.0 - strongest * (1.0 - smallest);
-        if smallest < SMALLEST_STRETCH {
-            let rule = format!(
-                "where it is strongest, {} shrinks the wall to {} of its size, {SMALLEST_STRETCH} at least",
-                muscle.name,
-                tidy(smallest)
-            );
+        if let Some(rule) = broken_by_strength(tube, m, strongest, stages) {
             problems.value(&format!("imperfections[{}].amplitude", last + 1), rule, "");
         }
     }

@@ -6,8 +6,7 @@ use super::super::problem::Problems;
 use super::material::youngs_modulus;
 use super::muscles::{ENDS, WALLS, is_name};
 use super::region::region;
-use super::stages::SMALLEST_STRETCH;
-use super::zone::tidy;
+use super::stages::broken_by_strength;
 use crate::study::Stage;
 use crate::tube::{Foundation, Patch, SpringDirection, Support, Symmetry, Tube};
 
@@ -106,18 +105,7 @@ pub(super) fn check_stretches(tube: &Tube, stages: &[Stage], problems: &mut Prob
         let Some(last) = tube.patches.iter().rposition(|p| p.muscles[m] > 1.0) else {
             continue;
         };
-        let smallest = stages
-            .iter()
-            .flat_map(Stage::loads)
-            .map(|load| muscle.smallest_stretch(load.muscles[m], tube.length))
-            .fold(1.0, f64::min);
-        let smallest = 1.0 - strongest * (1.0 - smallest);
-        if smallest < SMALLEST_STRETCH {
-            let rule = format!(
-                "where it is strongest, {} shrinks the wall to {} of its size, {SMALLEST_STRETCH} at least",
-                muscle.name,
-                tidy(smallest)
-            );
+        if let Some(rule) = broken_by_strength(tube, m, strongest, stages) {
             let key = join(&format!("patches[{}].muscles", last + 1), &muscle.name);
             problems.value(&key, rule, "make it smaller");
         }

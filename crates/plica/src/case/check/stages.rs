@@ -18,7 +18,7 @@ const RESERVED: [&str; 2] = ["rest", "start"];
 /// Largest pressure, in E.
 const LARGEST_PRESSURE: f64 = 10.0;
 /// Smallest and largest stress-free stretch.
-pub(super) const SMALLEST_STRETCH: f64 = 0.02;
+const SMALLEST_STRETCH: f64 = 0.02;
 const LARGEST_STRETCH: f64 = 100.0;
 /// Smallest and largest distance of the ends over that at rest.
 const DISTANCES: std::ops::RangeInclusive<f64> = 0.05..=10.0;
@@ -299,6 +299,26 @@ pub(super) fn check_held(key: &str, target: &str, support: Support, problems: &m
         _ => "only a fixed end can be turned",
     };
     problems.value(key, rule, "write \"fixed\" in [ends]");
+}
+
+/// Returns the rule that the smallest stress-free stretch breaks where a muscle is stronger by a factor than elsewhere.
+pub(super) fn broken_by_strength(
+    tube: &Tube,
+    m: usize,
+    strongest: f64,
+    stages: &[Stage],
+) -> Option<String> {
+    let muscle = &tube.muscles[m];
+    let loads = stages.iter().flat_map(Stage::loads);
+    let stretches = loads.map(|load| muscle.smallest_stretch(load.muscles[m], tube.length));
+    let smallest = 1.0 - strongest * (1.0 - stretches.fold(1.0, f64::min));
+    (smallest < SMALLEST_STRETCH).then(|| {
+        format!(
+            "where it is strongest, {} shrinks the wall to {} of its size, {SMALLEST_STRETCH} at least",
+            muscle.name,
+            tidy(smallest)
+        )
+    })
 }
 
 /// Checks the stress-free stretches that a muscle gives the wall.
