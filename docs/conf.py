@@ -17,7 +17,7 @@ exclude_patterns = ["pictures/README.md"]
 highlight_language = "text"
 
 # MathJax lies beside the pages, which need no network.
-mathjax_path = "mathjax/tex-svg.js"
+mathjax_path = "mathjax/tex-svg-full.js"
 mathjax3_config = {"options": {"enableMenu": False}}
 
 # The documentation strings of the Python module, without the compiled module.

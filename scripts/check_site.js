@@ -53,7 +53,7 @@ async function open(context, base, page) {
     if (!url.startsWith(base) && !/^(data|blob):/.test(url)) check(`${page}: needs the network`, false, url);
   });
   await tab.goto(`${base}/${page}`, { waitUntil: "load" });
-  await tab.evaluate(() => window.MathJax?.startup?.promise);
+  await tab.evaluate(() => window.MathJax?.startup?.promise).catch((error) => check(`${page}: MathJax`, false, error.message));
   return tab;
 }
 
