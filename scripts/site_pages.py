@@ -1,8 +1,9 @@
-"""Prepares the pages of the documentation site: site_pages.py DIRECTORY
+"""Prepares the pages of the documentation site: site_pages.py DIRECTORY RUSTDOC
 
 Copies docs/, and adds the pages that the repository holds elsewhere: changelog, architecture, contributing, and the help of
 the program (from crates/plica-cli/tests/help.txt, which a test compares with the program). Links that leave docs/ lead to the
-page of the site that has their content, or else to the repository. Files are only written if they change.
+page of the site that has their content, or else to the repository. RUSTDOC is the folder that `cargo doc` writes to; if it has
+pages, the site has them in rust/. Files are only written if they change.
 """
 
 import os
@@ -66,6 +67,8 @@ def main() -> None:
             files[name] = with_links(text.decode(), f"docs/{name}", name).encode() if name.endswith(".md") else text
     for source, page in ELSEWHERE.items():
         files[page] = with_links((ROOT / source).read_text(encoding="utf-8"), source, page).encode()
+    if Path(sys.argv[2], "plica/index.html").exists():
+        files["rust-api.md"] += b'\nThe pages that it makes are <a href="rust/plica/index.html">part of this site</a>.\n'
     for path in (ROOT / "cases").glob("*.toml"):
         files[f"cases/{path.name}"] = path.read_bytes()
 
