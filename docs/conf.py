@@ -32,6 +32,7 @@ html_static_path = ["theme", "vendor"]
 html_css_files = ["plica.css"]
 html_favicon = "theme/icon.svg"
 html_context = {"default_mode": "auto"}
+html_sidebars = {page: [] for page in ("install", "tutorial")}
 html_copy_source = html_show_sourcelink = False
 html_theme_options = {
     "github_url": "https://github.com/plica/plica",
