@@ -1,11 +1,12 @@
 """Prepares the pages of the documentation site: site_pages.py DIRECTORY RUSTDOC
 
 Copies docs/, and adds the pages that the repository holds elsewhere: changelog, architecture, contributing, and the help of
-the program (from crates/plica-cli/tests/help.txt, which a test compares with the program). Links that leave docs/ lead to the
-page of the site that has their content, or else to the repository. RUSTDOC is the folder that `cargo doc` writes to; if it has
-pages, the site has them in rust/. Files are only written if they change.
+the program (from crates/plica-cli/tests/help.txt, which a test compares with the program). Notebooks become pages. Links that
+leave docs/ lead to the page of the site that has their content, or else to the repository. RUSTDOC is the folder that
+`cargo doc` writes to; if it has pages, the site has them in rust/. Files are only written if they change.
 """
 
+import json
 import os
 import re
 import sys
@@ -21,7 +22,7 @@ LINK = re.compile(r"\]\(([^)#\s:]+)((?:#[^)\s]*)?)\)")
 def page_of(path: str) -> str:
     """Return the page of the site that shows a file of the repository, or its address."""
     if path.startswith("docs/"):
-        return path
+        return path.replace(".ipynb", ".md")
     case = re.fullmatch(r"cases/([\w-]+)\.toml", path)
     own = f"gallery/{case[1]}.md" if case else ELSEWHERE.get(path)
     if own and (case is None or (ROOT / "docs" / own).exists()):
@@ -41,9 +42,19 @@ def with_links(text: str, source: str, page: str) -> str:
             target = os.path.relpath(target, os.path.dirname(f"docs/{page}"))
         return f"]({target}{match[2]})"
 
-    parts = text.split("```")  # no links in code
+    top = os.path.relpath(".", os.path.dirname(source) or ".")
+    parts = text.replace(f"]({CODE}", f"]({top}/").split("```")  # no links in code
     parts[::2] = [LINK.sub(link, part) for part in parts[::2]]
     return "```".join(parts)
+
+
+def notebook(text: str) -> str:
+    """Return the page of a notebook: its text and its code."""
+    parts = ["---\norphan: true\n---"]  # pages link to it
+    for cell in json.loads(text)["cells"]:
+        source = "".join(cell["source"])
+        parts.append(source if cell["cell_type"] == "markdown" else f"```python\n{source}\n```")
+    return "\n\n".join(parts) + "\n"
 
 
 def command_line() -> str:
@@ -63,8 +74,11 @@ def main() -> None:
     for path in sorted((ROOT / "docs").rglob("*")):
         name = path.relative_to(ROOT / "docs").as_posix()
         if path.is_file() and "__pycache__" not in name:
-            text = path.read_bytes()
-            files[name] = with_links(text.decode(), f"docs/{name}", name).encode() if name.endswith(".md") else text
+            content = path.read_bytes()
+            if name.endswith(".ipynb"):
+                name = name.replace(".ipynb", ".md")
+                content = notebook(content.decode()).encode()
+            files[name] = with_links(content.decode(), f"docs/{name}", name).encode() if name.endswith(".md") else content
     for source, page in ELSEWHERE.items():
         files[page] = with_links((ROOT / source).read_text(encoding="utf-8"), source, page).encode()
     if Path(sys.argv[2], "plica/index.html").exists():
