@@ -1,9 +1,10 @@
 //! Accepted states: their numbers, unknowns, walls and fields.
 
 use plica::assembly::Point;
+use plica::contact::Face;
 use plica::study::{Plan, Row, Scale};
 use plica::tube::{Load, Tube as Shape};
-use plica_view::sampled_tube::SampledTube;
+use plica_view::export::{Exporter, Geometry};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -16,7 +17,8 @@ pub struct Tube {
     pub plan: Plan,
     /// The units.
     pub scale: Scale,
-    sampled: SampledTube,
+    /// Its fields and geometries.
+    pub exporter: Exporter,
 }
 
 impl Tube {
@@ -24,9 +26,17 @@ impl Tube {
     pub fn of(plan: Plan) -> Self {
         Self {
             scale: Scale::of(plan.units.as_ref()),
-            sampled: SampledTube::of(&plan),
+            exporter: Exporter::new(&plan),
             plan,
         }
+    }
+
+    /// Returns the radii of the inner and the outer wall at rest, the length at rest, and the name of the unit of length.
+    pub fn size(&self) -> (f64, f64, f64, String) {
+        let (tube, scale) = (&self.plan.tube, &self.scale);
+        let [inner, outer, length] =
+            [tube.inner_radius(), Shape::OUTER_RADIUS, tube.length].map(|x| scale.length * x);
+        (inner, outer, length, scale.length_name.clone())
     }
 }
 
@@ -34,23 +44,26 @@ impl Tube {
 #[pyclass(frozen, module = "plica._native")]
 pub struct State {
     tube: Arc<Tube>,
-    load: Load,
-    u: Vec<f64>,
+    pub(super) load: Load,
+    pub(super) u: Vec<f64>,
     /// Columns of the history: name, unit and text.
     cells: Vec<(String, Option<String>, String, bool)>,
 }
 
 /// Names of the fields, with the number of components.
-const FIELDS: [(&str, usize); 10] = [
+const FIELDS: [(&str, usize); 13] = [
     ("position", 3),
+    ("displacement", 3),
     ("cauchy_stress", 9),
     ("axial_stress", 1),
     ("radial_stress", 1),
     ("hoop_stress", 1),
     ("von_mises_stress", 1),
-    ("energy_density", 1),
-    ("jacobian", 1),
-    ("elastic_stretches", 3),
+    ("strain_energy_density", 1),
+    ("det_Fe", 1),
+    ("elastic_stretch", 3),
+    ("theta_zeta", 1),
+    ("theta_eta", 1),
     ("contact_pressure", 1),
 ];
 
@@ -81,17 +94,14 @@ impl State {
 
     /// The unknowns in D, as bytes of float64, and their shape (rows along, points through, components, rings).
     #[getter]
-    fn unknowns<'py>(&self, py: Python<'py>) -> (Bound<'py, PyBytes>, [usize; 4]) {
-        (bytes(py, &self.u), self.tube.plan.layout().shape())
+    fn unknowns<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyBytes>, [usize; 4])> {
+        Ok((bytes(py, &self.u)?, self.tube.plan.layout().shape()))
     }
 
     /// Radii of the inner and the outer wall at rest, the length at rest, and the name of the unit of length.
     #[getter]
     fn size(&self) -> (f64, f64, f64, String) {
-        let (tube, scale) = (&self.tube.plan.tube, &self.tube.scale);
-        let [inner, outer, length] =
-            [tube.inner_radius(), Shape::OUTER_RADIUS, tube.length].map(|x| scale.length * x);
-        (inner, outer, length, scale.length_name.clone())
+        self.tube.size()
     }
 
     /// Names and units of the fields.
@@ -99,8 +109,8 @@ impl State {
     fn field_units(&self) -> Vec<(&'static str, Option<String>)> {
         let scale = &self.tube.scale;
         let unit = |name: &str| match name {
-            "position" => Some(scale.length_name.clone()),
-            "jacobian" | "elastic_stretches" => None,
+            "position" | "displacement" => Some(scale.length_name.clone()),
+            "det_Fe" | "elastic_stretch" | "theta_zeta" | "theta_eta" => None,
             _ => Some(scale.stress_name.clone()),
         };
         FIELDS.iter().map(|&(name, _)| (name, unit(name))).collect()
@@ -123,21 +133,10 @@ impl State {
                 )));
             }
         }
-        let numbers: Vec<f64> = points
-            .chunks_exact(8)
-            .map(|x| f64::from_ne_bytes(x.try_into().unwrap_or_default()))
-            .collect();
         let scale = &self.tube.scale;
-        let points: Vec<Point> = numbers
-            .chunks_exact(3)
-            .map(|p| Point {
-                z: p[0] / scale.length,
-                radius: p[1] / scale.length,
-                angle: p[2],
-            })
-            .collect();
+        let points = material_points(points, scale.length);
         let columns = super::monitor::compute(py, None, None, |_| {
-            let state = self.tube.sampled.state(&self.load, &self.u);
+            let state = self.tube.exporter.tube().state(&self.load, &self.u);
             let at = |point: &Point| -> Vec<Vec<f64>> {
                 let sample = state.at(*point);
                 let wall = &sample.wall;
@@ -153,9 +152,15 @@ impl State {
                     "radial_stress" => vec![scale.stress * radial],
                     "hoop_stress" => vec![scale.stress * hoop],
                     "von_mises_stress" => vec![scale.stress * wall.von_mises()],
-                    "energy_density" => vec![scale.stress * wall.energy_density],
-                    "jacobian" => vec![wall.jacobian],
-                    "elastic_stretches" => wall.stretches().map(|(stretch, _)| stretch).to_vec(),
+                    "displacement" => {
+                        let moved = |i: usize| wall.position[i] - wall.reference[i];
+                        [1, 2, 0].map(|i| scale.length * moved(i)).to_vec()
+                    }
+                    "strain_energy_density" => vec![scale.stress * wall.energy_density],
+                    "det_Fe" => vec![wall.jacobian],
+                    "elastic_stretch" => wall.stretches().map(|(stretch, _)| stretch).to_vec(),
+                    "theta_zeta" => vec![wall.grown[0]],
+                    "theta_eta" => vec![wall.grown[1]],
                     _ => vec![scale.stress * sample.contact_pressure],
                 };
                 names.iter().map(of).collect()
@@ -168,14 +173,116 @@ impl State {
         for (name, column) in names.iter().zip(&columns) {
             let components = FIELDS.iter().find(|(known, _)| known == name);
             let components = components.map_or(1, |(_, components)| *components);
-            fields.set_item(name, (bytes(py, column), components))?;
+            fields.set_item(name, (bytes(py, column)?, components))?;
         }
         Ok(fields)
     }
+
+    /// Returns a geometry: points (x, y, z), cells as indices of points, points per cell, the type of cell in VTK, the face of
+    /// each cell of the walls, and the fields of the given names with their number of components.
+    fn grid<'py>(
+        &self,
+        py: Python<'py>,
+        geometry: &str,
+        names: Vec<String>,
+    ) -> PyResult<Grid<'py>> {
+        let exporter = &self.tube.exporter;
+        let known: Vec<&str> = exporter.field_names().collect();
+        if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
+            return Err(PyValueError::new_err(format!(
+                "there is no field {name}; there are {}",
+                known.join(", ")
+            )));
+        }
+        let geometry = Geometry::ALL.into_iter().find(|g| g.name() == geometry);
+        let geometry =
+            geometry.ok_or_else(|| PyValueError::new_err("there is no such geometry"))?;
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let grid = super::monitor::compute(py, None, None, |_| {
+            exporter.grid(geometry, &self.load, &self.u, &names)
+        })?;
+        let fields = PyDict::new(py);
+        for field in &grid.fields {
+            let values = raw(py, &field.values, f32::to_ne_bytes)?;
+            fields.set_item(field.name, (values, field.components))?;
+        }
+        Ok((
+            bytes(py, grid.points.as_flattened())?,
+            raw(py, &grid.cells.points, i64::to_ne_bytes)?,
+            grid.cells.points_per_cell,
+            grid.cells.cell_type,
+            grid.faces.map(|faces| PyBytes::new(py, &faces)),
+            fields,
+        ))
+    }
+
+    /// Names of the fields of geometries.
+    #[getter]
+    fn grid_fields(&self) -> Vec<&'static str> {
+        self.tube.exporter.field_names().collect()
+    }
+
+    /// Number of control rings of the cyclic sector; one for an axisymmetric state.
+    #[getter]
+    fn rings(&self) -> usize {
+        self.tube.plan.layout().shape()[3]
+    }
+
+    /// Returns axial position, area and pressure of the points of the inner and the outer face that touch themselves.
+    fn pressed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let scale = &self.tube.scale;
+        let points = super::monitor::compute(py, None, None, |_| {
+            let tube = self.tube.exporter.tube();
+            let pressed = |face| tube.pressed_points(&self.u, face);
+            [Face::Inner, Face::Outer].map(pressed).concat()
+        })?;
+        let area = scale.length * scale.length;
+        let number = |p: &plica::contact::PressedPoint| {
+            [scale.length * p.z, area * p.area, scale.stress * p.pressure]
+        };
+        let numbers: Vec<f64> = points.iter().flat_map(number).collect();
+        bytes(py, &numbers)
+    }
+}
+
+/// Points, cells, points per cell, type of cell, faces, and fields of a geometry.
+type Grid<'py> = (
+    Bound<'py, PyBytes>,
+    Bound<'py, PyBytes>,
+    usize,
+    u8,
+    Option<Bound<'py, PyBytes>>,
+    Bound<'py, PyDict>,
+);
+
+/// Reads material points (z, radius, angle) at rest from bytes of float64, in units of `length`.
+pub fn material_points(points: &[u8], length: f64) -> Vec<Point> {
+    let numbers = points.chunks_exact(8);
+    let number = |x: &[u8]| f64::from_ne_bytes(x.try_into().unwrap_or_default());
+    let numbers: Vec<f64> = numbers.map(number).collect();
+    let point = |p: &[f64]| Point {
+        z: p[0] / length,
+        radius: p[1] / length,
+        angle: p[2],
+    };
+    numbers.chunks_exact(3).map(point).collect()
 }
 
 /// Returns numbers as bytes.
-pub fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyBytes> {
-    let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_ne_bytes()).collect();
-    PyBytes::new(py, &bytes)
+pub fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyBytes>> {
+    raw(py, numbers, f64::to_ne_bytes)
+}
+
+/// Copies numbers of `N` bytes each into a new object.
+fn raw<'py, T: Copy, const N: usize>(
+    py: Python<'py>,
+    numbers: &[T],
+    to_bytes: fn(T) -> [u8; N],
+) -> PyResult<Bound<'py, PyBytes>> {
+    PyBytes::new_with(py, N * numbers.len(), |to| {
+        for (to, number) in to.chunks_exact_mut(N).zip(numbers) {
+            to.copy_from_slice(&to_bytes(*number));
+        }
+        Ok(())
+    })
 }

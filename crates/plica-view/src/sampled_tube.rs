@@ -1,7 +1,7 @@
 //! A tube and its contact, sampled at material points of states.
 
 use plica::assembly::{Point, Sample, SplineTube};
-use plica::contact::{Face, PressureField, SelfContact};
+use plica::contact::{Face, PressedPoint, PressureField, SelfContact};
 use plica::study::Plan;
 use plica::tube::{Load, Tube};
 use std::ops::Deref;
@@ -61,6 +61,12 @@ impl SampledTube {
     /// Returns whether the walls can touch.
     pub fn has_contact(&self) -> bool {
         self.contact.is_some()
+    }
+
+    /// Returns the quadrature points of a face that are under the pressure of its contact with itself.
+    pub fn pressed_points(&self, u: &[f64], face: Face) -> Vec<PressedPoint> {
+        let contact = self.contact.as_ref();
+        contact.map_or(vec![], |contact| contact.pressed_points(u, face))
     }
 
     /// Prepares a state for sampling.

@@ -10,9 +10,28 @@ equilibrium.
 'Invagination of an intestine'
 """
 
+from . import plot
 from ._case import Case, CaseError, Problem, evaluate
+from ._names import Method, Shape, Verdict
 from ._native import __version__
 from ._run import Run
-from ._state import State
+from ._stability import Change, Mode, Stability
+from ._state import Reaction, State
 
-__all__ = ["Case", "CaseError", "Problem", "Run", "State", "__version__", "evaluate"]
+__all__ = [
+    "Case",
+    "CaseError",
+    "Change",
+    "Method",
+    "Mode",
+    "Problem",
+    "Reaction",
+    "Run",
+    "Shape",
+    "Stability",
+    "State",
+    "Verdict",
+    "__version__",
+    "evaluate",
+    "plot",
+]

@@ -146,8 +146,9 @@ class Case:
     def states(self, *, threads: int | None = None, progress: bool | Callable[[str, float], None] = False) -> Iterator[State]:
         """Follow the tube through its stages and yield one equilibrium after another, with nothing on disk.
 
-        ``threads`` limits the threads. ``progress`` is True for a bar, or a function of (activity, fraction from 0 to 1).
-        Ctrl-C stops at once. Raises RuntimeError with place and reason where the tube cannot be followed further.
+        ``threads`` limits the threads; without it there is one per processor, or as many as ``OMP_NUM_THREADS`` says.
+        ``progress`` is True for a bar, or a function of (activity, fraction from 0 to 1). Ctrl-C stops at once. Raises
+        RuntimeError with place and reason where the tube cannot be followed further.
         """
         with reporter(progress, self.title) as report:
             for state in _native.Study(self._text, self._name, self._folder, threads, report):
@@ -189,7 +190,8 @@ class Case:
         """Run the case in a directory, as ``plica run`` does, and return the run.
 
         ``overwrite`` replaces a run that is there; ``resume`` goes on with it. Ctrl-C stops the run cleanly, and raises
-        KeyboardInterrupt; ``resume=True`` then continues it, with the same results to the bit.
+        KeyboardInterrupt; ``resume=True`` then continues it, with the same results to the bit. Where the tube cannot be
+        followed further the run ends, and its ``verdict`` is ``lost``.
         """
         from ._run import Run
 
@@ -216,7 +218,9 @@ class Case:
     def _repr_html_(self) -> str:
         from html import escape
 
-        return f"<b>{escape(self.title)}</b><pre>{escape(self._text)}</pre>"
+        about = f"{len(self)} states of {self.unknowns} unknowns"
+        advice = "".join(f"<p>{escape(sentence)}</p>" for sentence in self.advice)
+        return f"<b>{escape(self.title)}</b>, {about}{advice}<pre>{escape(self._text)}</pre>"
 
 
 def evaluate(case: Case, parameters: Mapping[str, Any] | None = None, *, threads: int = 1) -> dict[str, Any]:

@@ -4,18 +4,28 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from . import _native
 from ._case import Case
+from ._names import Verdict
+from ._optional import require
+from ._progress import reporter
 from ._state import State
 
 if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+    from ._stability import Stability
     from .plot import RunPlots
+
+_WHOLE = ("step", "iterations", "cg_iterations", "asymmetry_mode")
+"""Columns of whole numbers."""
 
 
 class Run:
@@ -49,15 +59,24 @@ class Run:
         return self._columns
 
     @property
-    def history(self) -> Any:
+    def history(self) -> pandas.DataFrame:
         """The history as a ``pandas.DataFrame``; ``history.attrs["units"]`` has the units."""
-        import pandas
-
-        frame = pandas.DataFrame(self.columns)
-        whole = ("step", "iterations", "cg_iterations", "asymmetry_mode")
-        frame = frame.astype({name: int for name in whole if name in frame})
+        frame: pandas.DataFrame = require("pandas").DataFrame(self.columns)
+        frame = frame.astype({name: int for name in _WHOLE if name in frame})
         frame.attrs["units"] = self.units
         return frame
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the history as an ``xarray.Dataset`` along ``step``; each variable has its unit in ``attrs["units"]``."""
+        units = self.units
+        variables = {name: ("step", np.asarray(values)) for name, values in self.columns.items()}
+        dataset: xarray.Dataset = require("xarray").Dataset(variables).set_coords("step")
+        dataset["step"] = dataset["step"].astype(int)
+        for name, unit in units.items():
+            if unit is not None:
+                dataset[name].attrs["units"] = unit
+        dataset.attrs["title"] = self.title
+        return dataset
 
     @property
     def title(self) -> str:
@@ -65,9 +84,9 @@ class Run:
         return self._native.title
 
     @property
-    def verdict(self) -> str:
-        """How the run ended: ``complete``, ``stopped``, ``lost`` or ``running``."""
-        return self._native.verdict
+    def verdict(self) -> Verdict:
+        """How the run ended."""
+        return Verdict(self._native.verdict)
 
     @property
     def case(self) -> Case:
@@ -85,6 +104,30 @@ class Run:
         """The closing table of the run."""
         return "\n".join(f"{name:<22} {value}" for name, value in self._native.findings()[1])
 
+    def stability(
+        self,
+        *,
+        highest: int | None = None,
+        tolerance: float | None = None,
+        modes: int | None = None,
+        states: Sequence[int] = (),
+        threads: int | None = None,
+        progress: bool | Callable[[str, float], None] = True,
+    ) -> Stability:
+        """Test the stability of the saved states as ``plica stability`` does, and write its files beside them.
+
+        An axisymmetric run is tested against circumferential modes 0 to ``highest`` (as many as the case says); where
+        stability changes, the critical value is found within ``tolerance`` (1e-4). Of a three-dimensional run, the lowest
+        ``modes`` (3) eigenvalues of ``states`` are computed, given by their numbers, or of all.
+        """
+        from ._stability import read
+
+        with reporter(progress, self.title) as report:
+            table, files = _native.stability(
+                os.fspath(self.path), highest, tolerance, modes, list(states), threads, report
+            )
+        return read(self._native, table, files)
+
     @property
     def state_numbers(self) -> list[int]:
         """The numbers of the saved states."""
@@ -93,13 +136,23 @@ class Run:
     def __len__(self) -> int:
         return len(self.state_numbers)
 
+    @overload
+    def __getitem__(self, which: int) -> State: ...
+    @overload
+    def __getitem__(self, which: str) -> Any: ...
+
     def __getitem__(self, which: int | str) -> Any:
+        """Return a saved state by its place, from the last one if negative, or a column of the history by its name."""
         if isinstance(which, str):
             columns = self.columns
             if which not in columns:
                 raise KeyError(f"{which}; the columns are {', '.join(columns)}")
             return columns[which]
         return State(self._native.state(self.state_numbers[which]))
+
+    def state(self, number: int) -> State:
+        """Return a saved state by its number, the column ``step`` of the history."""
+        return State(self._native.state(number))
 
     def __iter__(self) -> Iterator[State]:
         for number in self.state_numbers:
@@ -116,6 +169,15 @@ class Run:
         return f"<Run {self.title!r} in {self.path}: {len(self)} saved states, {self.verdict}>"
 
     def _repr_html_(self) -> str:
+        from base64 import b64encode
         from html import escape
 
-        return f"<b>{escape(self.title)}</b> ({escape(self.verdict)})<pre>{escape(self.table)}</pre>"
+        picture = self._native.file("tube.png")
+        shown = ""
+        if picture is not None:
+            data = b64encode(picture).decode("ascii")
+            shown = f'<img alt="the tube cut open" style="max-width: 720px" src="data:image/png;base64,{data}">'
+        return f"<b>{escape(self.title)}</b> ({self.verdict})<pre>{escape(self.table)}</pre>{shown}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Run, (os.fspath(self.path),))

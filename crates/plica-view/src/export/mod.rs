@@ -24,10 +24,11 @@ mod point;
 mod points;
 
 use crate::sampled_tube::SampledTube;
-use crate::vtk::{Column, Document, Series};
+use crate::vtk::{Cells, Column, Document, Lattice, Series};
 use fields::{FIELDS, OF_CONTACT, OF_PATCHES};
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row, Scale};
+use plica::tube::Load;
 use points::{Points, boundary_lattice, meridian_lattice, volume_lattice};
 
 /// Converts states of a run to VTK files.
@@ -73,6 +74,28 @@ impl Geometry {
     }
 }
 
+/// A geometry of a state in memory.
+pub struct Grid {
+    /// Positions (x, y, z), in the units of the case.
+    pub points: Vec<[f64; 3]>,
+    /// Cells.
+    pub cells: Cells,
+    /// Face of the wall that each cell of [`Geometry::Walls`] belongs to: 0 inner, 1 outer, 2 and 3 the ends.
+    pub faces: Option<Vec<u8>>,
+    /// Fields at the points.
+    pub fields: Vec<GridField>,
+}
+
+/// A field at the points of a grid.
+pub struct GridField {
+    /// Name in files.
+    pub name: &'static str,
+    /// Number of components.
+    pub components: usize,
+    /// Values in the units of the case, the components of a point together.
+    pub values: Vec<f32>,
+}
+
 /// Number of facets of a surface, around and along, that is sufficient without subdividing elements.
 const FACETS: [usize; 2] = [96, 240];
 
@@ -102,21 +125,8 @@ impl Exporter {
 
     /// Returns the bytes of the file of a state.
     pub fn file(&self, geometry: Geometry, state: &SavedState, row: &Row) -> Vec<u8> {
-        let (tube, length) = (&self.tube, self.scale.length);
-        let lattice = match geometry {
-            Geometry::Walls => boundary_lattice(tube, FACETS),
-            Geometry::Meridian => meridian_lattice(tube, INTERVALS),
-            Geometry::Volume | Geometry::Linear => volume_lattice(tube),
-        };
-        let sampled = tube.state(&state.load, &state.u);
-        let points = match geometry {
-            Geometry::Meridian => Points::meridian(&sampled, lattice),
-            _ => Points::sample(&sampled, lattice),
-        };
-        let positions: Vec<[f64; 3]> = points
-            .evaluate(|point, rotation| rotation.vector(point.position))
-            .map(|x| x.map(|x| length * x))
-            .collect();
+        let (lattice, points) = self.sample(geometry, &state.load, &state.u);
+        let positions = self.positions(&points);
         let mut file = match geometry {
             Geometry::Volume => Document::grid(&positions, &lattice.lagrange()),
             Geometry::Linear => Document::grid(&positions, &lattice.linear()),
@@ -140,6 +150,66 @@ impl Exporter {
             );
         }
         file.bytes()
+    }
+
+    /// Returns the geometry of a state, with the fields of the given names.
+    pub fn grid(&self, geometry: Geometry, load: &Load, u: &[f64], names: &[&str]) -> Grid {
+        let (lattice, points) = self.sample(geometry, load, u);
+        let (cells, faces) = match geometry {
+            Geometry::Volume => (lattice.lagrange(), None),
+            Geometry::Linear => (lattice.linear(), None),
+            Geometry::Meridian => (lattice.section(), None),
+            Geometry::Walls => {
+                let (cells, faces) = lattice.boundary();
+                (cells, Some(faces))
+            }
+        };
+        let wanted = self.fields().filter(|field| names.contains(&field.name));
+        let fields = wanted.map(|field| GridField {
+            name: field.name,
+            components: field.components.len().max(1),
+            values: (field.values)(&points, &self.scale),
+        });
+        Grid {
+            fields: fields.collect(),
+            points: self.positions(&points),
+            cells,
+            faces,
+        }
+    }
+
+    /// Returns the names of the fields of a state.
+    pub fn field_names(&self) -> impl Iterator<Item = &'static str> {
+        self.fields().map(|field| field.name)
+    }
+
+    /// Returns the tube whose states are exported.
+    pub fn tube(&self) -> &SampledTube {
+        &self.tube
+    }
+
+    /// Samples a state at the points of a geometry.
+    fn sample(&self, geometry: Geometry, load: &Load, u: &[f64]) -> (Lattice, Points) {
+        let tube = &self.tube;
+        let lattice = match geometry {
+            Geometry::Walls => boundary_lattice(tube, FACETS),
+            Geometry::Meridian => meridian_lattice(tube, INTERVALS),
+            Geometry::Volume | Geometry::Linear => volume_lattice(tube),
+        };
+        let sampled = tube.state(load, u);
+        let points = match geometry {
+            Geometry::Meridian => Points::meridian(&sampled, lattice),
+            _ => Points::sample(&sampled, lattice),
+        };
+        (lattice, points)
+    }
+
+    /// Returns the positions (x, y, z) of points, in the units of the case.
+    fn positions(&self, points: &Points) -> Vec<[f64; 3]> {
+        let length = self.scale.length;
+        points
+            .evaluate(|point, rotation| rotation.vector(point.position).map(|x| length * x))
+            .collect()
     }
 
     /// Creates an empty time series of the surface of the wall.

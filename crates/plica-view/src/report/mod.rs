@@ -24,5 +24,6 @@ pub(crate) use orientation::{VISIBLE_ASYMMETRY, upward_angle};
 pub use pictures::pictures;
 pub use plots::{plot, plot_walls};
 pub use render::{Appearance, ColourScale, Shown, animate, render};
+pub use selection::Excerpt;
 pub use stability::stability_pictures;
 pub use surfaces::open_tube_surfaces;

@@ -80,7 +80,10 @@ impl<'a> Selection<'a> {
     /// Selects the last part of a run in which a single quantity changes, if all that is found on the path lies in that part, or
     /// else the whole path. Twists and dead loads, which are no abscissae, are ignored.
     pub fn of(summary: &'a Summary) -> Self {
-        let (rows, findings) = (summary.rows(), summary.findings());
+        Self::of_path(summary.rows(), summary.findings())
+    }
+
+    fn of_path(rows: &'a [Row], findings: &Findings) -> Self {
         let (abscissa, count) = last_part(rows);
         let begin = rows[rows.len() - count].step;
         let (abscissa, count) = if events(findings).all(|state| state >= begin) {
@@ -98,6 +101,33 @@ impl<'a> Selection<'a> {
                 .filter(|row| chosen.contains(&row.step))
                 .collect(),
         }
+    }
+}
+
+/// The part of a path that its pictures show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Excerpt {
+    /// Label of the abscissa.
+    pub label: String,
+    /// Number and abscissa of every state in the part.
+    pub states: Vec<(usize, f64)>,
+    /// Numbers of the states that are drawn.
+    pub chosen: Vec<usize>,
+}
+
+impl Excerpt {
+    /// Selects the part of a path as for the pictures of a run; none if there is no state.
+    pub fn of(rows: &[Row], findings: &Findings, scale: &Scale) -> Option<Self> {
+        if rows.is_empty() {
+            return None;
+        }
+        let selection = Selection::of_path(rows, findings);
+        let of = |row: &&Row| (row.step, selection.abscissa.of(row));
+        Some(Self {
+            label: selection.abscissa.label(scale),
+            states: selection.rows.iter().map(of).collect(),
+            chosen: selection.chosen.iter().map(|row| row.step).collect(),
+        })
     }
 }
 
