@@ -19,7 +19,8 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Runs a case in a directory, or resumes a run there. Returns the verdict and the closing table.
+/// Runs a case in a directory, or resumes a run there. Returns the reason if the tube could not be followed to
+/// the end.
 #[pyfunction]
 #[pyo3(signature = (text, name, folder, out, overwrite=false, resume=false, threads=None, report=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
@@ -33,28 +34,28 @@ pub fn run(
     resume: bool,
     threads: Option<usize>,
     report: Option<Py<PyAny>>,
-) -> PyResult<(String, String)> {
+) -> PyResult<Option<String>> {
     let plan = read_checked(text, name, &folder)?;
     compute(py, threads, report.as_ref(), |monitor| {
         follow(&plan, text, &out, [overwrite, resume], monitor)
     })?
 }
 
-/// Follows a run to its end.
+/// Follows a run to its end; returns the reason if it is lost.
 fn follow(
     plan: &Plan,
     text: &str,
     out: &Path,
     [overwrite, resume]: [bool; 2],
     monitor: &mut dyn Monitor,
-) -> PyResult<(String, String)> {
+) -> PyResult<Option<String>> {
     let resumes = resume && RunDirectory::exists(out);
     let mut directory = match resumes {
         true => to_resume(plan, text, out)?,
         false => RunDirectory::create(out, text, &plan.title, overwrite).map_err(error_of)?,
     };
     if resumes && directory.is_complete() && directory.stopped_at().is_none() {
-        return Ok((directory.verdict().to_string(), String::new()));
+        return Ok(None);
     }
     let mut run = match resumes {
         true => run_directory::Run::resume(plan, &mut directory, monitor).map_err(error_of)?,
@@ -70,10 +71,12 @@ fn follow(
             directory.write(name, picture).map_err(error_of)?;
         }
     }
-    if *summary.ending() == Ending::Complete {
-        directory.close().map_err(error_of)?;
+    match summary.ending() {
+        Ending::Complete => directory.close().map_err(error_of)?,
+        Ending::Stopped => {}
+        Ending::Lost(lost) => return Ok(Some(lost.to_string())),
     }
-    Ok((directory.verdict().to_string(), summary.to_string()))
+    Ok(None)
 }
 
 /// Opens a run to resume it with a case that may differ in what is still ahead.

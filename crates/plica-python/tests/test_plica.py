@@ -154,6 +154,19 @@ class Runs(unittest.TestCase):
         with self.assertRaises(OSError):
             plica.Run(self.path / "nothing")
 
+    def test_a_run_that_is_lost_says_why(self) -> None:
+        # The tube cannot become a hundredth as wide in one step that is never halved.
+        case = plica.Case(**RING).with_({"solver.max_step_halvings": 0, "solver.max_steps": 2, "stages[1].drive.ring.stretch": 0.02, "stages[1].steps": 1})
+        with self.assertWarns(RuntimeWarning) as warned:
+            run = case.run(self.path, progress=False)
+        self.assertIs(run.verdict, plica.Verdict.LOST)
+        self.assertEqual(len(run), 1)
+        why = str(warned.warning)
+        with self.assertRaises(RuntimeError) as raised:
+            list(case.states())
+        self.assertEqual(str(raised.exception), why)
+        self.assertEqual(plica.evaluate(case)["lost"], why)
+
     def test_a_history_is_a_data_frame(self) -> None:
         import pandas
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -191,14 +192,16 @@ class Case:
 
         ``overwrite`` replaces a run that is there; ``resume`` goes on with it. Ctrl-C stops the run cleanly, and raises
         KeyboardInterrupt; ``resume=True`` then continues it, with the same results to the bit. Where the tube cannot be
-        followed further the run ends, and its ``verdict`` is ``lost``.
+        followed further, the run ends with the verdict ``lost``, and a RuntimeWarning says why.
         """
         from ._run import Run
 
         with reporter(progress, self.title) as report:
-            _native.run(
+            lost = _native.run(
                 self._text, self._name, self._folder, os.fspath(directory), overwrite, resume, threads, report
             )
+        if lost is not None:
+            warnings.warn(lost, RuntimeWarning, stacklevel=2)
         return Run(directory)
 
     def __eq__(self, other: object) -> bool:

@@ -20,7 +20,7 @@ def run(
     resume: bool = ...,
     threads: int | None = ...,
     report: _Report | None = ...,
-) -> tuple[str, str]: ...
+) -> str | None: ...
 def stability(
     path: str,
     highest: int | None,
