@@ -63,7 +63,7 @@ pub fn compute<T: Send>(
     py: Python<'_>,
     wanted: Option<usize>,
     report: Option<&Py<PyAny>>,
-    computation: impl FnOnce(&mut dyn Monitor) -> T + Send,
+    computation: impl FnOnce(&mut (dyn Monitor + Send)) -> T + Send,
 ) -> PyResult<T> {
     let failed = |why: &dyn Display| PyRuntimeError::new_err(format!("cannot compute: {why}"));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(wanted));

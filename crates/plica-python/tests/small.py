@@ -33,6 +33,20 @@ INVAGINATION: dict[str, Any] = dict(
 )
 """The tube of Okino et al. (2025) on a small mesh, up to a wall of 89.9 degrees: a second or two."""
 
+FOLD: dict[str, Any] = dict(
+    title="An end pushes the waist of a thin tube until it touches itself",
+    contact=True,
+    tube={"length": 1.5, "thickness": 0.02},
+    material={"neo-hookean": {"poisson_ratio": 0.3}},
+    muscles={"ring": {"direction": "circular", "zone": [0.5, 1.0]}},
+    mesh={"control_points": {"axial": 50, "around": 12, "thickness": 4}},
+    stages=[
+        {"steps": 5, "drive": {"ring": {"diameter_ratio": 0.3}}},
+        {"steps": 10, "drive": {"ileum": {"displacement": -0.7}}},
+    ],
+)
+"""A fold whose walls touch, in a second or two."""
+
 
 def energy_at(stretch: float) -> float:
     """Return the energy of the ring; a function that processes can import."""
