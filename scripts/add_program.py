@@ -21,7 +21,7 @@ def main() -> None:
         (tree,) = Path(scratch).iterdir()
         scripts = tree / f"{tree.name}.data" / "scripts"
         scripts.mkdir(parents=True)
-        copied = scripts / program.name
+        copied = scripts / ("plica.exe" if program.suffix == ".exe" else "plica")
         shutil.copyfile(program, copied)
         copied.chmod(0o755)
         run("pack", "--dest-dir", folder, tree)
