@@ -1,10 +1,10 @@
 //! The documents agree with the files, commands, tests and columns they name.
 
-use crate::common::{SHORT, files, quoted, read, root, succeed};
+use crate::common::{SHORT, files, quoted, read, root, scratch, succeed};
 use plica::study::Row;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Returns the paths of all pages.
 fn pages() -> Vec<PathBuf> {
@@ -77,6 +77,155 @@ fn the_commands_of_the_pages_exist() {
     assert!(checked > 10, "{checked} commands");
 }
 
+/// Returns the blocks of code of a page with their language.
+fn blocks(page: &str) -> Vec<(&str, &str)> {
+    let blocks = page.split("```").skip(1).step_by(2);
+    blocks.filter_map(|block| block.split_once('\n')).collect()
+}
+
+/// Whether a text is as shown: `…` stands for the rest of a word, and alone in a line for any lines.
+fn is_as_shown(text: &str, shown: &str) -> bool {
+    let mut lines = text.lines();
+    let same = |line: &str, shown: &str| {
+        let mut words = line.split_whitespace();
+        let as_shown = shown.split_whitespace().all(|shown| {
+            let word = words.next().unwrap_or_default();
+            match shown.split_once('…') {
+                Some((before, after)) => word.starts_with(before) && word.ends_with(after),
+                None => word == shown,
+            }
+        });
+        as_shown && words.next().is_none()
+    };
+    let mut any = false;
+    for line in shown.lines() {
+        if line.trim() == "…" {
+            any = true;
+        } else if any {
+            any = false;
+            if !lines.any(|own| same(own, line)) {
+                return false;
+            }
+        } else if !lines.next().is_some_and(|own| same(own, line)) {
+            return false;
+        }
+    }
+    any || lines.next().is_none()
+}
+
+/// Files, commands and what they print, in the order of the page.
+#[test]
+fn the_steps_of_the_tutorial_give_what_it_shows() {
+    let directory = scratch("tutorial");
+    let page = read("docs/tutorial.md");
+    let (mut printed, mut runs, mut compared) = (String::new(), 0, 0);
+    for (language, block) in blocks(&page) {
+        match language {
+            "toml" => {
+                let name = block.lines().next().unwrap().trim_start_matches("# ");
+                fs::write(directory.join(name), block).unwrap();
+            }
+            "sh" => {
+                for line in block.lines() {
+                    let words: Vec<&str> = line.split_whitespace().skip(1).collect();
+                    printed = succeed(&directory, &words);
+                    runs += 1;
+                }
+            }
+            "text" => {
+                assert!(is_as_shown(&printed, block), "{block}\nbut\n{printed}");
+                compared += 1;
+            }
+            _ => assert_eq!(language, "python"),
+        }
+    }
+    assert!(runs >= 5 && compared >= 3, "{runs} {compared}");
+    for picture in ["tubes.png", "curve.png"] {
+        assert!(directory.join(picture).exists(), "{picture}");
+    }
+}
+
+#[test]
+fn a_text_is_as_shown_only_if_its_lines_are() {
+    assert!(is_as_shown("a 12 kPa\nb\nc\n", "a 1… kPa\n…\nc\n"));
+    assert!(!is_as_shown("a 22 kPa\nb\nc\n", "a 1… kPa\n…\nc\n"));
+    assert!(!is_as_shown("a 12 kPa\nb\n", "a 12 kPa\n…\nc\n"));
+    assert!(!is_as_shown("a\nb\n", "a\n"));
+}
+
+/// Returns the keys of the whole case, which come first, and its tables.
+fn split(case: &str) -> [String; 2] {
+    let mut parts = [String::new(), String::new()];
+    let mut tables = 0;
+    for line in case.lines() {
+        tables = tables.max(usize::from(line.starts_with('[')));
+        parts[tables] += &format!("{line}\n");
+    }
+    parts
+}
+
+/// Pieces of cases in the how-to guides, each with what the comment before it adds.
+#[test]
+fn the_pieces_of_cases_in_the_guides_are_valid() {
+    let mut checked = 0;
+    for path in files(&root().join("docs/how-to"), "md") {
+        let page = read(&path);
+        let mut rest = &page[..];
+        while let Some((before, after)) = rest.split_once("```toml\n") {
+            let (block, after) = after.split_once("```").unwrap();
+            rest = after;
+            let comment = before.trim_end().strip_suffix("-->");
+            let context = comment.map_or("", |text| text.rsplit_once("<!-- with\n").unwrap().1);
+            if context.trim() == "a library" {
+                assert!(block.parse::<toml::Table>().is_ok(), "{block}");
+                continue;
+            }
+            let ([keys, tables], [more_keys, more_tables]) = (split(block), split(context));
+            let mut case = keys + &more_keys + &more_tables + &tables;
+            if !case.contains("[[stages]]") {
+                case += "[[stages]]\nsteps = 1\ndrive.inner-wall.pressure = 1e-4\n";
+            }
+            let read = plica::case::read(&case, "piece");
+            assert!(
+                read.is_ok(),
+                "{}:\n{case}\n{:?}",
+                path.display(),
+                read.err()
+            );
+            checked += 1;
+        }
+    }
+    assert!(checked >= 12, "{checked}");
+}
+
+/// Returns the names of the cases.
+fn cases() -> Vec<String> {
+    let cases = files(&root().join("cases"), "toml");
+    let name = |path: &PathBuf| path.file_stem().unwrap().to_str().unwrap().to_owned();
+    cases.iter().map(name).collect()
+}
+
+#[test]
+fn every_case_has_a_page_in_the_gallery() {
+    let index = read("docs/gallery/index.md");
+    for name in cases() {
+        assert!(index.contains(&format!(":link: {name}\n")), "{name}");
+        let case: toml::Table = read(format!("cases/{name}.toml")).parse().unwrap();
+        let page = read(format!("docs/gallery/{name}.md"));
+        let title = format!("\n# {}\n", case["title"].as_str().unwrap());
+        assert!(
+            page.contains(&title),
+            "{name}: run scripts/make-gallery {name}"
+        );
+        let picture = Path::new("docs/gallery").join(format!("{name}.png"));
+        assert_eq!(
+            page.contains(&format!("]({name}.png)")),
+            root().join(picture).exists(),
+            "{name}"
+        );
+    }
+}
+
 #[test]
 fn the_page_on_laws_shows_code_of_the_library() {
     let page = read("CONTRIBUTING.md");
@@ -116,14 +265,16 @@ fn the_rust_code_of_the_readme_runs() {
     readme(SHORT).unwrap();
     let lines =
         |text: &str| -> Vec<String> { text.lines().map(|line| line.trim().to_owned()).collect() };
-    let page = read("README.md");
-    let block = page.split("```rust\n").nth(1).unwrap();
-    let shown = lines(block.split("```").next().unwrap());
     let tested = lines(include_str!("documents.rs"));
-    assert!(
-        tested.windows(shown.len()).any(|lines| lines == shown),
-        "the code of README.md differs from `readme` in this file"
-    );
+    for name in ["README.md", "docs/index.md", "docs/rust-api.md"] {
+        let page = read(name);
+        let block = page.split("```rust\n").nth(1).unwrap();
+        let shown = lines(block.split("```").next().unwrap());
+        assert!(
+            tested.windows(shown.len()).any(|lines| lines == shown),
+            "the code of {name} differs from `readme` in this file"
+        );
+    }
 }
 
 #[test]
