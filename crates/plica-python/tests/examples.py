@@ -1,4 +1,4 @@
-"""Writes the Python code of the guide and of the notebooks to files, one for each document.
+"""Writes the Python code of the pages and of the notebooks to files, one for each document.
 
     python examples.py FOLDER
 """
@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 DOCUMENTS = Path(__file__).parents[3] / "docs"
+PAGES = ["python.md", "install.md", "tutorial.md", "how-to/results.md", "index.md"]
 
 
 def of_page(path: Path) -> str:
@@ -33,7 +34,9 @@ def main() -> None:
     """Write the files."""
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True)
-    (folder / "guide.py").write_text(of_page(DOCUMENTS / "python.md"), encoding="utf-8")
+    for page in PAGES:
+        name = page.replace(".md", "_page.py").replace("/", "_").replace("-", "_")
+        (folder / name).write_text(of_page(DOCUMENTS / page), encoding="utf-8")
     for path in notebooks():
         (folder / f"{path.stem.replace('-', '_')}.py").write_text(of_notebook(path), encoding="utf-8")
 

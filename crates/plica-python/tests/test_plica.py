@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import plica
-from examples import DOCUMENTS, of_page
+from examples import DOCUMENTS, PAGES, of_page
 from small import RING, energy_at
 
 
@@ -255,10 +255,15 @@ class Processes(unittest.TestCase):
             list(plica.Case(**RING).states(progress=True))
         self.assertEqual(errors.getvalue(), "")
 
-    def test_the_examples_of_the_guide_run(self) -> None:
-        code = "import matplotlib\nmatplotlib.use('agg')\n" + of_page(DOCUMENTS / "python.md")
+    def test_the_examples_of_the_pages_run(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([sys.executable, "-"], input=code, cwd=folder, check=True, text=True, stdout=subprocess.DEVNULL)
+            tutorial = (DOCUMENTS / "tutorial.md").read_text(encoding="utf-8")
+            case = tutorial.split("```toml\n")[1].split("```")[0]
+            Path(folder, "tube.toml").write_text(case, encoding="utf-8")  # the case of the home page
+            for page in PAGES:  # in this order: later pages read runs of earlier ones
+                code = "import matplotlib\nmatplotlib.use('agg')\n" + of_page(DOCUMENTS / page)
+                with self.subTest(page):
+                    subprocess.run([sys.executable, "-"], input=code, cwd=folder, check=True, text=True, stdout=subprocess.DEVNULL)
 
     def test_the_program_is_installed_with_the_module(self) -> None:
         program = Path(sys.executable).parent / "plica"
