@@ -83,7 +83,7 @@ fn blocks(page: &str) -> Vec<(&str, &str)> {
     blocks.filter_map(|block| block.split_once('\n')).collect()
 }
 
-/// Whether a text is as shown: `…` stands for the rest of a word, and alone in a line for any lines.
+/// Returns whether a text is as shown: `…` stands for the rest of a word, and alone in a line for any lines.
 fn is_as_shown(text: &str, shown: &str) -> bool {
     let mut lines = text.lines();
     let same = |line: &str, shown: &str| {
