@@ -11,6 +11,9 @@
 //! every distance d from itself, so that a shift makes a travelling wave. Where several muscles of a direction act at a
 //! point, their θ multiply.
 //!
+//! A muscle with an active stress changes the stress instead. Its target is the tension T of its fibres, which adds
+//! the energy T s(z)/max s · w(λ) of their stretch λ, with the law w of [`Tone`].
+//!
 //! | letter | meaning | unit | Rust |
 //! |---|---|---|---|
 //! | ζ, η, ξ | along, around, through the wall | – | [`Direction`] |
@@ -19,12 +22,15 @@
 //! | a, b | ends of the zone | D | [`Muscle::zone`] |
 //! | c | shift of the zone | D | [`crate::tube::Load::shifts`] |
 //! | d | distance between repeats | D | [`Muscle::repeat`] |
+//! | T | tension | E | [`Muscle::active_stress`] |
 
 mod angular_sector;
 mod profile;
 
 pub use angular_sector::{AngularSector, smooth_rise};
 pub use profile::Profile;
+
+use crate::material::{LengthTension, Tone};
 
 /// The direction in which a muscle shortens or lengthens the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +39,36 @@ pub enum Direction {
     Circular,
     /// Along the tube (ζ).
     Longitudinal,
+}
+
+/// A quantity that a stage drives a muscle to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MuscleTarget {
+    /// Dmin/D of a circular muscle.
+    DiameterRatio,
+    /// Lmax/L of a longitudinal muscle.
+    LengthRatio,
+    /// The tension of a muscle with an active stress, in E.
+    Tension,
+}
+
+impl MuscleTarget {
+    /// Returns its value at rest.
+    pub fn at_rest(self) -> f64 {
+        match self {
+            Self::DiameterRatio | Self::LengthRatio => 1.0,
+            Self::Tension => 0.0,
+        }
+    }
+
+    /// Returns its name in a case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::DiameterRatio => "diameter_ratio",
+            Self::LengthRatio => "length_ratio",
+            Self::Tension => "tension",
+        }
+    }
 }
 
 /// One muscle of the wall.
@@ -48,8 +84,11 @@ pub struct Muscle {
     pub repeat: Option<f64>,
     /// Distribution of the activity over the zone.
     pub profile: Profile,
-    /// Sector of the circumference that it acts in; none for all around. Its function multiplies θ − 1.
+    /// Sector of the circumference that it acts in; none for all around. Its function multiplies θ − 1, or the tension.
     pub sector: Option<AngularSector>,
+    /// Energy of its fibres per tension, of a muscle that changes the stress; none for one that changes the stress-free
+    /// state.
+    pub active_stress: Option<Tone>,
 }
 
 impl Muscle {
@@ -62,7 +101,41 @@ impl Muscle {
             repeat: None,
             profile,
             sector: None,
+            active_stress: None,
         }
+    }
+
+    /// Returns the same muscle with an active stress in place of its growth, by a relation of tension and stretch. Its
+    /// fibres have an angle from the circumference toward the axis, in radians.
+    #[must_use]
+    pub fn with_active_stress(self, relation: LengthTension, angle: f64) -> Self {
+        Self {
+            active_stress: Some(Tone::new(1.0, relation, angle)),
+            ..self
+        }
+    }
+
+    /// Returns the quantity that a stage drives it to.
+    pub fn target(&self) -> MuscleTarget {
+        match (&self.active_stress, self.direction) {
+            (Some(_), _) => MuscleTarget::Tension,
+            (None, Direction::Circular) => MuscleTarget::DiameterRatio,
+            (None, Direction::Longitudinal) => MuscleTarget::LengthRatio,
+        }
+    }
+
+    /// Returns true if it changes the stress-free state of the wall.
+    pub fn grows(&self) -> bool {
+        self.active_stress.is_none()
+    }
+
+    /// Returns s(z)/max s at a place that [`Muscle::unshifted`] returns.
+    pub fn activity(&self, z: f64) -> f64 {
+        let [a, b] = self.zone;
+        if z < a || z > b {
+            return 0.0;
+        }
+        self.profile.value((z - a) / (b - a)) / self.profile.largest()
     }
 
     /// Returns the place z − c in the zone before its shift, or between it and its next repeat.
@@ -73,7 +146,7 @@ impl Muscle {
     }
 
     /// Returns the grown stretch θ at a place that [`Muscle::unshifted`] returns, for a target ratio (Dmin/D, or Lmax/L
-    /// by one whole zone) and the length of the tube.
+    /// by one whole zone) and the length of the tube. It is one for a muscle with an active stress.
     pub fn stretch(&self, z: f64, ratio: f64, length: f64) -> f64 {
         let [a, b] = self.zone;
         if z < a || z > b {
@@ -85,9 +158,12 @@ impl Muscle {
     /// Returns θ − 1 where the profile is one.
     fn amplitude(&self, ratio: f64, length: f64) -> f64 {
         let [a, b] = self.zone;
-        match self.direction {
-            Direction::Circular => (ratio - 1.0) / self.profile.largest(),
-            Direction::Longitudinal => (ratio - 1.0) * length / ((b - a) * self.profile.integral()),
+        match self.target() {
+            MuscleTarget::DiameterRatio => (ratio - 1.0) / self.profile.largest(),
+            MuscleTarget::LengthRatio => {
+                (ratio - 1.0) * length / ((b - a) * self.profile.integral())
+            }
+            MuscleTarget::Tension => 0.0,
         }
     }
 
@@ -152,6 +228,22 @@ mod tests {
         let contracted = muscle(Direction::Circular, low);
         assert!((contracted.stretch(0.75, 0.25, 3.0) - 0.25).abs() < 1e-14);
         assert!((contracted.smallest_stretch(0.25, 3.0) - 0.25).abs() < 1e-14);
+    }
+
+    #[test]
+    fn an_active_stress_leaves_the_stress_free_state_and_has_an_activity() {
+        let table = Profile::Table(vec![(0.0, 0.0), (0.5, 0.4), (1.0, 0.0)]);
+        for direction in [Direction::Circular, Direction::Longitudinal] {
+            let m = muscle(direction, table.clone());
+            assert!(m.grows() && m.target().at_rest() == 1.0);
+            let m = m.with_active_stress(LengthTension::Constant, 0.0);
+            assert_eq!(m.target(), MuscleTarget::Tension);
+            assert!(!m.grows() && m.target().at_rest() == 0.0);
+            assert_eq!([0.6, 0.75].map(|z| m.stretch(z, 0.3, 3.0)), [1.0; 2]);
+            for (z, activity) in [(0.4, 0.0), (0.625, 0.5), (0.75, 1.0), (1.1, 0.0)] {
+                assert!((m.activity(z) - activity).abs() < 1e-14, "{z}");
+            }
+        }
     }
 
     #[test]

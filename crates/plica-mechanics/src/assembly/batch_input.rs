@@ -102,7 +102,7 @@ impl SplineTube {
         };
         let mut stretch = vec![];
         for z in batch.z.iter().map(|z| z.0[lane]) {
-            if !self.tube.muscles_are_modified() {
+            if !self.tube.growth_is_modified() {
                 stretch.push(inverse(&|_| self.tube.stretches(self.wall_layer, z, load)));
                 continue;
             }

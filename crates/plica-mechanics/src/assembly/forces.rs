@@ -57,11 +57,11 @@ impl SplineTube {
         let mut forces = self.elastic_forces(load, u)?;
         // Where a law has volumetric points, det Fe only has to be positive at those of its shear part.
         let counts =
-            |part: &Self| part.is_volumetric || self.parts.iter().all(|p| !p.is_volumetric);
+            |part: &Self| part.is_volumetric() || self.parts.iter().all(|p| !p.is_volumetric());
         if !counts(self) {
             forces.smallest_jacobian = f64::INFINITY;
         }
-        for part in &self.parts {
+        for part in self.parts.iter().filter(|part| !part.is_idle(load)) {
             let of_part = part.elastic_forces(load, u)?;
             forces.energy += of_part.energy;
             forces.energy_ungrown += of_part.energy_ungrown;
@@ -83,6 +83,9 @@ impl SplineTube {
         let batches: Vec<BatchForces> = if self.sector.rings < CIRCUMFERENTIAL_BATCH_RINGS {
             let forces = |(number, batch): (usize, &AxialBatch)| {
                 let growth = self.growth_along(batch, load);
+                if growth.is_idle {
+                    return BatchForces::default();
+                }
                 let shape = self.stress_free_in_axial_batch(number);
                 let input = self.axial_input(batch, (&growth, shape.as_deref()), u);
                 with_law_and_degree!(self, self.law, axial::forces, &input)
@@ -143,6 +146,9 @@ impl SplineTube {
         let mut sum = BatchForces::default();
         for lane in 0..batch.elements {
             let growth = self.growth_around(batch, lane, &self.around, load);
+            if growth.is_idle {
+                continue;
+            }
             let input = self.circumferential_input((number, lane), &growth, u);
             let residual = &mut residual[lane * row..][..(self.degree() + 1) * row];
             let part =

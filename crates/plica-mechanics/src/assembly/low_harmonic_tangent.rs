@@ -5,6 +5,7 @@ use super::circumferential::{self, AVERAGED};
 use super::dispatch::{with_degree, with_law_and_degree};
 use super::low_harmonics::{LayerPoints, LowHarmonics, POINTS_THROUGH, THROUGH};
 use super::modified_wall::ModifiedWall;
+use super::spline_tube::PartKind;
 use super::tables::AxialBatch;
 use crate::material::Material;
 use crate::matrix::{BlockBanded, multiply};
@@ -96,14 +97,17 @@ impl SplineTube {
     ) -> Vec<[Vec<f64>; 4]> {
         let size = low.row_size();
         let mut sums = vec![[0, 1, 2, 3].map(|_| vec![0.0; size * size]); low.points_along];
-        let parts = self.all_parts().filter(|part| !part.is_volumetric);
+        let parts = self.all_parts().filter(|part| !part.is_volumetric());
         for (part, layer) in parts.zip(&low.layers) {
+            if part.is_idle(load) {
+                continue;
+            }
             part.add_coupled_sums(low, layer, (batch, lane), load, u, displacement, &mut sums);
         }
         sums
     }
 
-    /// Adds the sums over the points of a layer of the wall.
+    /// Adds the sums over the points of this part of the wall.
     #[allow(clippy::too_many_arguments)] // all of them are needed
     fn add_coupled_sums(
         &self,
@@ -118,6 +122,14 @@ impl SplineTube {
         let (k, padded) = (self.sector.rings, self.padded_rings.padded);
         let row = self.wall.functions() * 3 * padded;
         let growth = self.growth_around(batch, lane, &low.middle, load);
+        if growth.is_idle {
+            return;
+        }
+        let law = match self.kind {
+            PartKind::Muscle(_) => &self.law,
+            // The whole law, also where its volumetric part is integrated apart.
+            _ => &self.tube.layers[self.wall_layer].material,
+        };
         let shape = displacement
             .map(|u| self.stress_free_around(batch, lane, &layer.points, &low.middle, u));
         let input = circumferential::Input {
@@ -132,13 +144,7 @@ impl SplineTube {
             u: &u[(batch.first + lane) * row..][..(self.degree() + 1) * row],
         };
         let mut moduli = vec![0.0; low.points_along * POINTS_THROUGH * AVERAGED * padded];
-        with_law_and_degree!(
-            self,
-            self.tube.layers[self.wall_layer].material,
-            circumferential::moduli,
-            &input,
-            &mut moduli
-        );
+        with_law_and_degree!(self, *law, circumferential::moduli, &input, &mut moduli);
 
         let (columns, size) = (3 * low.modes(), low.row_size());
         let mut moved = vec![0.0; 3 * k * 3 * columns];

@@ -73,7 +73,7 @@ impl LowHarmonics {
                 points: tube.with_residual(part.wall_layer, points),
             }
         };
-        let parts = tube.all_parts().filter(|part| !part.is_volumetric);
+        let parts = tube.all_parts().filter(|part| !part.is_volumetric());
         let layers = parts.map(of_layer).collect();
         // t = slope · R + shift
         let shift = t(0.0);

@@ -38,6 +38,10 @@ impl SplineTube {
             .parts
             .resize_with(self.parts.len(), Default::default);
         for (part, of_part) in self.parts.iter().zip(&mut tangent.parts) {
+            if part.is_idle(load) {
+                *of_part = MatrixFreeTangent::default();
+                continue;
+            }
             part.linearise_elastic(load, u, of_part);
             tangent.average.add(&of_part.average);
         }
@@ -73,6 +77,9 @@ impl SplineTube {
                 let mut averaged = vec![0.0; element * batch.elements];
                 for lane in 0..batch.elements {
                     let growth = &growth[batch.first + lane];
+                    if growth.is_idle {
+                        continue;
+                    }
                     let input = self.circumferential_input((number, lane), growth, &u);
                     let tangent_data = &mut tangent_data[lane * len..][..len];
                     let averaged = &mut averaged[lane * element..][..element];
@@ -122,6 +129,9 @@ impl SplineTube {
                 let len = tangent_data.len() / batch.elements;
                 for lane in 0..batch.elements {
                     let growth = &at.growth[batch.first + lane];
+                    if growth.is_idle {
+                        continue;
+                    }
                     let input = self.circumferential_input((number, lane), growth, v);
                     let tangent_data = &tangent_data[lane * len..][..len];
                     let out = &mut out[lane * row..][..(self.degree() + 1) * row];

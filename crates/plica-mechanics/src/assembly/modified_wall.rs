@@ -1,7 +1,8 @@
-//! Differences of a wall from the plain one at its quadrature points: a stress-free shape, and patches. The kernels
-//! skip all of it in a plain wall.
+//! Differences of a wall from the plain one at its quadrature points: a stress-free shape, patches, and the tension of
+//! muscles with active stress. The kernels skip all of it in a plain wall.
 
 use super::SplineTube;
+use super::spline_tube::PartKind;
 use super::stress_free::{ImperfectionMap, StressFreeStretch};
 use super::tables::{AxialBatch, CircumferentialPoint};
 use crate::tensor::{LANES, Lanes};
@@ -14,7 +15,7 @@ use fearless_simd::{Simd, f64x8};
 pub struct PatchFactors {
     /// One over the growth along, through and around.
     inverse: [Lanes; 3],
-    /// Factor on the energy of the law.
+    /// Factor on the energy of the law; the tension of a muscle with active stress.
     stiffness: Lanes,
 }
 
@@ -34,6 +35,8 @@ pub struct ElementGrowth {
     pub inverse_stretch: Vec<(Lanes, Lanes)>,
     /// Factors of patches; empty if there are none.
     pub patches: Vec<PatchFactors>,
+    /// True for a muscle with active stress that has no tension here.
+    pub is_idle: bool,
 }
 
 impl PatchFactors {
@@ -91,13 +94,13 @@ impl SplineTube {
     /// along, point around).
     pub(super) fn growth_along(&self, batch: &AxialBatch, load: &Load) -> ElementGrowth {
         let (tube, layer) = (&self.tube, self.wall_layer);
-        let varies = self.sector.rings > 1 && tube.muscles_are_modified();
+        let varies = self.sector.rings > 1 && tube.growth_is_modified();
         let inverse_stretch = match varies {
             true => vec![(Lanes([1.0; LANES]), Lanes([1.0; LANES])); batch.z.len()],
             false => self.inverse_stretch(batch, load),
         };
         let mut patches = vec![];
-        if varies || tube.has_patches(layer, load) {
+        if varies || self.has_factors(load) {
             for element in 0..self.sector.rings {
                 for z in &batch.z {
                     for point in &self.around {
@@ -109,10 +112,7 @@ impl SplineTube {
                                 false => (1.0, 1.0),
                             };
                             let through = tube.growth_through(layer, z, phi, load);
-                            (
-                                [along, through, around],
-                                tube.stiffness_factor(layer, z, phi),
-                            )
+                            ([along, through, around], self.energy_factor(z, phi, load))
                         }));
                     }
                 }
@@ -120,8 +120,28 @@ impl SplineTube {
         }
         ElementGrowth {
             inverse_stretch,
+            is_idle: self.is_idle_at(&patches),
             patches,
         }
+    }
+
+    /// Returns true if factors of patches, or a tension, may act in this part of the wall.
+    pub(super) fn has_factors(&self, load: &Load) -> bool {
+        matches!(self.kind, PartKind::Muscle(_)) || self.tube.has_patches(self.wall_layer, load)
+    }
+
+    /// Returns the factor on the energy of the law of this part, at z and the angle `phi`, in radians.
+    pub(super) fn energy_factor(&self, z: f64, phi: f64, load: &Load) -> f64 {
+        match self.kind {
+            PartKind::Muscle(m) => self.tube.tension([self.wall_layer, m], z, phi, load),
+            PartKind::Law | PartKind::Volume => self.tube.stiffness_factor(self.wall_layer, z, phi),
+        }
+    }
+
+    /// Returns true if this part is a muscle with active stress without tension at points.
+    fn is_idle_at(&self, factors: &[PatchFactors]) -> bool {
+        let is_zero = |at: &PatchFactors| at.stiffness.0 == [0.0; LANES];
+        matches!(self.kind, PartKind::Muscle(_)) && factors.iter().all(is_zero)
     }
 
     /// Returns the growth at the points of the elements around the tube in a lane of an axial batch, see
@@ -135,14 +155,14 @@ impl SplineTube {
     ) -> ElementGrowth {
         let (tube, layer) = (&self.tube, self.wall_layer);
         let mut patches = vec![];
-        if tube.has_patches(layer, load) {
+        if self.has_factors(load) {
             for z in batch.z.iter().map(|z| z.0[lane]) {
                 for point in around {
                     for v in 0..self.padded_rings.vectors() {
                         patches.push(PatchFactors::new(|lane| {
                             let phi = self.angle_at(v * LANES + lane, point);
                             let through = tube.growth_through(layer, z, phi, load);
-                            ([1.0, through, 1.0], tube.stiffness_factor(layer, z, phi))
+                            ([1.0, through, 1.0], self.energy_factor(z, phi, load))
                         }));
                     }
                 }
@@ -150,6 +170,7 @@ impl SplineTube {
         }
         ElementGrowth {
             inverse_stretch: self.inverse_stretch_around(batch, lane, around, load),
+            is_idle: self.is_idle_at(&patches),
             patches,
         }
     }

@@ -21,7 +21,7 @@
 //! the wall and j-th around, has the number (i · points through + c) · rings + j.
 
 use super::SplineTube;
-use crate::material::{Law, Material};
+use crate::material::{Composite, Law, Material};
 use crate::spline::gauss_legendre;
 use crate::tensor::Tensor2;
 use crate::tube::Load;
@@ -57,8 +57,8 @@ pub(super) struct ElementPoint {
     h: Vec<Vector>,
     /// dV per unit of (z, R, s), s the fraction of the element around.
     volume: f64,
-    /// Volume free of residual stretch over dV, times the factor of patches on the energy.
-    residual: f64,
+    /// Volume free of residual stretch over dV, times the factor on the energy of each law: that of patches, and tensions.
+    factors: Vec<f64>,
     /// Fp⁻¹; of an imperfect tube B⁻¹ Fp⁻¹, see [`ReferenceTube::at`]. Its columns are directions of the wall (along,
     /// outwards, around), to which laws with fibres refer.
     Fp_inverse: Tensor2,
@@ -91,26 +91,28 @@ impl<'a> ReferenceTube<'a> {
         let (mut energy, mut energy_ungrown, mut squares) = (0.0, 0.0, 0.0);
         let mut R = vec![[0.0; 3]; self.nodes()];
         for element in self.elements() {
-            let (law, nodes) = (self.law(element), self.element_nodes(element));
-            let mut Re = vec![[0.0; 3]; nodes.len()];
-            for (q, dV) in self.quadrature(element) {
-                let dV = dV * q.residual;
-                let Fe = self.elastic(&nodes, &q, &u);
-                let (w, P) = (law.energy(&Fe), law.stress(&Fe));
-                let grown = q.growth * dV; // det Fp dV
-                energy += w * grown;
-                energy_ungrown += w * dV;
-                for (Ra, h) in Re.iter_mut().zip(&q.h) {
-                    let Ph = apply(&P, h);
-                    for i in 0..3 {
-                        Ra[i] += Ph[i] * grown; // δu ⊗ h : P
+            let (nodes, points) = (self.element_nodes(element), self.quadrature(element));
+            for (k, law) in self.laws(element).iter().enumerate() {
+                let mut Re = vec![[0.0; 3]; nodes.len()];
+                for (q, dV) in &points {
+                    let dV = dV * q.factors[k];
+                    let Fe = self.elastic(&nodes, q, &u);
+                    let (w, P) = (law.energy(&Fe), law.stress(&Fe));
+                    let grown = q.growth * dV; // det Fp dV
+                    energy += w * grown;
+                    energy_ungrown += w * dV;
+                    for (Ra, h) in Re.iter_mut().zip(&q.h) {
+                        let Ph = apply(&P, h);
+                        for i in 0..3 {
+                            Ra[i] += Ph[i] * grown; // δu ⊗ h : P
+                        }
                     }
                 }
-            }
-            for (&a, Ra) in nodes.iter().zip(&Re) {
-                squares += dot(Ra, Ra);
-                for i in 0..3 {
-                    R[a][i] += Ra[i];
+                for (&a, Ra) in nodes.iter().zip(&Re) {
+                    squares += dot(Ra, Ra);
+                    for i in 0..3 {
+                        R[a][i] += Ra[i];
+                    }
                 }
             }
         }
@@ -127,12 +129,12 @@ impl<'a> ReferenceTube<'a> {
         let u = self.cartesian(u);
         let mut K = vec![0.0; 9 * self.nodes() * self.nodes()];
         for element in self.elements() {
-            let (law, nodes) = (self.law(element), self.element_nodes(element));
+            let (laws, nodes) = (self.laws(element), self.element_nodes(element));
             let n = nodes.len();
             let mut Ke = vec![[[0.0; 3]; 3]; n * n]; // K_ab for a ≤ b
             for (q, dV) in self.quadrature(element) {
-                let A = moduli(law, &self.elastic(&nodes, &q, &u));
-                let (h, grown) = (&q.h, q.growth * q.residual * dV);
+                let A = moduli(&laws, &q.factors, &self.elastic(&nodes, &q, &u));
+                let (h, grown) = (&q.h, q.growth * dV);
                 for b in 0..n {
                     let mut Ah = [[[0.0; 3]; 3]; 3]; // A_ikjl h_bl
                     for i in 0..3 {
@@ -270,6 +272,9 @@ impl<'a> ReferenceTube<'a> {
         let (theta_z, theta_t) = spline.tube.stretches_at(layer, z, phi, self.load);
         let through = spline.tube.growth_through(layer, z, phi, self.load);
         let stiffness = spline.tube.stiffness_factor(layer, z, phi);
+        let active = self.active_muscles(layer);
+        let tension = |(m, _)| spline.tube.tension([layer, m], z, phi, self.load);
+        let factors = [stiffness].into_iter().chain(active.map(tension));
         let residual = spline.tube.residual_stretch(layer, radius);
         let [grown_z, grown_t] = [theta_z * residual[0], theta_t * residual[1]];
         let shrink = [1.0 / grown_z, 1.0 / through, 1.0 / grown_t];
@@ -284,7 +289,9 @@ impl<'a> ReferenceTube<'a> {
                 .map(|g| apply(&Fp_inverse_transpose, g))
                 .collect(),
             volume: D.determinant() * B.determinant(),
-            residual: residual[0] * residual[1] * stiffness,
+            factors: factors
+                .map(|factor| residual[0] * residual[1] * factor)
+                .collect(),
             Fp_inverse,
             growth: theta_z * theta_t * through,
         }
@@ -318,6 +325,27 @@ impl<'a> ReferenceTube<'a> {
     /// Returns the law of an element.
     pub(super) fn law(&self, element: [usize; 3]) -> &Material {
         &self.spline.tube.layers[self.wall_layer(element)].material
+    }
+
+    /// Returns the laws of an element: that of its layer, and those of muscles with active stress for a tension of one.
+    fn laws(&self, element: [usize; 3]) -> Vec<Material> {
+        let own = self.law(element).clone();
+        let active = self.active_muscles(self.wall_layer(element));
+        [own]
+            .into_iter()
+            .chain(active.map(|(_, law)| law))
+            .collect()
+    }
+
+    /// Returns the muscles with active stress in a layer, by their numbers, and their laws for a tension of one.
+    fn active_muscles(&self, layer: usize) -> impl Iterator<Item = (usize, Material)> {
+        let tube = &self.spline.tube;
+        let muscles = tube.muscles.iter().enumerate();
+        muscles.filter_map(move |(m, muscle)| {
+            let acts = !tube.layers[layer].idle_muscles.contains(&m);
+            let tone = muscle.active_stress.clone().filter(|_| acts);
+            tone.map(|tone| (m, Material::Composite(Composite::only(tone))))
+        })
     }
 
     /// Returns the layer of the wall that an element lies in.
@@ -422,16 +450,19 @@ fn cardinal(p: usize, x: f64) -> f64 {
     (x * below + (p as f64 + 1.0 - x) * above) / p as f64
 }
 
-/// Returns all moduli A_{ik jl} = ∂²w/∂F_{ik}∂F_{jl}; a law fills the blocks k ≤ l.
-fn moduli(law: &Material, Fe: &Tensor2) -> [[[[f64; 3]; 3]; 3]; 3] {
-    let half = law.moduli(Fe);
+/// Returns all moduli A_{ik jl} = Σ f ∂²w/∂F_{ik}∂F_{jl} of laws with factors f; a law fills the blocks k ≤ l.
+fn moduli(laws: &[Material], factors: &[f64], Fe: &Tensor2) -> [[[[f64; 3]; 3]; 3]; 3] {
     let mut A = [[[[0.0; 3]; 3]; 3]; 3];
-    for i in 0..3 {
-        for k in 0..3 {
-            for j in 0..3 {
-                for l in 0..3 {
-                    let (ik, jl) = (3 * k + i, 3 * l + j);
-                    A[i][k][j][l] = if k <= l { half[ik][jl] } else { half[jl][ik] };
+    for (law, factor) in laws.iter().zip(factors) {
+        let half = law.moduli(Fe);
+        for i in 0..3 {
+            for k in 0..3 {
+                for j in 0..3 {
+                    for l in 0..3 {
+                        let (ik, jl) = (3 * k + i, 3 * l + j);
+                        let entry = if k <= l { half[ik][jl] } else { half[jl][ik] };
+                        A[i][k][j][l] += factor * entry;
+                    }
                 }
             }
         }

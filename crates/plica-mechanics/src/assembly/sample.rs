@@ -2,6 +2,7 @@
 
 use super::SplineTube;
 use super::kinematics::{GradientMap, Vector, to_element_frame};
+use super::spline_tube::PartKind;
 use super::stress_free::ImperfectionMap;
 use super::tables::CircumferentialPoint;
 use crate::material::Law;
@@ -33,7 +34,7 @@ pub struct Sample {
     /// det Fe; at the nearest volumetric point, if the volumetric part of the law has points of its
     /// own.
     pub jacobian: f64,
-    /// Strain energy density w(Fe), per grown volume, in E.
+    /// Strain energy density w(Fe), per grown volume and with that of active stresses, in E.
     pub energy_density: f64,
     /// Cauchy stress, in E: rows and columns (z, outwards, around) at the middle of the point's element.
     pub stress: Tensor2,
@@ -103,9 +104,16 @@ impl SplineTube {
         let element = self.wall.find(at.radius);
         let holds = |part: &&Self| part.layers.iter().any(|layer| layer.element == element);
         let parts = || self.all_parts().filter(holds);
-        let own = parts().find(|part| !part.is_volumetric).unwrap_or(self);
-        let sample = own.sample_here(load, u, at);
-        let Some(volume) = parts().find(|part| part.is_volumetric) else {
+        let own = parts().find(|part| !part.is_volumetric()).unwrap_or(self);
+        let mut sample = own.sample_here(load, u, at);
+        for part in parts() {
+            if matches!(part.kind, PartKind::Muscle(_)) && !part.is_idle(load) {
+                let active = part.sample_here(load, u, at);
+                sample.energy_density += active.energy_density;
+                sample.stress = sum(sample.stress, active.stress);
+            }
+        }
+        let Some(volume) = parts().find(|part| part.is_volumetric()) else {
             return sample;
         };
         let points = volume.layers.iter().flat_map(|layer| {
@@ -194,11 +202,11 @@ impl SplineTube {
         at: Point,
     ) -> (Option<ImperfectionMap<f64>>, [f64; 2]) {
         let (tube, layer) = (&self.tube, self.wall_layer);
-        if !tube.has_patches(layer, load) {
+        if !self.has_factors(load) {
             return (map, [1.0; 2]);
         }
         let through = tube.growth_through(layer, at.z, at.angle, load);
-        let stiffness = tube.stiffness_factor(layer, at.z, at.angle);
+        let stiffness = self.energy_factor(at.z, at.angle, load);
         let map = map.unwrap_or(ImperfectionMap::identity(1.0));
         let map = map.with_patch([1.0, 1.0 / through, 1.0], stiffness);
         (Some(map), [through, stiffness])

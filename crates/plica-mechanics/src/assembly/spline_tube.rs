@@ -7,7 +7,8 @@ use super::coulomb::ELASTIC_SLIP;
 use super::imperfection::geometry;
 use super::stress_free::StressFreeStretch;
 use super::tables::{AxialBatch, CircumferentialPoint, Layer, bases, full_rules, reduced_rules};
-use crate::material::Material;
+use crate::activation::Muscle;
+use crate::material::{Composite, Material};
 use crate::rings::Sector;
 use crate::spline::{Basis, Circle, gauss_legendre};
 use crate::tube::{Integration, Load, Mesh, Tube};
@@ -43,14 +44,25 @@ pub struct SplineTube {
     pub(super) law: Material,
     /// Number of the layer of the wall.
     pub(super) wall_layer: usize,
-    /// True if `law` is the volumetric part of a law, integrated at fewer points than the shear part.
-    pub(super) is_volumetric: bool,
-    /// The other parts of the wall: its other layers, and the volumetric parts of laws.
+    /// The energy that `law` is.
+    pub(super) kind: PartKind,
+    /// The other parts of the wall: its other layers, the volumetric parts of laws, and active stresses.
     pub(super) parts: Vec<SplineTube>,
     /// Barrier of contact with obstacles.
     pub(super) barrier: Barrier,
     /// Largest elastic slip of friction, in ranges of the barrier.
     pub(super) elastic_slip: f64,
+}
+
+/// The energy of a part of the wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PartKind {
+    /// That of the law of a layer, or of its shear part.
+    Law,
+    /// The volumetric part of a law, integrated at fewer points than the shear part.
+    Volume,
+    /// The active stress of a muscle in a layer: a law for a tension of one, which the tension of the muscle multiplies.
+    Muscle(usize),
 }
 
 /// Stress-free shape of an imperfect wall.
@@ -108,14 +120,14 @@ impl SplineTube {
             stress_free_shape: None,
             law: tube.layers[0].material.clone(),
             wall_layer: 0,
-            is_volumetric: false,
+            kind: PartKind::Law,
             parts: vec![],
         };
         spline.with_parts(&layers, mesh.volumetric, displacement.as_deref())
     }
 
     /// Returns the tube with the parts of its wall: every layer, with the volumetric part of its law apart if that is
-    /// integrated at fewer points. `displacement` is that of the stress-free shape.
+    /// integrated at fewer points, and the muscles with active stress in it. `displacement` is that of the stress-free shape.
     fn with_parts(
         self,
         layers: &[Range<usize>],
@@ -136,18 +148,21 @@ impl SplineTube {
                     (shear, Some(volume))
                 }
             };
-            let part = |rules: &[_], law, is_volumetric| {
-                let part = self.part((l, elements.start), rules, law, is_volumetric);
+            let part = |rules: &[_], law, kind| {
+                let part = self.part((l, elements.start), rules, law, kind);
                 match displacement {
                     Some(displacement) => part.with_stress_free_shape(displacement.to_vec()),
                     None => part,
                 }
             };
-            parts.push(part(rules, law, false));
+            let own = part(rules, law, PartKind::Law);
+            let active = self.active_parts(&own);
+            parts.push(own);
             if let Some(volume) = volume {
                 let reduced = reduced_rules(self.degree(), elements.len());
-                parts.push(part(&reduced, volume, true));
+                parts.push(part(&reduced, volume, PartKind::Volume));
             }
+            parts.extend(active);
         }
         let others = parts.split_off(1);
         let first = parts.swap_remove(0);
@@ -163,16 +178,34 @@ impl SplineTube {
         (layer, first): (usize, usize),
         rules: &[Vec<(f64, f64)>],
         law: Material,
-        is_volumetric: bool,
+        kind: PartKind,
     ) -> Self {
         Self {
             layers: self.with_residual(layer, Layer::all(&self.wall, first, rules)),
             law,
             wall_layer: layer,
-            is_volumetric,
+            kind,
             parts: vec![],
             ..self.clone()
         }
+    }
+
+    /// Returns the active stresses of the muscles of a layer, at the quadrature points of its part.
+    fn active_parts(&self, layer: &Self) -> Vec<Self> {
+        let idle = &self.tube.layers[layer.wall_layer].idle_muscles;
+        let part = |(m, muscle): (usize, &Muscle)| {
+            let tone = muscle.active_stress.clone()?;
+            Some(Self {
+                law: Material::Composite(Composite::only(tone)),
+                kind: PartKind::Muscle(m),
+                ..layer.clone()
+            })
+        };
+        let muscles = self.tube.muscles.iter().enumerate();
+        muscles
+            .filter(|(m, _)| !idle.contains(m))
+            .filter_map(part)
+            .collect()
     }
 
     /// Adds the residual stretch of a layer of the wall to its elements.
@@ -190,9 +223,19 @@ impl SplineTube {
         std::iter::once(self).chain(&self.parts)
     }
 
+    /// Returns true if this part is the volumetric part of a law.
+    pub(super) fn is_volumetric(&self) -> bool {
+        self.kind == PartKind::Volume
+    }
+
+    /// Returns true if this part is the active stress of a muscle without tension.
+    pub(super) fn is_idle(&self, load: &Load) -> bool {
+        matches!(self.kind, PartKind::Muscle(m) if load.muscles[m] == 0.0)
+    }
+
     /// Returns all elements through the wall.
     pub(super) fn elements_through(&self) -> impl Iterator<Item = &Layer> {
-        let parts = self.all_parts().filter(|part| !part.is_volumetric);
+        let parts = self.all_parts().filter(|part| part.kind == PartKind::Law);
         parts.flat_map(|part| &part.layers)
     }
 

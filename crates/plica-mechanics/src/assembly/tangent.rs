@@ -48,7 +48,7 @@ impl SplineTube {
         let mut matrix = BlockBanded::zeros(self.axial.functions(), m, p);
         let own: Vec<_> = self.around.iter().map(rotations).collect();
         self.add_elastic_tangent(load, u, &own, &mut matrix);
-        for part in &self.parts {
+        for part in self.parts.iter().filter(|part| !part.is_idle(load)) {
             part.add_elastic_tangent(load, u, &own, &mut matrix);
         }
         self.add_wall_tangent(load, u, &own, &mut matrix);
@@ -73,6 +73,9 @@ impl SplineTube {
                 .enumerate()
                 .map(|(number, batch)| {
                     let growth = self.growth_along(batch, load);
+                    if growth.is_idle {
+                        return (batch.first, BatchTangent::default());
+                    }
                     let shape = self.stress_free_in_axial_batch(chunk * together + number);
                     let input = self.axial_input(batch, (&growth, shape.as_deref()), u);
                     (

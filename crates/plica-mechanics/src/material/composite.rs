@@ -98,6 +98,20 @@ impl Matrix {
 }
 
 impl Composite {
+    /// Returns an active tension without a matrix.
+    pub fn only(tone: Tone) -> Self {
+        let nothing = NeoHookean {
+            mu: 0.0,
+            lambda: 0.0,
+            volumetric: Volumetric::Quadratic,
+        };
+        Self {
+            matrix: Matrix::NeoHookean(nothing),
+            fibres: vec![],
+            tone: Some(tone),
+        }
+    }
+
     /// Returns the parts without and with the volumetric constant of the matrix.
     pub(super) fn parts(&self) -> [Self; 2] {
         let [shape, volume] = self.matrix.parts();

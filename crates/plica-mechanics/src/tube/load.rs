@@ -6,7 +6,7 @@ use super::Placement;
 /// A load of a tube.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Load {
-    /// Target of each muscle of the tube, in the order of the tube: Dmin/D or Lmax/L.
+    /// Target of each muscle of the tube, in the order of the tube: Dmin/D, Lmax/L, or the tension in E.
     pub muscles: Vec<f64>,
     /// Shift of the zone of each muscle along the tube, in D.
     pub shifts: Vec<f64>,

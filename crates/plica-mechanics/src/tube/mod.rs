@@ -23,7 +23,7 @@ pub use patch::{Patch, Region};
 pub use random::Random;
 pub use wall_layer::{Opening, ResidualStretch, WallLayer};
 
-use crate::activation::{Direction, Muscle};
+use crate::activation::{Direction, Muscle, MuscleTarget};
 
 /// Points at which the grown length is integrated where zones overlap, repeat or leave the tube.
 const LENGTH_POINTS: usize = 4096;
@@ -126,11 +126,15 @@ impl Tube {
         moduli.fold(0.0, f64::max)
     }
 
-    /// Returns the load at rest: all muscles at ratio one, no displacement of the ends, no pressure, obstacles at their
+    /// Returns the load at rest: all muscles at ratio one or without tension, no displacement of the ends, no pressure, obstacles at their
     /// first placement, no growth of patches.
     pub fn rest(&self) -> Load {
         Load {
-            muscles: vec![1.0; self.muscles.len()],
+            muscles: self
+                .muscles
+                .iter()
+                .map(|muscle| muscle.target().at_rest())
+                .collect(),
             shifts: vec![0.0; self.muscles.len()],
             ends: [EndMotion::default(); 2],
             pressures: [Pressure::default(); 2],
@@ -162,12 +166,30 @@ impl Tube {
         })
     }
 
-    /// Returns true if an imperfection, a sector or a patch modifies a muscle, so that its strength may depend on the angle.
-    pub fn muscles_are_modified(&self) -> bool {
-        let imperfect = |i: &Imperfection| matches!(i.of, Part::Muscle(_));
-        let patched = |patch: &Patch| patch.muscles.iter().any(|factor| *factor != 1.0);
+    /// Returns the tension of a muscle with an active stress in a layer, at z and the angle `phi`, in radians, under a load.
+    pub fn tension(&self, [layer, m]: [usize; 2], z: f64, phi: f64, load: &Load) -> f64 {
+        if self.layers[layer].idle_muscles.contains(&m) {
+            return 0.0;
+        }
+        let in_zone = self.muscles[m].unshifted(z, load.shifts[m]);
+        match load.muscles[m] * self.muscles[m].activity(in_zone) {
+            0.0 => 0.0,
+            tension => tension * self.strength([layer, m], [in_zone, z], phi),
+        }
+    }
+
+    /// Returns true if an imperfection, a sector or a patch modifies a muscle that changes the stress-free state, so that
+    /// its strength may depend on the angle.
+    pub fn growth_is_modified(&self) -> bool {
+        let grows = |m: usize| self.muscles[m].grows();
+        let imperfect = |i: &Imperfection| matches!(i.of, Part::Muscle(m) if grows(m));
+        let patched = |patch: &Patch| {
+            let mut factors = patch.muscles.iter().enumerate();
+            factors.any(|(m, factor)| *factor != 1.0 && grows(m))
+        };
+        let in_sector = |muscle: &Muscle| muscle.sector.is_some() && muscle.grows();
         self.imperfections.iter().any(imperfect)
-            || self.muscles.iter().any(|muscle| muscle.sector.is_some())
+            || self.muscles.iter().any(in_sector)
             || self.patches.iter().any(patched)
     }
 
@@ -240,7 +262,7 @@ impl Tube {
         let idle = &self.layers[layer].idle_muscles;
         let (mut along, mut around) = (1.0, 1.0);
         for (m, muscle) in self.muscles.iter().enumerate() {
-            if idle.contains(&m) {
+            if idle.contains(&m) || !muscle.grows() {
                 continue;
             }
             let z = muscle.unshifted(z, load.shifts[m]);
@@ -257,12 +279,12 @@ impl Tube {
     /// Returns the grown length over the length, Lmax/L. Muscles in different layers count as if they acted in the same.
     pub fn length_ratio(&self, load: &Load) -> f64 {
         if self.each_zone_is_whole(load) {
-            let changes = self.ratios(load, Direction::Longitudinal);
+            let changes = self.ratios(load, MuscleTarget::LengthRatio);
             return 1.0 + changes.map(|ratio| ratio - 1.0).sum::<f64>();
         }
         let along = |z: f64| {
             let muscles = self.muscles.iter().enumerate();
-            let along = muscles.filter(|(_, muscle)| muscle.direction == Direction::Longitudinal);
+            let along = muscles.filter(|(_, muscle)| muscle.target() == MuscleTarget::LengthRatio);
             let theta = |(m, muscle): (usize, &Muscle)| {
                 let z = muscle.unshifted(z, load.shifts[m]);
                 muscle.stretch(z, load.muscles[m], self.length)
@@ -276,7 +298,7 @@ impl Tube {
     /// Returns true if every longitudinal muscle acts on one zone, which lies within the tube and apart from the others.
     fn each_zone_is_whole(&self, load: &Load) -> bool {
         let muscles = self.muscles.iter().zip(&load.shifts);
-        let along = muscles.filter(|(muscle, _)| muscle.direction == Direction::Longitudinal);
+        let along = muscles.filter(|(muscle, _)| muscle.target() == MuscleTarget::LengthRatio);
         let mut zones = vec![];
         for (muscle, shift) in along {
             let zone = muscle.zone.map(|z| z + shift);
@@ -294,20 +316,20 @@ impl Tube {
 
     /// Returns the smallest grown diameter over the diameter, Dmin/D, of the circular muscles.
     pub fn diameter_ratio(&self, load: &Load) -> f64 {
-        self.ratios(load, Direction::Circular)
+        self.ratios(load, MuscleTarget::DiameterRatio)
             .reduce(f64::min)
             .unwrap_or(1.0)
     }
 
-    /// Returns the target ratios of the muscles of one direction.
+    /// Returns the targets of one kind.
     fn ratios<'a>(
         &'a self,
         load: &'a Load,
-        direction: Direction,
+        target: MuscleTarget,
     ) -> impl Iterator<Item = f64> + 'a {
         let pairs = self.muscles.iter().zip(&load.muscles);
         pairs
-            .filter(move |(muscle, _)| muscle.direction == direction)
+            .filter(move |(muscle, _)| muscle.target() == target)
             .map(|(_, &ratio)| ratio)
     }
 }

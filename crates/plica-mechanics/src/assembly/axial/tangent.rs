@@ -19,7 +19,7 @@ use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
 /// K of a batch, the lower half by rows of control points. For every row of the batch, entry
 /// (`row`, `column`) of the block `d` rows below the diagonal is at `((d * m + column) * m + row) *
 /// rows`, where m is the size of a row. Diagonal blocks are full.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct BatchTangent {
     /// The entries.
     pub entries: Vec<f64>,

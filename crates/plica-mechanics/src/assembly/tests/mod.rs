@@ -1,5 +1,6 @@
 //! Tests of assembly, and the tubes and displacements that they share.
 
+mod active_stress;
 mod batches;
 mod boundary_conditions;
 mod imperfection;
