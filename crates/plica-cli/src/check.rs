@@ -4,13 +4,13 @@ use crate::args::CaseArguments;
 use crate::failure::Failure;
 use crate::law_text::law_name;
 use crate::{case_file, console};
-use plica::activation::AngularSector;
+use plica::activation::{AngularSector, Muscle};
 use plica::material::{Material, NeoHookean, Volumetric};
 use plica::run_directory::DiskUse;
 use plica::spline::Circle;
-use plica::study::{Plan, check_memory, forecast};
+use plica::study::{Plan, Scale, check_memory, forecast};
 use plica::tube::{
-    End, Foundation, Imperfection, Integration, Outline, Part, Patch, Region, Shape,
+    End, Foundation, Imperfection, Integration, Load, Outline, Part, Patch, Region, Shape,
     SpringDirection, Symmetry, Tube, WallLayer,
 };
 
@@ -40,9 +40,13 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
     };
     let scheme = plan.solver.scheme.name();
     let states = 1 + plan.stages.iter().map(|stage| stage.steps).sum::<usize>();
-    let muscles = tube.muscles.iter().map(|muscle| match &muscle.sector {
-        Some(own) => format!("{} ({})", muscle.name, sector(own)),
-        None => muscle.name.clone(),
+    let muscles = tube.muscles.iter().map(|muscle| {
+        let active = (!muscle.grows()).then(|| "active stress".to_owned());
+        let kinds: Vec<String> = muscle.sector.iter().map(sector).chain(active).collect();
+        match kinds.is_empty() {
+            true => muscle.name.clone(),
+            false => format!("{} ({})", muscle.name, kinds.join(", ")),
+        }
     });
     let muscles: Vec<String> = muscles.collect();
     let mut rows = vec![
@@ -171,10 +175,11 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         rows.insert(1, ("units", units));
     }
     let muscles = rows.iter().position(|row| row.0 == "muscles");
-    if let Some(at) = muscles.filter(|_| !tube.muscles.is_empty()) {
-        for (i, line) in stretches(plan).into_iter().enumerate() {
-            let name = if i == 0 { "stretches" } else { "" };
-            rows.insert(at + 1 + i, (name, line));
+    let at = muscles.map_or(rows.len(), |at| at + 1);
+    for (title, lines) in [("tensions", tensions(plan)), ("stretches", stretches(plan))] {
+        for (i, line) in lines.into_iter().enumerate() {
+            let name = if i == 0 { title } else { "" };
+            rows.insert(at + i, (name, line));
         }
     }
     rows
@@ -222,21 +227,54 @@ fn disk(plan: &Plan) -> String {
     format!("about {total}: {}", parts.join(", "))
 }
 
+/// Describes the smallest and largest tension of the muscles with active stress in each stage.
+fn tensions(plan: &Plan) -> Vec<String> {
+    let scale = Scale::of(plan.units.as_ref());
+    of_stages(
+        plan,
+        |muscle| !muscle.grows(),
+        |m, loads| {
+            let tensions = loads.map(|load| scale.stress * load.muscles[m]);
+            let (least, largest) =
+                tensions.fold((f64::INFINITY, 0.0), |(a, b), x| (x.min(a), x.max(b)));
+            format!("{least:.3} to {largest:.3} {}", scale.stress_name)
+        },
+    )
+}
+
 /// Describes the smallest and largest stress-free stretch of the muscles in each stage.
 fn stretches(plan: &Plan) -> Vec<String> {
     let tube = &plan.tube;
+    of_stages(plan, Muscle::grows, |m, loads| {
+        let muscle = &tube.muscles[m];
+        let (mut least, mut largest) = (1.0_f64, 1.0_f64);
+        for load in loads {
+            let ratio = load.muscles[m];
+            least = least.min(muscle.smallest_stretch(ratio, tube.length));
+            // The stretch is linear in the ratio, and 1 at 1.
+            largest = largest.max(2.0 - muscle.smallest_stretch(2.0 - ratio, tube.length));
+        }
+        format!("{least:.2} to {largest:.2}")
+    })
+}
+
+/// Describes muscles in each stage, from the loads of the stage and the one at its begin.
+fn of_stages(
+    plan: &Plan,
+    is_described: impl Fn(&Muscle) -> bool,
+    describe: impl Fn(usize, &mut dyn Iterator<Item = &Load>) -> String,
+) -> Vec<String> {
+    let muscles = plan.tube.muscles.iter().enumerate();
+    let muscles: Vec<_> = muscles.filter(|(_, muscle)| is_described(muscle)).collect();
+    if muscles.is_empty() {
+        return vec![];
+    }
     let mut before = plan.first_load();
     let mut lines = vec![];
     for stage in &plan.stages {
-        let described = tube.muscles.iter().enumerate().map(|(m, muscle)| {
-            let (mut least, mut largest) = (1.0_f64, 1.0_f64);
-            for load in stage.loads().chain([&before]) {
-                let ratio = load.muscles[m];
-                least = least.min(muscle.smallest_stretch(ratio, tube.length));
-                // The stretch is linear in the ratio, and 1 at 1.
-                largest = largest.max(2.0 - muscle.smallest_stretch(2.0 - ratio, tube.length));
-            }
-            format!("{} {least:.2} to {largest:.2}", muscle.name)
+        let described = muscles.iter().map(|(m, muscle)| {
+            let text = describe(*m, &mut stage.loads().chain([&before]));
+            format!("{} {text}", muscle.name)
         });
         let described: Vec<String> = described.collect();
         lines.push(format!("{}: {}", stage.name, described.join(", ")));

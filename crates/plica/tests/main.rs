@@ -1,5 +1,6 @@
 //! Tests of the library through its public interface.
 
+mod active_stress;
 mod common;
 
 mod contact;

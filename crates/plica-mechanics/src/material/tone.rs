@@ -1,4 +1,4 @@
-//! A constant active tension along the fibres of a muscle, a part of the energy of a [`Composite`](super::Composite).
+//! An active tension along the fibres of a muscle, a part of the energy of a [`Composite`](super::Composite).
 //!
 //! With the stretch λ = |Fe a| of the fibres, w(1) = 0 and w′(λ) = T f(λ): the nominal stress along the fibres is the tension
 //! T times the fraction f of a [`LengthTension`]. Where f falls, w is not convex.
@@ -6,7 +6,7 @@
 use super::{LengthTension, Moduli};
 use crate::tensor::{Real, Tensor2};
 
-/// A constant active tension.
+/// An active tension.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tone {
     /// Tension T, with the unit of a stress.
@@ -29,7 +29,7 @@ impl Tone {
     }
 
     /// Returns whether reflection in a plane through the axis leaves the direction unchanged.
-    pub(super) fn is_mirror_symmetric(&self) -> bool {
+    pub fn is_mirror_symmetric(&self) -> bool {
         (self.direction[0] * self.direction[1]).abs() < 1e-9
     }
 

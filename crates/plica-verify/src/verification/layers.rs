@@ -137,7 +137,7 @@ pub fn laws(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
 }
 
 /// Returns media and adventitia of a carotid artery (Holzapfel, Gasser and Ogden 2000), in mm and kPa.
-fn carotid([inner, middle, outer]: [f64; 3]) -> LayeredWall {
+pub(super) fn artery_of([inner, middle, outer]: [f64; 3]) -> LayeredWall {
     let media = Layer::new(middle, 3.0, 1000.0);
     let adventitia = Layer::new(outer, 0.3, 1000.0);
     LayeredWall {
@@ -153,12 +153,12 @@ fn carotid([inner, middle, outer]: [f64; 3]) -> LayeredWall {
 /// Records the radii of a carotid artery, with and without residual stress, and its stresses.
 pub fn artery(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     let source = "an independent integration";
-    let wall = carotid([0.71, 0.97, 1.10]);
-    let mut opened = carotid([1.43, 1.69, 1.82]);
+    let wall = artery_of([0.71, 0.97, 1.10]);
+    let mut opened = artery_of([1.43, 1.69, 1.82]);
     for layer in &mut opened.layers {
         layer.around = [5.0 / 9.0; 2];
     }
-    let mut active = carotid([0.71, 0.97, 1.10]);
+    let mut active = artery_of([0.71, 0.97, 1.10]);
     active.layers[0].tone = Some([50.0, 1.4, 0.8]);
     let one = active.inflate(13.33, 8)?;
     let (problem, state) = inflated(&model(&active, &[6, 4]), &active, 13.33, 16)?;
@@ -211,7 +211,7 @@ pub fn artery(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
 
 /// Records the radii of a carotid artery described as it is at rest, with the sector to which it opens.
 pub fn opening_angle(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
-    let wall = carotid([0.71, 0.97, 1.10]);
+    let wall = artery_of([0.71, 0.97, 1.10]);
     let mut model = model(&wall, &[6, 4]);
     for layer in &mut model.tube.layers {
         layer.residual.opening = Some(Opening {

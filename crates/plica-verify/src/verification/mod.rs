@@ -19,6 +19,7 @@
 //! A row outside its tolerance is marked FAILED. Tolerances are those that the meshes used should keep.
 #![allow(non_snake_case)] // formulas keep the letters of their sources
 
+mod active_stress;
 mod columns;
 mod contact;
 mod cross_checks;
@@ -98,6 +99,11 @@ pub const CHECKS: &[Check] = &[
     ),
     quick("laws", "inflation of rings of other laws", layers::laws),
     quick("artery", "inflation of a carotid artery", layers::artery),
+    quick(
+        "active-stress",
+        "tubes whose muscles contract under pressure",
+        active_stress::constriction,
+    ),
     quick(
         "opening-angle",
         "a carotid artery that springs open",

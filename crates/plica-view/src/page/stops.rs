@@ -59,8 +59,8 @@ pub fn of_state(state: &SavedState) -> Parts {
         .muscles
         .iter()
         .map(|(name, _)| format!("muscle {name}"));
-    // The target of a muscle at rest is 1.
-    let muscles = names.zip(load.muscles.iter().map(|target| target - 1.0));
+    let targets = state.muscles.iter().zip(&load.muscles);
+    let muscles = names.zip(targets.map(|((_, target), value)| value - target.at_rest()));
     let names = state
         .muscles
         .iter()
@@ -137,12 +137,12 @@ fn apart(a: &Parts, b: &Parts, sizes: &Parts) -> f64 {
 mod tests {
     use super::*;
     use crate::fixture;
-    use plica::activation::Direction;
+    use plica::activation::MuscleTarget;
     use plica::tube::Symmetry;
 
     fn state(muscle: f64, dead: f64) -> SavedState {
         let mut state = fixture::state(&fixture::plan(Symmetry::Axisymmetric), 0);
-        state.muscles = vec![("circular".into(), Direction::Circular)];
+        state.muscles = vec![("circular".into(), MuscleTarget::DiameterRatio)];
         state.load.muscles = vec![muscle];
         state.load.pressures[1].dead = dead;
         state

@@ -1,4 +1,4 @@
-//! A target of a stage over its time.
+//! Targets of a stage over its time: numbers, and vectors of them.
 
 use super::key::{Key, Kind};
 use super::problem::Problems;
@@ -80,6 +80,43 @@ impl Course {
     }
 }
 
+/// A target of a stage with N components, as written.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum VectorCourse<const N: usize> {
+    /// The value at the end of the stage.
+    Value([f64; N]),
+    /// Points (time, value), with times from the start of the stage.
+    Points(Vec<(f64, [f64; N])>),
+}
+
+impl<const N: usize> VectorCourse<N> {
+    /// Returns its values, the one at the end last.
+    pub fn values(&self) -> Vec<[f64; N]> {
+        match self {
+            Self::Value(value) => vec![*value],
+            Self::Points(points) => points.iter().map(|point| point.1).collect(),
+        }
+    }
+
+    /// Returns the same with another function of the values.
+    pub fn map(&self, of: impl Fn([f64; N]) -> [f64; N]) -> Self {
+        match self {
+            Self::Value(value) => Self::Value(of(*value)),
+            Self::Points(points) => Self::Points(points.iter().map(|&(t, x)| (t, of(x))).collect()),
+        }
+    }
+
+    /// Returns component i.
+    pub fn component(&self, i: usize) -> Course {
+        match self {
+            Self::Value(value) => Course::Value(value[i]),
+            Self::Points(points) => {
+                Course::Points(points.iter().map(|(t, x)| [*t, x[i]]).collect())
+            }
+        }
+    }
+}
+
 /// Largest number of points.
 const LARGEST_COUNT: usize = 100_000;
 
@@ -122,9 +159,42 @@ impl Read for Course {
     }
 }
 
+impl<const N: usize> Read for VectorCourse<N> {
+    const KIND: Kind = Kind::VectorCourse(N);
+
+    fn read(problems: &mut Problems, key: &Key, path: &str, value: &Value) -> Option<Self> {
+        let vector = |x: &[f64]| std::array::from_fn(|i| x[i]);
+        let list = value.get_ref().as_array();
+        let points = list.filter(|list| list.iter().all(|point| point.get_ref().is_array()));
+        let Some(points) = points else {
+            let read = super::read::numbers(problems, key, path, (value, value), N)?;
+            return Some(Self::Value(vector(&read)));
+        };
+        let mut all = vec![];
+        for point in points {
+            let read = super::read::numbers(problems, key, path, (point, value), N + 1)?;
+            all.push((read[0], vector(&read[1..])));
+        }
+        Some(Self::Points(all))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_vector_has_a_course_of_each_component() {
+        let points = VectorCourse::Points(vec![(1.0, [2.0, 3.0]), (2.0, [4.0, 5.0])]);
+        let twice = points.map(|x| x.map(|x| 2.0 * x));
+        assert_eq!(
+            twice.component(1),
+            Course::Points(vec![[1.0, 6.0], [2.0, 10.0]])
+        );
+        assert_eq!(points.values(), [[2.0, 3.0], [4.0, 5.0]]);
+        let value = VectorCourse::Value([1.0, 2.0]);
+        assert_eq!(value.component(0), Course::Value(1.0));
+    }
 
     #[test]
     fn a_course_begins_where_the_stage_does_and_stays_at_its_last_value() {

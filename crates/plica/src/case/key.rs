@@ -36,6 +36,8 @@ pub(super) enum Kind {
     Numbers,
     /// A number, or `[[time, value], …]`
     Course,
+    /// As many numbers, as `[x, y]` or `[x, y, z]`, or a list of such with the time first, `[[time, x, y], …]`
+    VectorCourse(usize),
     /// A table with these keys.
     Table(&'static [Key]),
     /// A list of tables with these keys.

@@ -1,10 +1,11 @@
 //! All keys of the case file. A key is declared here, and nowhere else: its doc comment, default, unit
 //! and range are what the reference page, the schema and the checks are made of.
 
-use super::course::Course;
+use super::course::{Course, VectorCourse};
 use super::key::{Key, Kind, LENGTH, STIFFNESS, STRESS, default, described, required};
 pub(super) use super::law_keys::{
-    Fibres, Fung, Law, Material, MooneyRivlin, NamedMaterial, NeoHookean, Residual, Tone,
+    ActiveStress, Fibres, Fung, Law, Material, MooneyRivlin, NamedMaterial, NeoHookean, Residual,
+    Tone,
 };
 use super::problem::Problems;
 use super::read::{Fields, Read, Table, Value, choice, choose, table};
@@ -153,8 +154,12 @@ table! {
         /// The name of the layer that it acts in.
         layer: Option<String> = described("all layers", "media");
         /// The sector of the circumference that it acts in: half of it, or three taeniae. Its target is that of the middle of
-        /// the sector; θ − 1 falls to zero at the edges.
+        /// the sector; θ − 1, or the tension, falls to zero at the edges.
         sector: Option<Sector> = described("all around", "{ width_degrees = 180.0 }");
+        /// The active stress of its fibres. With it the muscle does not change the stress-free size of the wall; stages drive
+        /// the `tension` of its fibres, whose stress depends on their stretch. `{}` is a stress that does not.
+        active_stress: Option<ActiveStress> =
+            described("none: stages drive a stress-free size", "{ best_stretch = 1.4, least_stretch = 0.8 }");
     }
 }
 
@@ -184,9 +189,9 @@ table! {
         sector: Option<Sector> = described("all around", "{ width_degrees = 90.0 }");
         /// The name of the layer that it lies in.
         layer: Option<String> = described("all layers", "media");
-        /// The factor on the energy of the law, fibres and tone included.
+        /// The factor on the energy of the law, fibres and tone included, muscles not.
         stiffness: f64 = default("1.0").from(1e-3).to(1e4);
-        /// The factor on the activity of muscles, by their names, from 0 to 10: θ − 1 is multiplied by it.
+        /// The factor on the activity of muscles, by their names, from 0 to 10: θ − 1, or the tension, is multiplied by it.
         muscles: BTreeMap<String, f64> = default("{}");
     }
 }
@@ -331,8 +336,8 @@ table! {
         duration: Option<f64> = described("1", "12.0").above(0.0).to(1e9);
         /// The targets at its end: of muscles, obstacles and patches, by their names, of the ends `colon` and `ileum`, of
         /// the surfaces `inner-wall` and `outer-wall`, and of the `lumen`. A target that is a number is reached linearly. A
-        /// list of points `[time, value]` is followed from point to point, with times from the start of the stage; after its
-        /// last point the value stays.
+        /// list of points `[time, value]`, or `[time, x, y, z]`, is followed from point to point, with times from the start of
+        /// the stage; after its last point the value stays.
         drive: BTreeMap<String, Drive> = default("{}");
     }
 }
@@ -347,6 +352,9 @@ table! {
         length_ratio: Option<Course> = described(BEFORE_1, "1.0").above(0.0).to(10.0);
         /// Target of a muscle: the stress-free stretch where its profile is largest. It takes the place of the two above.
         stretch: Option<Course> = described(BEFORE_1, "1.0").above(0.0).to(100.0);
+        /// Target of a muscle with `active_stress`: the nominal stress T of its fibres where its profile is largest, and at
+        /// their best stretch.
+        tension: Option<Course> = described(BEFORE_0, "0.05").unit(STRESS).from(0.0).to(1e15);
         /// Target of a muscle: the shift of its zone along the tube from where it was at rest.
         shift: Option<Course> = described(BEFORE_0, "0.0").unit(LENGTH);
         /// Target of a patch: the stress-free thickness of the wall over its thickness at rest, in the middle of the patch.
@@ -363,20 +371,20 @@ table! {
         /// Target of `lumen`: the volume between the ends over that at rest. The pressure that holds it is a result, so that
         /// the path goes on past a maximum of the pressure. The pressure is taken over from the stage before, and the other
         /// way round. Both ends must be held.
-        volume_ratio: Option<f64> = described(BEFORE, "1.5").from(0.001).to(10_000.0);
+        volume_ratio: Option<Course> = described(BEFORE, "1.5").from(0.001).to(10_000.0);
         /// Target of `lumen`: the same as a volume.
-        volume: Option<f64> = described(BEFORE, "3.0").unit("length³");
+        volume: Option<Course> = described(BEFORE, "3.0").unit("length³");
         /// Target of a fixed end of a tube without symmetry: its displacement [x, y] across the axis from rest.
-        offset: Option<[f64; 2]> = described(BEFORE_0, "[0.1, 0.0]").unit(LENGTH);
+        offset: Option<VectorCourse<2>> = described(BEFORE_0, "[0.1, 0.0]").unit(LENGTH);
         /// Target of a fixed end of a tube without symmetry: its rotation about the axis [x, y] through its centre, by the
         /// length of this vector; after that by `twist_degrees`.
-        tilt_degrees: Option<[f64; 2]> = described(BEFORE_0, "[0.0, 30.0]").unit("degrees");
+        tilt_degrees: Option<VectorCourse<2>> = described(BEFORE_0, "[0.0, 30.0]").unit("degrees");
         /// Target of a surface: a dead load, per area at rest and normal to the surface at rest.
         dead_load: Option<Course> = described(BEFORE_0, "0.0").unit(STRESS);
         /// Target of an obstacle: its radius. Not of a plate.
         radius: Option<Course> = described(BEFORE, "0.3").unit(LENGTH).above(0.0);
         /// Target of an obstacle: its position.
-        position: Option<[f64; 3]> = described(BEFORE, "[0.0, 0.0, 1.5]").unit(LENGTH);
+        position: Option<VectorCourse<3>> = described(BEFORE, "[0.0, 0.0, 1.5]").unit(LENGTH);
     }
 }
 
@@ -412,7 +420,7 @@ choice! { Part {
     "ileum-end" => Part::IleumEnd,
     "geometry" => Part::Geometry,
     /// `of = { muscle = "circular" }`: the strength of a muscle. Its stress-free stretch θ becomes
-    /// 1 + (θ − 1)(1 + amplitude · shape).
+    /// 1 + (θ − 1)(1 + amplitude · shape); an active tension is multiplied by 1 + amplitude · shape.
     "muscle": String = described("", "circular") => Part::Muscle,
 } }
 

@@ -214,8 +214,26 @@ table! {
 }
 
 table! {
+    ActiveStress {
+        /// The angle of the fibres from the circumference toward the axis.
+        angle_degrees: Option<f64> = described("0 for a circular muscle, 90 for a longitudinal one", "30.0")
+            .unit("degrees").from(-90.0).to(90.0);
+        /// The stretch λM of the fibres at which their stress is the tension T. With `least_stretch` it is
+        /// T (1 − ((λM − λ)/(λM − λ0))²) at another stretch λ, where that is positive.
+        best_stretch: Option<f64> = described("T at any stretch", "1.4").from(0.1).to(10.0);
+        /// The stretch λ0 below which the fibres have no stress.
+        least_stretch: Option<f64> = described("T at any stretch", "0.8").from(0.0).to(10.0);
+        /// The width b of a Gaussian curve, with `best_stretch`: T exp(−(λ − λM)²/(2 b²)).
+        width: Option<f64> = described("T at any stretch", "0.3").from(0.01).to(10.0);
+        /// Points (stretch, stress over T) of any other curve, as in `layers[].tone.table`.
+        table: Option<Vec<[f64; 2]>> = described("T at any stretch", "[[0.6, 0.0], [1.2, 1.0], [1.6, 0.5]]");
+    }
+}
+
+table! {
     Tone {
-        /// The nominal stress T along the muscle cells, from rest on. It does not depend on the stages.
+        /// The nominal stress T along the muscle cells, from rest on. It does not depend on the stages; that of a muscle with
+        /// `active_stress` does.
         tension: f64 = required("0.1").unit(STRESS).from(0.0).to(1e15);
         /// The angle of the cells from the circumference toward the axis.
         angle_degrees: f64 = default("0.0").unit("degrees").from(-90.0).to(90.0);

@@ -502,6 +502,27 @@ impl Read for Vec<[f64; 2]> {
     }
 }
 
+/// Returns the finite numbers of a list; none, with a problem, if it is not a list of so many.
+pub(super) fn numbers(
+    problems: &mut Problems,
+    key: &Key,
+    path: &str,
+    (value, whole): (&Value, &Value),
+    count: usize,
+) -> Option<Vec<f64>> {
+    let list = value.get_ref().as_array();
+    let list = list.filter(|list| list.len() == count);
+    let Some(numbers) = list.and_then(|list| list.iter().map(number).collect::<Option<Vec<_>>>())
+    else {
+        return wrong_type(problems, key, path, whole);
+    };
+    if numbers.iter().all(|x| x.is_finite()) {
+        return Some(numbers);
+    }
+    problems.value(path, "must consist of finite numbers", "");
+    None
+}
+
 fn finite(problems: &mut Problems, path: &str, pair: [&Value; 2]) -> Option<[f64; 2]> {
     let pair = pair.map(|x| number(x).filter(|x| x.is_finite()));
     if let [Some(x), Some(y)] = pair {
@@ -554,6 +575,8 @@ pub(super) fn wrong_type<T>(
         Kind::Points => "must be a list of points [x, s]",
         Kind::Numbers => "must be a table of numbers",
         Kind::Course => "must be a number, or a list of points [time, value]",
+        Kind::VectorCourse(2) => "must be [x, y], or a list of points [time, x, y]",
+        Kind::VectorCourse(_) => "must be [x, y, z], or a list of points [time, x, y, z]",
         Kind::List(_) => "must be a list of tables",
         Kind::Table(_) | Kind::Named(_) | Kind::Choice(..) | Kind::Either(..) => "must be a table",
     };

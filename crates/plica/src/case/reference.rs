@@ -26,16 +26,16 @@ const CLOSING: &str = "
 - The length is 0.01 to 1000 D, the wall at least 0.001 D thick and thinner than D/2.
 - A zone lies within the tube and is at least 0.001 D long. Zones of muscles of the same direction do not overlap.
 - Targets keep every stress-free stretch between 0.02 and 100, and the distance of the ends between 0.05 and 10 times
-  that at rest. `diameter_ratio` drives a circular muscle, `length_ratio` a longitudinal one. A displacement needs a fixed
-  or sliding end, a twist a fixed one.
+  that at rest. `diameter_ratio` drives a circular muscle, `length_ratio` a longitudinal one, and `tension`, at most 1000 E,
+  one with `active_stress`. A displacement needs a fixed or sliding end, a twist a fixed one.
 - The layers of a wall are at least a thousandth of it thick, have different names, and add up to `tube.thickness` where
   that is given. With layers, `mesh.control_points.thickness` is not given, and `mesh.grading` is 1 unless there is only
   one. A muscle with a `layer` acts in that layer only; its zone may overlap those of muscles in other layers.
 - `shear_modulus` and `bulk` of the neo-Hookean law are given together, without `youngs_modulus` and `poisson_ratio`. A
   pair of families of fibres is not at 0° or 90°, where it would count one family twice. Residual stretches lie between
-  0.1 and 10; `around` is not given together with `opening_degrees`. Of a tone, `best_stretch` is given together with
-  either `least_stretch`, which is below it, or `width`; a `table` is given alone. With `contact`, every family of a layer
-  has a mirror image.
+  0.1 and 10; `around` is not given together with `opening_degrees`. Of a tone and an active stress, `best_stretch` is
+  given together with either `least_stretch`, which is below it, or `width`; a `table` is given alone. With `contact`,
+  every family of a layer has a mirror image, and fibres of active stresses run around the tube or along it.
 - The form Q of Fung's law is positive definite: in the strains along and around if there are no coefficients of the strain
   through the wall, and else in all three.
 - `from` is not given together with a law, and `file` and `bulk` only with `from`. A material whose stresses have a unit
@@ -95,6 +95,8 @@ fn row(path: &str, key: &Key) -> String {
         Kind::Points => "`[[x, s], …]`".to_owned(),
         Kind::Numbers => "`{ name = number, … }`".to_owned(),
         Kind::Course => "number, or `[[time, value], …]`".to_owned(),
+        Kind::VectorCourse(2) => "`[x, y]`, or `[[time, x, y], …]`".to_owned(),
+        Kind::VectorCourse(_) => "`[x, y, z]`, or `[[time, x, y, z], …]`".to_owned(),
         Kind::List(_) => "list of tables".to_owned(),
         Kind::Table(_) | Kind::Named(_) | Kind::Choice([], _) | Kind::Either(..) => {
             "table".to_owned()

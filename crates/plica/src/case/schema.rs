@@ -86,6 +86,10 @@ fn value(key: &Key) -> Map<String, Value> {
                 "prefixItems": [{ "type": "number", "minimum": 0 }, number_in(&key.rule.range)],
             } },
         ] }),
+        Kind::VectorCourse(size) => json!({ "anyOf": [
+            numbers(size),
+            { "type": "array", "minItems": 1, "items": numbers(size + 1) },
+        ] }),
         Kind::Table(keys) => return table(keys),
         Kind::List(keys) => json!({ "type": "array", "items": table(keys) }),
         Kind::Named(keys) => json!({ "type": "object", "additionalProperties": table(keys) }),
@@ -106,7 +110,7 @@ fn value(key: &Key) -> Map<String, Value> {
         return Map::new();
     };
     match key.kind {
-        Kind::Numbers | Kind::Course => {}
+        Kind::Numbers | Kind::Course | Kind::VectorCourse(_) => {}
         _ => value.extend(limits(&key.rule.range)),
     }
     value

@@ -373,7 +373,7 @@ impl<'a> Run<'a> {
             stage: state.stage.clone(),
             row: state.number,
             along: state.stage_fraction,
-            muscles: muscles.map(|m| (m.name.clone(), m.direction)).collect(),
+            muscles: muscles.map(|m| (m.name.clone(), m.target())).collect(),
             obstacles: obstacles.map(|obstacle| obstacle.name.clone()).collect(),
             patches: patches.map(|patch| patch.name.clone()).collect(),
             load: state.load.clone(),

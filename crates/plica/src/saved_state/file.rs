@@ -197,7 +197,7 @@ fn format_error(bytes: &[u8], error: &SafeTensorError) -> SavedStateError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::activation::Direction;
+    use crate::activation::MuscleTarget;
     use crate::saved_state::Layout;
     use crate::spline::Refinement;
     use crate::tube::{EndMotion, Load, Mesh, MeshLayer, Placement, Pressure};
@@ -236,7 +236,7 @@ mod tests {
             stage: format!("a \"stage\" {BLANK}"),
             row: 17,
             along: 0.1 + 0.2,
-            muscles: vec![("ring".into(), Direction::Circular)],
+            muscles: vec![("ring".into(), MuscleTarget::DiameterRatio)],
             load: Load {
                 muscles: vec![1.0 / 7.0],
                 shifts: vec![-1.0 / 19.0],

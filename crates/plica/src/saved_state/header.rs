@@ -3,7 +3,7 @@
 use super::Layout;
 use super::file::{BLANK, FORMAT};
 use super::{Array, SavedState, SavedStateError};
-use crate::activation::Direction;
+use crate::activation::MuscleTarget;
 use crate::spline::Refinement;
 use crate::tube::{EndMotion, Load, Mesh, MeshLayer, Placement, Pressure};
 use serde::{Deserialize, Serialize};
@@ -71,6 +71,8 @@ struct MuscleHeader {
 enum DirectionHeader {
     Circular,
     Longitudinal,
+    /// Of a muscle with active stress, whose direction is no part of the load.
+    ActiveStress,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
@@ -163,12 +165,13 @@ impl SavedState {
     pub(super) fn header(&self) -> Header {
         let drives = self.load.muscles.iter().zip(&self.load.shifts);
         let muscle =
-            |((name, direction), (&ratio, &shift)): (&(String, Direction), (&f64, &f64))| {
+            |((name, target), (&ratio, &shift)): (&(String, MuscleTarget), (&f64, &f64))| {
                 MuscleHeader {
                     name: name.clone(),
-                    direction: match direction {
-                        Direction::Circular => DirectionHeader::Circular,
-                        Direction::Longitudinal => DirectionHeader::Longitudinal,
+                    direction: match target {
+                        MuscleTarget::DiameterRatio => DirectionHeader::Circular,
+                        MuscleTarget::LengthRatio => DirectionHeader::Longitudinal,
+                        MuscleTarget::Tension => DirectionHeader::ActiveStress,
                     },
                     ratio,
                     shift,
@@ -313,8 +316,9 @@ impl SavedState {
             position: of.position,
         };
         let direction = |direction| match direction {
-            DirectionHeader::Circular => Direction::Circular,
-            DirectionHeader::Longitudinal => Direction::Longitudinal,
+            DirectionHeader::Circular => MuscleTarget::DiameterRatio,
+            DirectionHeader::Longitudinal => MuscleTarget::LengthRatio,
+            DirectionHeader::ActiveStress => MuscleTarget::Tension,
         };
         Ok(Self {
             stage: header.stage,

@@ -11,7 +11,7 @@ mod mode;
 
 pub use layout::Layout;
 
-use crate::activation::Direction;
+use crate::activation::MuscleTarget;
 use crate::tube::{Load, Mesh};
 use file::FORMAT;
 use std::collections::BTreeMap;
@@ -27,7 +27,7 @@ pub struct SavedState {
     /// Completed fraction of its stage, 0 to 1.
     pub along: f64,
     /// Name and direction of each muscle, in the order of the load.
-    pub muscles: Vec<(String, Direction)>,
+    pub muscles: Vec<(String, MuscleTarget)>,
     /// Name of each obstacle, in the order of the load.
     pub obstacles: Vec<String>,
     /// Name of each patch, in the order of the load.
@@ -132,7 +132,7 @@ impl SavedState {
     pub fn check_layout(
         &self,
         expected: &Layout,
-        muscles: &[(String, Direction)],
+        muscles: &[(String, MuscleTarget)],
         obstacles: &[String],
         patches: &[String],
     ) -> Result<(), SavedStateError> {

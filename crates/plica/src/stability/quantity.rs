@@ -21,6 +21,8 @@ pub enum Quantity {
     IleumDisplacement,
     /// Target of one muscle, if several change and their combination does not.
     Muscle(usize),
+    /// Tension of a muscle with active stress, in E.
+    Tension(usize),
     /// Shift of the zone of a muscle, in D.
     Shift(usize),
     /// Volume of the lumen over that at rest.
@@ -70,7 +72,9 @@ impl Quantity {
         };
         let patches = (0..tube.patches.len()).map(Self::Growth);
         let shifts = (0..tube.muscles.len()).map(Self::Shift);
+        let tensions = (0..tube.muscles.len()).filter(|m| !tube.muscles[*m].grows());
         let others = obstacles.flat_map(of_obstacle).chain(patches).chain(shifts);
+        let others = others.chain(tensions.map(Self::Tension));
         match most(&mut named.into_iter().chain(others)) {
             Some((quantity, change)) if change > ROUNDING => quantity,
             _ => most(&mut (0..tube.muscles.len()).map(Self::Muscle))
@@ -85,7 +89,7 @@ impl Quantity {
             Self::DiameterRatio => tube.diameter_ratio(load),
             Self::ColonDisplacement => load.ends[0].displacement,
             Self::IleumDisplacement => load.ends[1].displacement,
-            Self::Muscle(m) => load.muscles[m],
+            Self::Muscle(m) | Self::Tension(m) => load.muscles[m],
             Self::Shift(m) => load.shifts[m],
             Self::LumenVolume => load.lumen_volume.unwrap_or(1.0),
             Self::Pressure(wall) => load.pressures[wall].follower,
@@ -104,6 +108,7 @@ impl Quantity {
             Self::ColonDisplacement => "colon displacement/D".into(),
             Self::IleumDisplacement => "ileum displacement/D".into(),
             Self::Muscle(m) => format!("ratio of {}", tube.muscles[m].name),
+            Self::Tension(m) => format!("tension of {}/E", tube.muscles[m].name),
             Self::Shift(m) => format!("shift of {}/D", tube.muscles[m].name),
             Self::LumenVolume => "volume/volume at rest".into(),
             Self::Pressure(wall) => format!("pressure {}/E", WALLS[wall]),
@@ -116,9 +121,12 @@ impl Quantity {
         }
     }
 
-    /// Returns whether it is a pressure, whose tolerance is relative.
+    /// Returns whether it is a pressure or a tension, whose tolerance is relative.
     pub fn is_pressure(self) -> bool {
-        matches!(self, Self::Pressure(_) | Self::DeadLoad(_))
+        matches!(
+            self,
+            Self::Pressure(_) | Self::DeadLoad(_) | Self::Tension(_)
+        )
     }
 
     /// Formats a value for tables.

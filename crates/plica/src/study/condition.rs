@@ -108,7 +108,10 @@ impl fmt::Display for Condition {
 fn zero(plan: &Plan) -> Row {
     let muscles = plan.tube.muscles.iter();
     let muscles: Vec<&str> = muscles.map(|muscle| muscle.name.as_str()).collect();
-    let mut row = Row::zero(&muscles, plan.end_names.each_ref().map(String::as_str));
+    let active = plan.tube.muscles.iter().filter(|muscle| !muscle.grows());
+    let active: Vec<&str> = active.map(|muscle| muscle.name.as_str()).collect();
+    let mut row = Row::zero(&muscles, plan.end_names.each_ref().map(String::as_str))
+        .with_active_stresses(&active);
     if plan.contact {
         row = row.with_contact();
     }

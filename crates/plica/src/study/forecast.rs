@@ -1,7 +1,7 @@
 //! Forecast of the size and the cost of a study.
 
 use super::{Plan, StudyError};
-use crate::activation::Direction;
+use crate::activation::{Muscle, MuscleTarget};
 use crate::assembly::SplineTube;
 use crate::equilibrium::{HarmonicTangent, TubeProblem};
 use crate::material::Material;
@@ -59,6 +59,8 @@ const NOT_ROUND: Effort = Effort {
 const TILTING_STRETCH: f64 = 3.0;
 /// Memory of the program itself and of its pictures.
 const PROGRAM_BYTES: u64 = 80 << 20;
+/// Tension with which the time of a solve is measured, in E.
+const SMALL_TENSION: f64 = 1e-6;
 /// Elements along the piece of the tube on which the time of a solve is measured.
 const PIECE: usize = 16;
 
@@ -121,11 +123,20 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
             false => 0.0,
         };
         let (layers, elements) = (&plan.tube.layers, mesh.elements_of_layers());
+        let active = |layer: &WallLayer| {
+            let muscles = plan.tube.muscles.iter().enumerate();
+            let acts =
+                |(m, muscle): &(usize, &Muscle)| !muscle.grows() && !layer.idle_muscles.contains(m);
+            muscles.filter(acts).count()
+        };
+        // An active stress has the tangent data of any law, and an average of its own.
+        let actives: usize = layers.iter().map(active).sum();
         let of_layer = |(layer, elements): (&WallLayer, Range<usize>)| {
             let data = match layer.material {
                 Material::NeoHookean(_) => 40.0,
                 _ => 184.0,
             };
+            let data = data + 184.0 * active(layer) as f64;
             (data + shape) * elements.len() as f64 / through as f64
         };
         let at_point: f64 = layers.iter().zip(elements).map(of_layer).sum();
@@ -134,7 +145,7 @@ pub fn memory_bytes(plan: &Plan) -> u64 {
             Integration::Full => (at_point as u64, layers.len() as u64),
             Integration::Reduced => (2 * at_point as u64, 2 * layers.len() as u64),
         };
-        let made_of = (1 + averages) * (mesh.degree as u64 + 1);
+        let made_of = (1 + averages + actives as u64) * (mesh.degree as u64 + 1);
         let harmonics = (rings / 2 + made_of) * banded(row / rings);
         let low = 3 * banded(HarmonicTangent::low_row(rings as usize) as u64);
         let vectors = 40 * 8 * mesh.axial as u64 * row;
@@ -162,7 +173,7 @@ fn states_not_round(plan: &Plan) -> usize {
             let load = stage.load_at(&from, t);
             let [inner, outer] = load.pressures.map(|wall| wall.follower + wall.dead);
             let muscles = plan.tube.muscles.iter().enumerate();
-            let stretches = muscles.filter(|(_, m)| m.direction == Direction::Longitudinal);
+            let stretches = muscles.filter(|(_, m)| m.target() == MuscleTarget::LengthRatio);
             let mut stretches = stretches
                 .map(|(m, muscle)| muscle.extreme_stretch(load.muscles[m], plan.tube.length));
             outer - inner > critical_pressure(plan)
@@ -208,7 +219,11 @@ impl Cost {
             ..mesh.clone()
         };
         let problem = TubeProblem::new(SplineTube::new(&plan.tube, &short, rings));
-        let (load, u) = (plan.tube.rest(), problem.tube.initial_guess());
+        let (mut load, u) = (plan.tube.rest(), problem.tube.initial_guess());
+        let muscles = plan.tube.muscles.iter().zip(&mut load.muscles);
+        for (_, tension) in muscles.filter(|(muscle, _)| !muscle.grows()) {
+            *tension = SMALL_TENSION;
+        }
         let mut least = [f64::INFINITY; 2];
         for _ in 0..3 {
             let start = Instant::now();

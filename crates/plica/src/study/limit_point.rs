@@ -1,7 +1,7 @@
 //! Limit points of what a stage drives.
 
 use super::{Plan, Scale};
-use crate::activation::Direction;
+use crate::activation::MuscleTarget;
 use crate::tube::Load;
 use std::fmt;
 
@@ -41,11 +41,12 @@ fn quantities(plan: &Plan, load: &Load) -> Vec<(String, f64, String)> {
     let mut all = vec![];
     let drives = load.muscles.iter().zip(&load.shifts);
     for (muscle, (ratio, shift)) in plan.tube.muscles.iter().zip(drives) {
-        let target = match muscle.direction {
-            Direction::Circular => "diameter_ratio",
-            Direction::Longitudinal => "length_ratio",
+        let target = muscle.target();
+        let (value, unit) = match target {
+            MuscleTarget::Tension => (scale.stress * ratio, scale.stress_name.clone()),
+            _ => (*ratio, String::new()),
         };
-        all.push((format!("{}.{target}", muscle.name), *ratio, String::new()));
+        all.push((format!("{}.{}", muscle.name, target.name()), value, unit));
         let shift = scale.length * shift;
         all.push((
             format!("{}.shift", muscle.name),

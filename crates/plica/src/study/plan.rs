@@ -249,7 +249,7 @@ impl Plan {
     /// [`SavedStateError::Other`] with the difference.
     pub fn accepts(&self, state: &SavedState) -> Result<(), SavedStateError> {
         let muscles = self.tube.muscles.iter();
-        let muscles: Vec<_> = muscles.map(|m| (m.name.clone(), m.direction)).collect();
+        let muscles: Vec<_> = muscles.map(|m| (m.name.clone(), m.target())).collect();
         let obstacles = self.tube.obstacles.iter();
         let obstacles: Vec<String> = obstacles.map(|obstacle| obstacle.name.clone()).collect();
         let patches = self.tube.patches.iter();

@@ -112,10 +112,10 @@ pub struct Row {
 pub struct MuscleRow {
     /// Its name in the case.
     pub name: String,
-    /// Its target: Dmin/D or Lmax/L of this muscle.
+    /// Its target: Dmin/D or Lmax/L of this muscle, or its tension; the column of a tension is `tension_NAME`.
     pub target: f64,
-    /// Its growth stretch where it is furthest from one.
-    pub stretch: f64,
+    /// Its growth stretch where it is furthest from one; none for a muscle with active stress.
+    pub stretch: Option<f64>,
     /// Shift of its zone along the tube; the column exists only if a stage moves the zone.
     pub shift: Option<f64>,
     /// Work that it has done so far.
@@ -178,7 +178,10 @@ impl Row {
         let pressure = |p: f64| has_pressures.then_some(scale.stress * p);
         let muscles = state.muscles.iter().map(|muscle| MuscleRow {
             name: muscle.name.clone(),
-            target: muscle.target,
+            target: match muscle.stretch {
+                Some(_) => muscle.target,
+                None => scale.stress * muscle.target,
+            },
             stretch: muscle.stretch,
             shift: muscle.shift.map(|shift| length * shift),
             work: 0.0,
@@ -379,10 +382,11 @@ impl Row {
         self.lumen <= 0.0
     }
 
-    /// Returns a row of zeros, of a run without pressures.
+    /// Returns a row of zeros, of a run without pressures and of muscles without active stress.
     pub fn zero(muscles: &[&str], ends: [&str; 2]) -> Self {
         let muscle = |name: &&str| MuscleRow {
             name: (*name).into(),
+            stretch: Some(0.0),
             ..MuscleRow::default()
         };
         Self {
@@ -439,6 +443,17 @@ impl Row {
         }
     }
 
+    /// Makes muscles those with active stress, by their names.
+    #[must_use]
+    pub fn with_active_stresses(mut self, names: &[&str]) -> Self {
+        for muscle in &mut self.muscles {
+            if names.contains(&muscle.name.as_str()) {
+                muscle.stretch = None;
+            }
+        }
+        self
+    }
+
     /// Adds the columns of obstacles, with zeros, to a row without them.
     #[must_use]
     pub fn with_obstacles(mut self, names: &[&str]) -> Self {
@@ -492,8 +507,11 @@ impl Row {
         v.cell("diameter_ratio", Ratio, &mut self.diameter_ratio);
         for muscle in &mut self.muscles {
             let name = &muscle.name;
-            v.cell(&format!("target_{name}"), Ratio, &mut muscle.target);
-            v.cell(&format!("stretch_{name}"), Ratio, &mut muscle.stretch);
+            match muscle.stretch {
+                Some(_) => v.cell(&format!("target_{name}"), Ratio, &mut muscle.target),
+                None => v.cell(&format!("tension_{name}"), Stress, &mut muscle.target),
+            }
+            v.optional(&format!("stretch_{name}"), Ratio, &mut muscle.stretch);
             v.optional(&format!("shift_{name}"), Length, &mut muscle.shift);
         }
         for (quantity, of, field) in [

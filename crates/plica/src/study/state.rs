@@ -89,10 +89,10 @@ pub struct State {
 pub struct MuscleState {
     /// Its name in the case.
     pub name: String,
-    /// Its target, Dmin/D or Lmax/L.
+    /// Its target: Dmin/D, Lmax/L, or its tension in E.
     pub target: f64,
-    /// Its growth stretch where it is furthest from one.
-    pub stretch: f64,
+    /// Its growth stretch where it is furthest from one; none for a muscle with active stress.
+    pub stretch: Option<f64>,
     /// Shift of its zone, in D; none if no stage moves it.
     pub shift: Option<f64>,
 }
@@ -264,7 +264,9 @@ fn muscles(plan: &Plan, load: &Load) -> Vec<MuscleState> {
     let state = |(m, muscle): (usize, &Muscle)| MuscleState {
         name: muscle.name.clone(),
         target: load.muscles[m],
-        stretch: muscle.extreme_stretch(load.muscles[m], plan.tube.length),
+        stretch: muscle
+            .grows()
+            .then(|| muscle.extreme_stretch(load.muscles[m], plan.tube.length)),
         shift: plan.shifts_muscle(m).then_some(load.shifts[m]),
     };
     plan.tube.muscles.iter().enumerate().map(state).collect()

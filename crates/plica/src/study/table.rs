@@ -143,7 +143,12 @@ impl RowReader {
             let names = header.iter();
             names.filter_map(move |name| name.strip_prefix(quantity))
         };
-        let muscles: Vec<&str> = named("target_").collect();
+        let tensions: Vec<&str> = named("tension_").collect();
+        let muscle = |name: &&'a str| {
+            let names = ["target_", "tension_"].map(|quantity| name.strip_prefix(quantity));
+            names[0].or(names[1])
+        };
+        let muscles: Vec<&str> = header.iter().filter_map(muscle).collect();
         let obstacles: Vec<&str> = named("radius_").collect();
         let patches: Vec<&str> = named("growth_through_").collect();
         let ends: Vec<&str> = named("displacement_").collect();
@@ -153,6 +158,7 @@ impl RowReader {
         let reader = Self {
             columns: header.iter().copied().map(String::from).zip(0..).collect(),
             zero: Row::zero(&muscles, ends)
+                .with_active_stresses(&tensions)
                 .with_obstacles(&obstacles)
                 .with_patches(&patches),
         };

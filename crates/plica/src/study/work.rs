@@ -61,6 +61,9 @@ pub(super) struct WorkPoint {
 /// about 1e-8, and the rounding of the energy adds about 1e-12.
 const STRETCH_STEP: f64 = 1e-4;
 
+/// Smallest change of a tension, in E.
+const TENSION_STEP: f64 = 1e-2;
+
 /// Change of the shift of a muscle, in lengths of its zone, in central differences.
 const SHIFT_STEP: f64 = 1e-5;
 
@@ -207,6 +210,8 @@ fn muscle_force(tube: &SplineTube, load: &Load, u: &[f64], m: usize, drive: Musc
     let (muscle, target, length) = (&tube.tube.muscles[m], load.muscles[m], tube.tube.length);
     let smallest = muscle.smallest_stretch(target, length);
     let h = match drive {
+        // The energy is linear in a tension.
+        MuscleDrive::Target if !muscle.grows() => target.max(TENSION_STEP),
         MuscleDrive::Target => {
             let slope = muscle.extreme_stretch(1.0, length) - muscle.extreme_stretch(0.0, length);
             STRETCH_STEP * smallest / slope

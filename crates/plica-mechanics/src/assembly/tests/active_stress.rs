@@ -115,11 +115,10 @@ fn residual_and_tangent_are_derivatives() {
     for (rings, repeats) in [(1, 0), (3, 2), (6, 1)] {
         for (growing, change) in [
             (false, &(|_: &mut Tube| {}) as &dyn Fn(&mut Tube)),
-            (true, &|_: &mut Tube| {}),
             (true, &modified),
         ] {
             let TubeAndLoad { tube, load } =
-                active((3, [9, 2, 6], rings), repeats, growing, change);
+                active((3, [5, 2, 6], rings), repeats, growing, change);
             let (u, d) = (wavy(&tube), direction(&tube));
             let forces = |h: f64| tube.forces(&load, &moved(&u, &d, h)).unwrap();
             let here = forces(0.0);

@@ -2,6 +2,8 @@
 
 use super::super::keys::Case;
 use super::super::problem::Problems;
+use crate::activation::Muscle;
+use crate::material::Tone;
 use crate::study::Stage;
 use crate::tube::{Load, Symmetry, Tube, WallLayer};
 
@@ -39,7 +41,12 @@ pub(super) fn check(
         return;
     }
     let symmetric = |layer: &WallLayer| layer.material.is_mirror_symmetric();
-    if !tube.layers.iter().all(symmetric) && problems.are_sound(&["layers"]) {
+    let acts_straight = |muscle: &Muscle| {
+        let tone = muscle.active_stress.as_ref();
+        tone.is_none_or(Tone::is_mirror_symmetric)
+    };
+    let twists = !tube.layers.iter().all(symmetric) || !tube.muscles.iter().all(acts_straight);
+    if twists && problems.are_sound(&["layers", "muscles"]) {
         let help = "set `contact = false`, or give the fibres of each layer their mirror images";
         let rule = "must be false if fibres of one hand twist the tube";
         problems.value(CONTACT, rule, help);

@@ -1,10 +1,11 @@
 //! The driven volume of the lumen.
 
+use super::super::course::Course;
 use super::super::keys::{Case, Drive, Scheme};
 use super::super::problem::Problems;
 use super::muscles::ENDS;
 use crate::study::{Stage, lumen_volume_at_rest};
-use crate::tube::{Mesh, Part, Support, Symmetry, Tube};
+use crate::tube::{Load, Mesh, Part, Support, Symmetry, Tube};
 use std::f64::consts::PI;
 
 /// The name of the lumen in a stage.
@@ -47,21 +48,23 @@ pub(super) fn volume_at_rest(
 }
 
 /// Returns the volume over that at rest of a target of the lumen. `at_rest` is the volume at rest.
-pub(super) fn ratio(
-    key: &str,
-    (target, value): (&str, f64),
-    (case, tube): (&Case, &Tube),
-    at_rest: f64,
-    problems: &mut Problems,
-) -> f64 {
-    let ratio = match target {
+pub(super) fn ratio((target, value): (&str, f64), case: &Case, at_rest: f64) -> f64 {
+    match target {
         "volume" => value / case.tube.diameter.powi(3) / at_rest,
         _ => value,
-    };
-    if target == "volume"
-        && !(SMALLEST..=LARGEST).contains(&ratio)
-        && problems.are_sound(&[key, "tube"])
-    {
+    }
+}
+
+/// Checks a target of the lumen, of which the course is over the volume at rest.
+pub(super) fn check_target(
+    key: &str,
+    target: &str,
+    course: &Course,
+    (case, tube): (&Case, &Tube),
+    problems: &mut Problems,
+) {
+    let is_out = |ratio: f64| !(SMALLEST..=LARGEST).contains(&ratio);
+    if target == "volume" && course.values().any(is_out) && problems.are_sound(&[key, "tube"]) {
         let rule = format!("must be from {SMALLEST} to {LARGEST} times the volume at rest");
         problems.value(key, rule, "");
     }
@@ -80,7 +83,6 @@ pub(super) fn ratio(
             "leave solver.scheme out, or drive inner-wall.pressure",
         );
     }
-    ratio
 }
 
 /// Reports a stage with lists of points that begins to drive the volume, or the pressure: only the run knows where the other
@@ -115,8 +117,11 @@ pub(super) fn check_stage(stage: &str, drive: impl Fn(&str) -> bool, problems: &
 /// Checks that ends stay in planes while the volume is driven, so that the volume is that between them.
 pub(super) fn check_ends(stages: &[Stage], problems: &mut Problems) {
     for (i, stage) in stages.iter().enumerate() {
-        let tilted = stage.load.ends.iter().position(|end| end.tilt != [0.0; 2]);
-        let Some(end) = tilted.filter(|_| stage.load.lumen_volume.is_some()) else {
+        let tilted = |load: &Load| {
+            let tilted = load.ends.iter().position(|end| end.tilt != [0.0; 2]);
+            tilted.filter(|_| load.lumen_volume.is_some())
+        };
+        let Some(end) = stage.loads().find_map(tilted) else {
             continue;
         };
         let rule = format!(

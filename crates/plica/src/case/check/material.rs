@@ -33,18 +33,25 @@ pub(super) fn tone(
     problems: &mut Problems,
 ) -> Option<Tone> {
     let tension = tone.tension / youngs_modulus(case);
-    let relation = relation(tone, path, problems)?;
+    let stretches = [tone.best_stretch, tone.least_stretch, tone.width];
+    let relation = relation(stretches, tone.table.as_ref(), path, problems)?;
     (tension > 0.0).then(|| Tone::new(tension, relation, tone.angle_degrees.to_radians()))
 }
 
-/// Returns the dependence of a tension on the stretch; none if the keys do not fit together.
-fn relation(tone: &keys::Tone, path: &str, problems: &mut Problems) -> Option<LengthTension> {
+/// Returns the dependence of a tension on the stretch, from the best and the least stretch and the width, and the table;
+/// none if the keys do not fit together.
+pub(super) fn relation(
+    [best_stretch, least_stretch, width]: [Option<f64>; 3],
+    table: Option<&Vec<[f64; 2]>>,
+    path: &str,
+    problems: &mut Problems,
+) -> Option<LengthTension> {
     let key = |name: &str| format!("{path}.{name}");
     let given = [
-        ("best_stretch", tone.best_stretch.is_some()),
-        ("least_stretch", tone.least_stretch.is_some()),
-        ("width", tone.width.is_some()),
-        ("table", tone.table.is_some()),
+        ("best_stretch", best_stretch.is_some()),
+        ("least_stretch", least_stretch.is_some()),
+        ("width", width.is_some()),
+        ("table", table.is_some()),
     ];
     // A key that cannot be read is not as if it were left out.
     if given
@@ -54,12 +61,7 @@ fn relation(tone: &keys::Tone, path: &str, problems: &mut Problems) -> Option<Le
         return None;
     }
     let given: Vec<&str> = given.iter().filter(|key| key.1).map(|key| key.0).collect();
-    match (
-        tone.best_stretch,
-        tone.least_stretch,
-        tone.width,
-        &tone.table,
-    ) {
+    match (best_stretch, least_stretch, width, table) {
         (None, None, None, None) => Some(LengthTension::Constant),
         (Some(best), Some(least), None, None) => {
             if best < least + 1e-3 {

@@ -1,12 +1,14 @@
 //! The names, zones and profiles of the muscles.
 
 use super::super::key::join;
-use super::super::keys::Case;
+use super::super::keys::{self, Case};
 use super::super::problem::Problems;
 use super::lumen::LUMEN;
+use super::material::relation;
 use super::region;
 use super::zone::{ROUNDING, moving_zone, zone};
-use crate::activation::{Muscle, Profile};
+use crate::activation::{Direction, Muscle, Profile};
+use crate::material::LengthTension;
 
 /// The names of the ends in a stage, in the order of the load.
 pub(super) const ENDS: [&str; 2] = ["colon", "ileum"];
@@ -31,14 +33,40 @@ pub(super) fn muscles(case: &Case, length: f64, problems: &mut Problems) -> Vec<
         let profile = profile(&path, &muscle.profile, problems);
         let repeat = repeat(&path, case, zone, muscle.repeat, problems);
         let sector = muscle.sector.as_ref();
+        let active = muscle.active_stress.as_ref();
+        let made = Muscle::new(name.clone(), muscle.direction, zone, profile);
+        let made = match active {
+            Some(active) => active_stress(made, active, &path, problems),
+            None => made,
+        };
         muscles.push(Muscle {
             repeat,
             sector: sector
                 .map(|own| region::sector(&format!("{path}.sector"), own, case, problems)),
-            ..Muscle::new(name.clone(), muscle.direction, zone, profile)
+            ..made
         });
     }
     muscles
+}
+
+/// Returns a muscle with an active stress.
+fn active_stress(
+    muscle: Muscle,
+    written: &keys::ActiveStress,
+    path: &str,
+    problems: &mut Problems,
+) -> Muscle {
+    let along = match muscle.direction {
+        Direction::Circular => 0.0,
+        Direction::Longitudinal => 90.0,
+    };
+    let stretches = [written.best_stretch, written.least_stretch, written.width];
+    let path = format!("{path}.active_stress");
+    let relation = relation(stretches, written.table.as_ref(), &path, problems);
+    muscle.with_active_stress(
+        relation.unwrap_or(LengthTension::Constant),
+        written.angle_degrees.unwrap_or(along).to_radians(),
+    )
 }
 
 /// Checks the names of the ends and returns them.

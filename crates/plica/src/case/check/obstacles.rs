@@ -148,7 +148,8 @@ fn check_symmetry(
         // Beside the axis it is repeated, on the axis it is not.
         let on_axis = obstacle.is_axisymmetric(&begin.obstacles[i]);
         for (s, stage) in stages.iter().enumerate() {
-            if obstacle.is_axisymmetric(&stage.load.obstacles[i]) != on_axis {
+            let leaves = |load: &Load| obstacle.is_axisymmetric(&load.obstacles[i]) != on_axis;
+            if stage.loads().any(leaves) {
                 let key = format!("stages[{}].drive.{}.position", s + 1, obstacle.name);
                 let rule = "the symmetry repeats an obstacle beside the axis, but not one on it";
                 let help = "keep it on the axis, or beside it, in all stages";
@@ -165,7 +166,8 @@ fn check_symmetry(
         return problems.key(&format!("obstacles[{}].shape", i + 1), rule, help);
     }
     for (s, stage) in stages.iter().enumerate() {
-        if !obstacle.is_axisymmetric(&stage.load.obstacles[i]) {
+        let leaves = |load: &Load| !obstacle.is_axisymmetric(&load.obstacles[i]);
+        if stage.loads().any(leaves) {
             let key = format!("stages[{}].drive.{}.position", s + 1, obstacle.name);
             let rule = "an axisymmetric tube needs obstacles that stay on its axis";
             return problems.value(&key, rule, help);
@@ -258,17 +260,26 @@ fn check_steps(
     }
     let mut before = begin.obstacles[i];
     for (s, stage) in stages.iter().enumerate() {
-        let next = stage.load.obstacles[i];
         // An endless cylinder does not change when it moves along z.
         let first = match obstacle.shape {
             ObstacleShape::Sheath => 1,
             ObstacleShape::Rod { half_length } if half_length.is_infinite() => 1,
             _ => 0,
         };
-        let motion = (first..3).map(|k| next.position[k] - before.position[k]);
-        let square: f64 = motion.map(|x| x * x).sum();
-        let moved = square.sqrt() + (next.radius - before.radius).abs();
-        let radius = next.radius.min(before.radius);
+        // The largest motion, over the whole stage at this speed, and the smallest radius.
+        let (mut moved, mut square, mut radius) = (0.0_f64, 0.0_f64, before.radius);
+        let corners = stage.course.iter().map(|(at, load)| (*at, load));
+        let mut last = (0.0, before);
+        for (at, load) in corners.chain([(1.0, &stage.load)]) {
+            let next = load.obstacles[i];
+            let motion = (first..3).map(|k| next.position[k] - last.1.position[k]);
+            let own: f64 = motion.map(|x| x * x).sum();
+            let change = own.sqrt() + (next.radius - last.1.radius).abs();
+            moved = moved.max(change / (at - last.0));
+            square = square.max(own);
+            radius = radius.min(next.radius);
+            last = (at, next);
+        }
         let steps = (moved / (LARGEST_STEP * radius)).ceil();
         if steps > stage.steps as f64 && square > 0.0 {
             let key = format!("stages[{}].steps", s + 1);
@@ -280,7 +291,7 @@ fn check_steps(
             );
             return problems.key(&key, rule, format!("write steps = {steps}"));
         }
-        before = next;
+        before = stage.load.obstacles[i];
     }
 }
 

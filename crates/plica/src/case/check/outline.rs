@@ -4,7 +4,7 @@ use super::super::keys::Case;
 use super::super::problem::Problems;
 use super::zone::{ROUNDING, length};
 use crate::study::Stage;
-use crate::tube::{Imperfection, Outline, Part, Shape, Tube};
+use crate::tube::{Imperfection, Load, Outline, Part, Shape, Tube};
 
 const DIAMETER: &str = "tube.diameter_along";
 const THICKNESS: &str = "tube.thickness_along";
@@ -122,12 +122,8 @@ pub(super) fn check_loads(tube: &Tube, stages: &[Stage], problems: &mut Problems
         return;
     }
     for (i, stage) in stages.iter().enumerate() {
-        let wall = stage
-            .load
-            .pressures
-            .iter()
-            .position(|wall| wall.dead != 0.0);
-        if let Some(wall) = wall {
+        let pressed = |load: &Load| load.pressures.iter().position(|wall| wall.dead != 0.0);
+        if let Some(wall) = stage.loads().find_map(pressed) {
             let key = format!(
                 "stages[{}].drive.{}.dead_load",
                 i + 1,

@@ -3,7 +3,7 @@
 use super::super::problem::Problems;
 use super::muscles::ENDS;
 use crate::study::Stage;
-use crate::tube::{EndMotion, Support, Symmetry};
+use crate::tube::{EndMotion, Load, Support, Symmetry};
 
 /// Largest angle of a tilt, in degrees.
 const LARGEST: f64 = 180.0;
@@ -30,7 +30,8 @@ pub(super) fn check(symmetry: Symmetry, stages: &[Stage], problems: &mut Problem
         return;
     }
     for (i, stage) in stages.iter().enumerate() {
-        let Some(end) = stage.load.ends.iter().position(EndMotion::is_sideways) else {
+        let sideways = |load: &Load| load.ends.iter().position(EndMotion::is_sideways);
+        let Some(end) = stage.loads().find_map(sideways) else {
             continue;
         };
         let rule = "an end leaves its axis only in a tube without symmetry";

@@ -17,6 +17,8 @@ use std::collections::HashMap;
 const RESERVED: [&str; 2] = ["rest", "start"];
 /// Largest pressure, in E.
 const LARGEST_PRESSURE: f64 = 10.0;
+/// Largest tension of a muscle, in E.
+const LARGEST_TENSION: f64 = 1000.0;
 /// Smallest and largest stress-free stretch.
 const SMALLEST_STRETCH: f64 = 0.02;
 const LARGEST_STRETCH: f64 = 100.0;
@@ -83,7 +85,9 @@ pub(super) fn stages(
         let duration = stage.duration.unwrap_or(1.0);
         let (end, course) = course(&load, &driven, duration, problems);
         let switches = load.lumen_volume.is_some() != end.lumen_volume.is_some();
-        if switches && !course.is_empty() {
+        // The volume at rest is known.
+        let from_rest = i == 0 && case.start.is_none() && end.lumen_volume.is_some();
+        if switches && !course.is_empty() && !from_rest {
             lumen::report_course(&path, end.lumen_volume.is_some(), problems);
         }
         load = end;
@@ -231,11 +235,13 @@ pub(super) fn check_all(tube: &Tube, begin: &Load, stages: &[Stage], problems: &
         return;
     }
     for (i, stage) in stages.iter().enumerate() {
-        let [colon, ileum] = stage.load.ends;
-        let distance = 1.0 + (ileum.displacement - colon.displacement) / tube.length;
         let before = i.checked_sub(1).map_or(begin, |j| &stages[j].load);
-        let [was, is] = [before, &stage.load].map(|load| load.ends.map(|end| end.displacement));
-        if !DISTANCES.contains(&distance) && (i == 0 || was != is) {
+        for load in stage.loads() {
+            let [was, is] = [before, load].map(|load| load.ends.map(|end| end.displacement));
+            let distance = 1.0 + (is[1] - is[0]) / tube.length;
+            if DISTANCES.contains(&distance) || (i > 0 && was == is) {
+                continue;
+            }
             let distance = tidy(distance);
             let rule = format!("the distance of the ends becomes {distance} times that at rest");
             let help = format!("stay between {} and {}", DISTANCES.start(), DISTANCES.end());
@@ -243,6 +249,7 @@ pub(super) fn check_all(tube: &Tube, begin: &Load, stages: &[Stage], problems: &
             let end = ENDS[usize::from(moved[1] >= moved[0])];
             let key = format!("stages[{}].drive.{end}.displacement", i + 1);
             problems.value(&key, rule, help);
+            break;
         }
     }
 }
@@ -319,6 +326,15 @@ pub(super) fn broken_by_strength(
             tidy(smallest)
         )
     })
+}
+
+/// Checks the tension of a muscle with active stress, in E.
+pub(super) fn check_tension(key: &str, tension: f64, case: &Case, problems: &mut Problems) {
+    if tension > LARGEST_TENSION && problems.are_sound(&[key, "material", "layers"]) {
+        let largest = stress(case, LARGEST_TENSION);
+        let rule = format!("must be at most {largest}, {LARGEST_TENSION} times Young's modulus");
+        problems.value(key, rule, "");
+    }
 }
 
 /// Checks the stress-free stretches that a muscle gives the wall.

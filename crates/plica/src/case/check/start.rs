@@ -7,7 +7,7 @@ use super::super::problem::Problems;
 use super::sideways::check_support;
 use super::stages::{check_closed, check_held, check_stretch};
 use super::zone::{ROUNDING, length};
-use crate::activation::{Direction, Muscle};
+use crate::activation::{Muscle, MuscleTarget};
 use crate::saved_state::{Layout, SavedState};
 use crate::study::Start;
 use crate::tube::{Load, Mesh, Obstacle, Patch, Symmetry, Tube};
@@ -114,22 +114,25 @@ fn check_symmetry(from: &Layout, mesh: &Mesh, symmetry: Symmetry, problems: &mut
 fn load(state: &SavedState, tube: &Tube, problems: &mut Problems) -> Load {
     let mut load = tube.rest();
     let drives = state.load.muscles.iter().zip(&state.load.shifts);
-    for ((name, direction), (&ratio, &shift)) in state.muscles.iter().zip(drives) {
-        let same = |m: &Muscle| m.name == *name && m.direction == *direction;
+    for ((name, target), (&ratio, &shift)) in state.muscles.iter().zip(drives) {
+        let same = |m: &Muscle| m.name == *name && m.target() == *target;
         if let Some(m) = tube.muscles.iter().position(same) {
             check_stretch(KEY, &tube.muscles[m], ratio, tube, problems);
             (load.muscles[m], load.shifts[m]) = (ratio, shift);
-        } else if ratio != 1.0 {
-            let kind = match direction {
-                Direction::Circular => "circular",
-                Direction::Longitudinal => "longitudinal",
+        } else if ratio != target.at_rest() {
+            let (kind, written) = match target {
+                MuscleTarget::DiameterRatio => ("circular muscle", "direction = \"circular\""),
+                MuscleTarget::LengthRatio => {
+                    ("longitudinal muscle", "direction = \"longitudinal\"")
+                }
+                MuscleTarget::Tension => ("muscle with active stress", "active_stress = {}"),
             };
             let rule = format!(
-                "its {kind} muscle {name} is driven to {ratio}, and this case has no muscle of \
+                "its {kind} {name} is driven to {ratio}, and this case has no muscle of \
                  that name and direction"
             );
             let help = match tube.muscles.iter().any(|m| m.name == *name) {
-                true => format!("write direction = \"{kind}\" in [muscles.{name}]"),
+                true => format!("write {written} in [muscles.{name}]"),
                 false => format!("add [{}]", join("muscles", name)),
             };
             problems.value(KEY, rule, help);

@@ -1,6 +1,6 @@
 //! The targets of a stage: what a name in it stands for, and the quantities of the load that it drives.
 
-use super::super::course::Course;
+use super::super::course::{Course, VectorCourse};
 use super::super::key::join;
 use super::super::keys::{Case, Drive};
 use super::super::problem::Problems;
@@ -10,8 +10,8 @@ use super::material::youngs_modulus;
 use super::muscles::{ENDS, WALLS};
 use super::obstacles::in_tube;
 use super::sideways;
-use super::stages::{check_closed, check_held, check_pressure, check_stretch};
-use crate::activation::Direction;
+use super::stages::{check_closed, check_held, check_pressure, check_stretch, check_tension};
+use crate::activation::MuscleTarget;
 use crate::tube::{Load, ObstacleShape, Tube};
 use std::collections::HashMap;
 
@@ -33,7 +33,7 @@ pub(super) struct Target {
 /// A number of a load, with the index of its muscle, end, wall or obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
-    /// The target of a muscle, Dmin/D or Lmax/L.
+    /// The target of a muscle: Dmin/D, Lmax/L, or a tension in E.
     Muscle(usize),
     /// The shift of a muscle's zone.
     Shift(usize),
@@ -97,7 +97,7 @@ impl Quantity {
 #[derive(Clone, Copy)]
 pub(super) enum Driven {
     /// A muscle, by its index in the tube.
-    Muscle(usize, Direction),
+    Muscle(usize, MuscleTarget),
     /// The colon end or the ileum end.
     End(usize),
     /// The inner wall or the outer wall.
@@ -134,13 +134,14 @@ impl Driven {
             return Some(Self::Patch(i));
         }
         let m = *muscles.get(name)?;
-        Some(Self::Muscle(m, tube.muscles[m].direction))
+        Some(Self::Muscle(m, tube.muscles[m].target()))
     }
 
     fn targets(self) -> &'static [&'static str] {
         match self {
-            Self::Muscle(_, Direction::Circular) => &["diameter_ratio", "stretch", "shift"],
-            Self::Muscle(_, Direction::Longitudinal) => &["length_ratio", "stretch", "shift"],
+            Self::Muscle(_, MuscleTarget::DiameterRatio) => &["diameter_ratio", "stretch", "shift"],
+            Self::Muscle(_, MuscleTarget::LengthRatio) => &["length_ratio", "stretch", "shift"],
+            Self::Muscle(_, MuscleTarget::Tension) => &["tension", "shift"],
             Self::End(_) => &["displacement", "twist_degrees", "offset", "tilt_degrees"],
             Self::Wall(_) => &["pressure", "dead_load"],
             Self::Lumen(_) => &lumen::TARGETS,
@@ -152,8 +153,9 @@ impl Driven {
 
     fn words(self) -> &'static str {
         match self {
-            Self::Muscle(_, Direction::Circular) => "a circular muscle",
-            Self::Muscle(_, Direction::Longitudinal) => "a longitudinal muscle",
+            Self::Muscle(_, MuscleTarget::DiameterRatio) => "a circular muscle",
+            Self::Muscle(_, MuscleTarget::LengthRatio) => "a longitudinal muscle",
+            Self::Muscle(_, MuscleTarget::Tension) => "a muscle with active stress",
             Self::End(_) => "an end of the tube",
             Self::Wall(_) => "a surface of the tube",
             Self::Lumen(_) => "the lumen",
@@ -207,6 +209,14 @@ pub(super) fn unknown_name(path: &str, name: &str, tube: &Tube, problems: &mut P
     problems.key(path, rule, help);
 }
 
+/// Returns the components of a target by their numbers.
+fn components<const N: usize>(
+    course: Option<VectorCourse<N>>,
+) -> impl Iterator<Item = (usize, Course)> {
+    let component = |course: VectorCourse<N>| (0..N).map(move |i| (i, course.component(i)));
+    course.into_iter().flat_map(component)
+}
+
 /// Returns words as a list in a sentence.
 fn list(words: &[&str], before_last: &str) -> String {
     match words {
@@ -232,8 +242,9 @@ pub(super) fn read(
         return vec![];
     }
     let targets = driven.targets();
-    let direction = format!("{}.direction", join("muscles", name));
-    if problems.is_as_written(&direction) {
+    let own = ["direction", "active_stress"].map(|key| format!("{}.{key}", join("muscles", name)));
+    let is_known = |problems: &Problems| own.iter().all(|key| problems.is_as_written(key));
+    if is_known(problems) {
         problems.advise_unknown(path, |unknown| {
             match nearest(unknown, targets.iter().copied()) {
                 Some(near) => format!("did you mean {near}?"),
@@ -243,20 +254,20 @@ pub(super) fn read(
     }
     let given = |is_given: bool| is_given.then_some(Course::Value(f64::NAN));
     let position = given(drive.position.is_some());
-    let [offset, tilt] = [drive.offset, drive.tilt_degrees].map(|pair| given(pair.is_some()));
-    let [volume_ratio, volume] = [drive.volume_ratio, drive.volume].map(|x| x.map(Course::Value));
+    let [offset, tilt] = [&drive.offset, &drive.tilt_degrees].map(|pair| given(pair.is_some()));
     let written = [
         ("diameter_ratio", drive.diameter_ratio.as_ref()),
         ("length_ratio", drive.length_ratio.as_ref()),
         ("stretch", drive.stretch.as_ref()),
+        ("tension", drive.tension.as_ref()),
         ("growth_through", drive.growth_through.as_ref()),
         ("shift", drive.shift.as_ref()),
         ("displacement", drive.displacement.as_ref()),
         ("twist_degrees", drive.twist_degrees.as_ref()),
         ("offset", offset.as_ref()),
         ("tilt_degrees", tilt.as_ref()),
-        ("volume_ratio", volume_ratio.as_ref()),
-        ("volume", volume.as_ref()),
+        ("volume_ratio", drive.volume_ratio.as_ref()),
+        ("volume", drive.volume.as_ref()),
         ("pressure", drive.pressure.as_ref()),
         ("dead_load", drive.dead_load.as_ref()),
         ("radius", drive.radius.as_ref()),
@@ -275,7 +286,7 @@ pub(super) fn read(
                 // A misspelt key, which has been reported.
                 continue;
             }
-            if !problems.is_as_written(&direction) {
+            if !is_known(problems) {
                 problems.replaced(key);
                 continue;
             }
@@ -298,6 +309,14 @@ pub(super) fn read(
                     course.map(|shift| shift / diameter),
                 ));
             }
+            (Driven::Muscle(m, MuscleTarget::Tension), _) => {
+                let modulus = youngs_modulus(case);
+                let course = course.map(|tension| tension / modulus);
+                for tension in course.values() {
+                    check_tension(&key, tension, case, problems);
+                }
+                all.push(target(Quantity::Muscle(m), course));
+            }
             (Driven::Muscle(m, _), kind) => {
                 let muscle = &tube.muscles[m];
                 let ratio = |value| match kind {
@@ -318,26 +337,28 @@ pub(super) fn read(
                 all.push(target(Quantity::Muscle(m), course));
             }
             (Driven::Lumen(at_rest), kind) => {
-                for value in course.values() {
-                    let ratio = lumen::ratio(&key, (kind, value), (case, tube), at_rest, problems);
-                    all.push(target(Quantity::LumenVolume, Course::Value(ratio)));
-                }
+                let ratio = |value| lumen::ratio((kind, value), case, at_rest);
+                let course = course.map(ratio);
+                lumen::check_target(&key, kind, &course, (case, tube), problems);
+                all.push(target(Quantity::LumenVolume, course));
             }
             (Driven::End(e), "offset") => {
                 sideways::check_support(&key, tube.ends[e], problems);
-                for (i, x) in drive.offset.unwrap_or_default().into_iter().enumerate() {
-                    all.push(target(Quantity::Offset(e, i), Course::Value(x / diameter)));
+                let offset = drive.offset.as_ref();
+                let offset = offset.map(|course| course.map(|x| x.map(|x| x / diameter)));
+                for (i, course) in components(offset) {
+                    all.push(target(Quantity::Offset(e, i), course));
                 }
             }
             (Driven::End(e), "tilt_degrees") => {
-                let tilt = drive.tilt_degrees.unwrap_or_default();
-                sideways::check_tilt(&key, tilt, problems);
+                let tilt = drive.tilt_degrees.as_ref();
+                for tilt in tilt.map(VectorCourse::values).unwrap_or_default() {
+                    sideways::check_tilt(&key, tilt, problems);
+                }
                 sideways::check_support(&key, tube.ends[e], problems);
-                for (i, angle) in tilt.into_iter().enumerate() {
-                    all.push(target(
-                        Quantity::Tilt(e, i),
-                        Course::Value(angle.to_radians()),
-                    ));
+                let tilt = tilt.map(|course| course.map(|x| x.map(f64::to_radians)));
+                for (i, course) in components(tilt) {
+                    all.push(target(Quantity::Tilt(e, i), course));
                 }
             }
             (Driven::End(e), kind) => {
@@ -353,9 +374,10 @@ pub(super) fn read(
                 all.push(target(Quantity::Radius(i), course.map(|x| x / diameter)));
             }
             (Driven::Obstacle(i, _), _) => {
-                let position = in_tube(drive.position.unwrap_or_default(), case);
-                for (k, x) in position.into_iter().enumerate() {
-                    all.push(target(Quantity::Position(i, k), Course::Value(x)));
+                let position = drive.position.as_ref();
+                let position = position.map(|course| course.map(|x| in_tube(x, case)));
+                for (k, course) in components(position) {
+                    all.push(target(Quantity::Position(i, k), course));
                 }
             }
             (Driven::Patch(i), _) => all.push(target(Quantity::Patch(i), course.clone())),

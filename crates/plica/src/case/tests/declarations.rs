@@ -151,6 +151,15 @@ fn base(pattern: &str) -> String {
     if pattern.ends_with(".offset") || pattern.ends_with(".tilt_degrees") {
         text = format!("symmetry = 'none'\n{text}");
     }
+    if pattern.contains(".active_stress.") || pattern.ends_with("drive.<name>.tension") {
+        // One of them needs the other.
+        let keys = match pattern.rsplit('.').next() {
+            Some("best_stretch") => "least_stretch = 0.8",
+            Some("least_stretch" | "width") => "best_stretch = 1.4",
+            _ => "",
+        };
+        text = text.replace("zone", &format!("active_stress = {{ {keys} }}\nzone"));
+    }
     if pattern.ends_with(".length_ratio") {
         text = text.replace("'circular'", "'longitudinal'");
     }

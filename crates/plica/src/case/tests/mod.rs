@@ -7,6 +7,7 @@ mod rules;
 
 use super::key::visit;
 use super::*;
+use crate::material::{LengthTension, Tone};
 use crate::saved_state::{Array, Layout, SavedState};
 use crate::tube;
 use std::path::{Path, PathBuf};
@@ -62,6 +63,10 @@ profile = { smooth-box = { edge = 0.25 } }
 direction = "longitudinal"
 zone = [56.0, 72.0]
 profile = { table = [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]] }
+[muscles.taenia]
+direction = "longitudinal"
+zone = [8.0, 24.0]
+active_stress = { angle_degrees = 80.0, best_stretch = 1.25, least_stretch = 0.5 }
 [ends]
 colon = "fixed"
 ileum = "sliding"
@@ -81,6 +86,7 @@ drive.colon.twist_degrees = 10
 drive.inner-wall.pressure = 0.5
 drive.outer-wall.dead_load = 0.25
 drive.next = { diameter_ratio = 0.9, shift = 1.0 }
+drive.taenia.tension = 16.0
 drive.scar.growth_through = 1.5
 drive.bolus = { position = [0.0, 0.0, 4.0], radius = 3.0 }
 [[obstacles]]
@@ -314,7 +320,15 @@ fn the_plan_is_dimensionless() {
     let [patch, foundation] = [plan.tube.patches[0].region, plan.tube.foundations[0].region];
     assert_eq!((patch.zone, patch.edge), ([1.0, 2.0], 0.25));
     assert_eq!((foundation.zone, foundation.edge), ([0.5, 4.5], 0.125));
-    assert_eq!(plan.tube.patches[0].muscles, [1.0, 1.0, 0.25]);
+    assert_eq!(plan.tube.patches[0].muscles, [1.0, 1.0, 0.25, 1.0]);
+    let taenia = &plan.tube.muscles[3];
+    let relation = LengthTension::Rachev {
+        best: 1.25,
+        least: 0.5,
+    };
+    let tone = Tone::new(1.0, relation, 80_f64.to_radians());
+    assert_eq!(taenia.active_stress, Some(tone));
+    assert_eq!((first.load.muscles[3], second.load.muscles[3]), (0.0, 0.25));
     assert_eq!(second.load.patches, [1.5]);
     // 0.5 kPa/mm of a diameter of 16 mm and a modulus of 64 kPa.
     assert_eq!(plan.tube.foundations[0].stiffness, 0.125);

@@ -538,6 +538,21 @@ const AFTER_RING: &[Rule] = &[
         &["-1.0", "0.001", "19000"],
     ),
     rule(
+        "stages[1].drive.ring.tension",
+        "drive.ring.tension = @\nduration = 4.0\n[muscles.ring.active_stress]",
+        &[
+            "1000.0",
+            "[[1.0, 0.5], [4.0, 0.0]]",
+            "[[0.0, 0.0], [2.0, 0.5]]",
+        ],
+        &[
+            "1000.1",
+            "-0.1",
+            "[[2.0, 0.5], [1.0, 1.0]]",
+            "[[0.0, 0.1], [2.0, 0.5]]",
+        ],
+    ),
+    rule(
         "stages[3].drive.inner-wall.pressure",
         "[[stages]]\ndrive.lumen.volume_ratio = 1.2\n[[stages]]\ndrive = { @inner-wall.pressure = 0.01 }",
         &[""],
@@ -575,6 +590,22 @@ const AFTER_RING: &[Rule] = &[
             [[stages]]\nsteps = @\ndrive.bolus.position = [0.0, 0.0, 1.5]",
         &["25"],
         &["24"],
+    ),
+    rule(
+        "stages[2].drive.bolus.position",
+        "[[obstacles]]\nname = 'bolus'\nshape.ball = { radius = 0.2, position = [0.0, 0.0, -1.0] }\n\
+            [[stages]]\nduration = 2.0\ndrive.bolus.position = @",
+        &[
+            "[0.0, 0.0, -0.9]",
+            "[[0.0, 0.0, 0.0, -1.0], [1.5, 0.0, 0.0, -0.9]]",
+        ],
+        &[
+            "[0.0, -0.9]",
+            "[[1.0, 0.0, -0.9]]",
+            "[[1.5, 0.0, 0.0, -0.9], [1.0, 0.0, 0.0, -1.0]]",
+            "[[2.5, 0.0, 0.0, -0.9]]",
+            "[[0.0, 0.0, 0.0, -0.9]]",
+        ],
     ),
     rule(
         "muscles.@",
@@ -782,7 +813,7 @@ fn a_state_to_start_from_fits_the_case() {
     check(&fold(3), &|s| s.layout.rings = 1, &[]);
     let muscle = |name: &'static str, ratio: f64| {
         move |state: &mut SavedState| {
-            state.muscles = vec![(name.into(), crate::activation::Direction::Circular)];
+            state.muscles = vec![(name.into(), crate::activation::MuscleTarget::DiameterRatio)];
             (state.load.muscles, state.load.shifts) = (vec![ratio], vec![0.0]);
         }
     };

@@ -57,15 +57,21 @@ pub fn loads(row: &Row, scale: &Scale, muscles_by_name: bool) -> Vec<NamedLoad> 
     };
     let (length, stress) = (scale.length_name.as_str(), scale.stress_name.as_str());
     let mut loads = if muscles_by_name {
-        let muscles = row.muscles.iter();
         let target = |muscle: &MuscleRow| load(muscle.name.clone(), muscle.target, "");
-        muscles.map(target).collect()
+        growing(row).map(target).collect()
     } else {
         vec![
             load("Lmax/L".into(), row.length_ratio, ""),
             load("Dmin/D".into(), row.diameter_ratio, ""),
         ]
     };
+    for muscle in row.muscles.iter().filter(|muscle| muscle.stretch.is_none()) {
+        loads.push(load(
+            format!("tension of {}", muscle.name),
+            muscle.target,
+            stress,
+        ));
+    }
     for muscle in &row.muscles {
         if let Some(shift) = muscle.shift {
             loads.push(load(format!("shift of {}", muscle.name), shift, length));
@@ -123,11 +129,16 @@ pub fn loads(row: &Row, scale: &Scale, muscles_by_name: bool) -> Vec<NamedLoad> 
     loads
 }
 
+/// Returns the muscles that change the stress-free state.
+fn growing(row: &Row) -> impl Iterator<Item = &MuscleRow> {
+    row.muscles.iter().filter(|muscle| muscle.stretch.is_some())
+}
+
 /// Returns whether Lmax/L and Dmin/D do not say where each muscle stands, as when several shorten the circumference.
 pub fn needs_names(rows: &[Row]) -> bool {
     let explained = |row: &Row| {
         let ratios = [row.length_ratio, row.diameter_ratio];
-        match &row.muscles[..] {
+        match growing(row).collect::<Vec<_>>()[..] {
             [] => true,
             [one] => ratios == [one.target, 1.0] || ratios == [1.0, one.target],
             [a, b] => ratios == [a.target, b.target] || ratios == [b.target, a.target],

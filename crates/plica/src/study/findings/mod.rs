@@ -47,6 +47,9 @@ pub struct Findings {
     pub invaginated: Vec<Interval>,
     /// The invaginated state with the largest overhang.
     pub deepest: Option<Overhang>,
+    /// Invaginated states in the order of their first ones: by the side to which they overhang if there are some to either
+    /// side, and else all of them.
+    pub invaginations: Vec<Invagination>,
     /// States in which a wall touches itself; none without contact.
     pub touching: Vec<Interval>,
     /// First touch, creases and their resolution on walls that may touch; none in a run without contact.
@@ -124,6 +127,15 @@ pub struct Overhang {
     pub toward: String,
 }
 
+/// Invaginated states, to one side where a path has some to either side.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Invagination {
+    /// The states.
+    pub states: Vec<Interval>,
+    /// The one with the largest overhang.
+    pub deepest: Overhang,
+}
+
 /// States that are unstable to a mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Unstable {
@@ -199,7 +211,8 @@ impl Findings {
             square: path.intervals(|row| row.shape == Shape::Square),
             overhanging: path.intervals(Row::overhangs),
             invaginated: path.intervals(|row| row.shape == Shape::Invaginated),
-            deepest: deepest(&path),
+            deepest: deepest(&path, |_| true),
+            invaginations: invaginations(&path),
             touching: path.intervals(|row| row.contact.touches()),
             contact: contact::contact(&path),
             obstacles: obstacles::obstacles(&path),
@@ -246,8 +259,35 @@ pub fn states_in(intervals: &[Interval]) -> usize {
     intervals.iter().map(Interval::states).sum()
 }
 
-fn deepest(path: &Path<'_>) -> Option<Overhang> {
-    let invaginated = |i: &usize| path.rows[*i].shape == Shape::Invaginated;
+/// Returns the invaginated states, by their side if there are some to either side.
+fn invaginations(path: &Path<'_>) -> Vec<Invagination> {
+    let of = |sides: &[Side]| {
+        let is_own = |row: &Row| row.shape == Shape::Invaginated && sides.contains(&row.side);
+        Some(Invagination {
+            states: path.intervals(is_own),
+            deepest: deepest(path, is_own)?,
+        })
+    };
+    let ends = [of(&[Side::Colon]), of(&[Side::Ileum])];
+    let mut all: Vec<Invagination> = match ends {
+        [Some(colon), Some(ileum)] => [Some(colon), Some(ileum), of(&[Side::None])]
+            .into_iter()
+            .flatten()
+            .collect(),
+        _ => of(&[Side::Colon, Side::Ileum, Side::None])
+            .into_iter()
+            .collect(),
+    };
+    all.sort_by_key(|one| one.states[0].first.state);
+    all
+}
+
+/// Returns the invaginated state with the largest overhang, of those that fulfil a condition.
+fn deepest(path: &Path<'_>, is_own: impl Fn(&Row) -> bool) -> Option<Overhang> {
+    let invaginated = |i: &usize| {
+        let row = &path.rows[*i];
+        row.shape == Shape::Invaginated && is_own(row)
+    };
     let overhang = |i: usize| path.rows[i].overhang;
     let states = (0..path.rows.len()).filter(invaginated);
     // The first of equal ones.

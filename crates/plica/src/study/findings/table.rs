@@ -3,8 +3,8 @@
 use super::loads::{describe_range, number};
 use super::place::{Interval, list};
 use super::{
-    Contact, Findings, LargestForce, ObstacleContacts, Overhang, Return, SmallestStretch, StageEnd,
-    states_in,
+    Contact, Findings, Invagination, LargestForce, ObstacleContacts, Return, SmallestStretch,
+    StageEnd, states_in,
 };
 use crate::contact::{BIOT, CREASE};
 use crate::equilibrium::UnstableMode;
@@ -129,31 +129,27 @@ impl Findings {
             [] => "in no state".to_owned(),
             intervals => list(intervals),
         };
-        let invaginates = match &self.deepest {
-            None => "no".to_owned(),
-            Some(Overhang {
-                at,
-                overhang,
-                side,
-                toward: end,
-            }) => {
-                let toward = match side {
-                    Side::None => "toward both sides alike".to_owned(),
-                    _ => format!("toward the {end}"),
-                };
-                let most = format!("at most by {} at {at}", self.length(*overhang));
-                if self.invaginated == self.overhanging {
-                    format!("{toward}, {most}")
-                } else {
-                    format!("{}: {toward}, {most}", list(&self.invaginated))
-                }
-            }
-        };
         let mut lines = vec![
             ("wall is square".into(), or_none(&self.square)),
             ("wall overhangs".into(), or_none(&self.overhanging)),
-            ("invaginates".into(), invaginates),
         ];
+        if self.invaginations.is_empty() {
+            lines.push(("invaginates".into(), "no".into()));
+        }
+        for (i, Invagination { states, deepest }) in self.invaginations.iter().enumerate() {
+            let toward = match deepest.side {
+                Side::None => "toward both sides alike".to_owned(),
+                _ => format!("toward the {}", deepest.toward),
+            };
+            let most = self.length(deepest.overhang);
+            let text = format!("{toward}, at most by {most} at {}", deepest.at);
+            let text = match *states == self.overhanging {
+                true => text,
+                false => format!("{}: {text}", list(states)),
+            };
+            let name = if i == 0 { "invaginates" } else { "" };
+            lines.push((name.into(), text));
+        }
         lines.extend(
             self.contact
                 .iter()

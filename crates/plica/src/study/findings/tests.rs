@@ -240,6 +240,56 @@ fn a_cycle_remembers_its_invagination_and_its_recovery() {
 }
 
 #[test]
+fn invaginations_to_either_side_are_described_apart() {
+    let invaginated = |side: Side, overhang: f64| {
+        change(move |row| {
+            row.shape = Shape::Invaginated;
+            (row.max_wall_angle_deg, row.overhang, row.side) = (120.0, overhang, side);
+        })
+    };
+    let straight = || {
+        change(|row| {
+            (row.shape, row.max_wall_angle_deg, row.overhang) = (Shape::V, 40.0, 0.0);
+            row.side = Side::None;
+        })
+    };
+    let found = findings(&path(&[(
+        "pass",
+        vec![
+            invaginated(Side::Ileum, 0.1),
+            invaginated(Side::Ileum, 0.2),
+            straight(),
+            invaginated(Side::Colon, 0.3),
+        ],
+    )]));
+    let lines = found.lines();
+    let at = lines
+        .iter()
+        .position(|line| line.0 == "invaginates")
+        .unwrap();
+    assert_eq!(
+        lines[at].1,
+        "states 1 to 2 (pass): toward the ileum, at most by 0.200 D at state 2 (pass)"
+    );
+    assert_eq!(
+        lines[at + 1],
+        (
+            String::new(),
+            "state 4 (pass): toward the colon, at most by 0.300 D at state 4 (pass)".into()
+        )
+    );
+    assert_eq!(found.deepest.as_ref().unwrap().overhang, 0.3);
+    // A state without a side is described with the others where all of them are on one side.
+    let found = findings(&path(&[(
+        "pass",
+        vec![invaginated(Side::None, 0.1), invaginated(Side::Colon, 0.2)],
+    )]));
+    let expected = "toward the colon, at most by 0.200 D at state 2 (pass)";
+    assert_eq!(line(&found, "invaginates"), expected);
+    assert_eq!(found.invaginations.len(), 1);
+}
+
+#[test]
 fn a_tube_that_does_not_recover_is_another_state_at_the_same_load() {
     for end in [
         (|row| row.energy = 1e-5) as fn(&mut Row),
@@ -365,7 +415,7 @@ fn muscles_that_the_ratios_do_not_tell_apart_have_their_names() {
         let muscle = |(name, target): (&str, f64)| MuscleRow {
             name: name.into(),
             target,
-            stretch: target,
+            stretch: Some(target),
             shift: None,
             work: 0.0,
         };
