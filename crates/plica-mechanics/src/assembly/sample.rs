@@ -42,6 +42,8 @@ pub struct Sample {
     pub grown: [f64; 2],
     /// Growth stretch θξ through the wall, of patches.
     pub grown_through: f64,
+    /// Sum of the tensions of muscles with active stress, in E.
+    pub tension: f64,
     /// Angle of the middle of the point's element, in radians.
     pub element_angle: f64,
 }
@@ -109,6 +111,7 @@ impl SplineTube {
         for part in parts() {
             if matches!(part.kind, PartKind::Muscle(_)) && !part.is_idle(load) {
                 let active = part.sample_here(load, u, at);
+                sample.tension += part.energy_factor(at.z, at.angle, load);
                 sample.energy_density += active.energy_density;
                 sample.stress = sum(sample.stress, active.stress);
             }
@@ -185,6 +188,7 @@ impl SplineTube {
             stress: P.times(Fe.transpose()).scaled(1.0 / jacobian), // σ = P Feᵀ / det Fe
             grown: [theta_z, theta_t],
             grown_through: through,
+            tension: 0.0,
             element_angle: element * alpha,
             elastic: Fe,
         }

@@ -39,6 +39,12 @@ pub(super) const OF_PATCHES: &[Field] = &[field("theta_xi", &[], |points, _| {
     scalar(points, |point| point.grown_through)
 })];
 
+/// The fields of runs with active stresses.
+pub(super) const OF_TENSIONS: &[Field] = &[field("tension", &[], |points, scale| {
+    let stress = scale.stress as f32;
+    scalar(points, |point| stress * point.tension)
+})];
+
 /// The fields of all runs.
 pub(super) const FIELDS: &[Field] = &[
     field("displacement", XYZ, |points, scale| {

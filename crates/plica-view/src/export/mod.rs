@@ -10,6 +10,7 @@
 //! | `det_Fe` | elastic volume ratio |
 //! | `theta_zeta`, `theta_eta` | longitudinal and circumferential growth stretch |
 //! | `theta_xi` | growth stretch through the wall, in runs with patches |
+//! | `tension` | sum of the tensions of the muscles with active stress, in runs with them |
 //! | `strain_energy_density` | w, per volume after growth |
 //! | `cauchy_stress` | σ in (x, y, z): xx, yy, zz, xy, yz, xz |
 //! | `axial_stress`, `radial_stress`, `hoop_stress` | normal components of σ along the meridian, through the wall and along the circle of the deformed wall |
@@ -25,7 +26,8 @@ mod points;
 
 use crate::sampled_tube::SampledTube;
 use crate::vtk::{Cells, Column, Document, Lattice, Series};
-use fields::{FIELDS, OF_CONTACT, OF_PATCHES};
+use fields::{FIELDS, OF_CONTACT, OF_PATCHES, OF_TENSIONS};
+use plica::activation::Muscle;
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row, Scale};
 use plica::tube::Load;
@@ -36,6 +38,7 @@ pub struct Exporter {
     tube: SampledTube,
     scale: Scale,
     has_patches: bool,
+    has_tensions: bool,
 }
 
 /// Geometry written to a VTK file.
@@ -112,15 +115,18 @@ impl Exporter {
             tube: SampledTube::of(plan),
             scale: Scale::of(plan.units.as_ref()),
             has_patches: !plan.tube.patches.is_empty(),
+            has_tensions: !plan.tube.muscles.iter().all(Muscle::grows),
         }
     }
 
-    /// Returns the fields, those of contact and patches only if the run has them.
+    /// Returns the fields, those of contact, patches and tensions only if the run has them.
     fn fields(&self) -> impl Iterator<Item = &'static fields::Field> {
         let contact = self.tube.has_contact();
         let of_contact: &[fields::Field] = if contact { OF_CONTACT } else { &[] };
         let of_patches: &[fields::Field] = if self.has_patches { OF_PATCHES } else { &[] };
-        FIELDS.iter().chain(of_contact).chain(of_patches)
+        let of_tensions: &[fields::Field] = if self.has_tensions { OF_TENSIONS } else { &[] };
+        let fields = FIELDS.iter().chain(of_contact).chain(of_patches);
+        fields.chain(of_tensions)
     }
 
     /// Returns the bytes of the file of a state.

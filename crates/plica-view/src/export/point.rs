@@ -17,6 +17,8 @@ pub(super) struct PointData {
     pub grown: [f32; 2],
     /// Growth stretch through the wall.
     pub grown_through: f32,
+    /// Tension of the muscles with active stress in units of E.
+    pub tension: f32,
     /// Strain energy density w in units of E.
     pub energy_density: f32,
     /// Cauchy stress σ in units of E: xx, yy, zz, xy, yz, xz.
@@ -112,6 +114,7 @@ impl PointData {
             jacobian: jacobian as f32,
             grown: sample.grown.map(|x| x as f32),
             grown_through: sample.grown_through as f32,
+            tension: sample.tension as f32,
             energy_density: existing(sample.energy_density) as f32,
             stress: tensor(&Tensor2(sample.stress.0.map(|row| row.map(existing)))),
             wall_stresses: sample.wall_stresses().map(|x| existing(x) as f32),

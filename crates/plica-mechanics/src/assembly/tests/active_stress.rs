@@ -224,6 +224,7 @@ fn a_muscle_all_over_is_a_tone_of_the_layer() {
             );
             assert!(largest(&stress) < 1e-13);
             assert!((a.2.energy_density - b.2.energy_density).abs() < 1e-13);
+            assert!(a.2.tension == 0.0 && (b.2.tension - 0.3).abs() < 1e-14);
         }
     }
 }
