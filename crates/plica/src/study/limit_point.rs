@@ -134,7 +134,7 @@ fn significant(x: f64) -> f64 {
 mod tests {
     use super::super::fixture::plan;
     use super::*;
-    use crate::activation::{Muscle, Profile};
+    use crate::activation::{Direction, Muscle, Profile};
     use crate::study::{LengthUnit, StressUnit, Units};
     use crate::tube::{EndMotion, Pressure, Symmetry};
 
