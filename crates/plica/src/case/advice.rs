@@ -25,7 +25,9 @@ pub fn advice(plan: &Plan) -> Vec<String> {
         let inside = |w: &&[f64]| from < middle(w) && middle(w) < to;
         let across = breakpoints.windows(2).filter(inside).count();
         let name = &muscle.name;
-        if stays && across < FINE {
+        // A muscle of the whole tube makes no fold by itself.
+        let is_whole = from <= 0.0 && to >= tube.length;
+        if stays && !is_whole && across < FINE {
             advice.push(format!(
                 "the zone of muscles.{name} is only {across} elements long; a fold needs {FINE} or more"
             ));
