@@ -174,3 +174,65 @@ fn the_work_of_a_travelling_wave_is_its_gain_of_energy() {
     // Of second order in the step.
     assert!(fine < 0.3 * coarse && fine < 0.06, "{coarse} {fine}");
 }
+
+#[test]
+fn positions_motions_of_ends_and_volumes_follow_lists() {
+    // In one stage with a list, and in two stages: the same states.
+    let base = "[tube]\nlength = 1.5\nthickness = 0.1\n[output]\nstability_modes = 0\n\
+        [solver]\ntolerance = 1e-11\n";
+    let bolus = "[mesh]\nrefine = []\ncontrol_points = { axial = 19, around = 12, thickness = 4 }\n\
+        [ends]\nileum = 'sliding'\n[[obstacles]]\nname = 'bolus'\n\
+        shape.ball = { radius = 0.37, position = [0.0, 0.0, 0.75] }\n\
+        [[stages]]\nsteps = 2\ndrive.bolus.radius = 0.42\n";
+    let balloon = "[mesh]\nrefine = []\ncontrol_points = { axial = 9, around = 12, thickness = 4 }\n\
+        [ends]\ncolon = 'sliding'\nileum = 'sliding'\n";
+    let bent = "symmetry = 'none'\n[mesh]\nrefine = []\n\
+        control_points = { axial = 9, around = 12, thickness = 4 }\n";
+    for (text, list, [first, second]) in [
+        (
+            bolus,
+            "bolus.position = [[0.5, 0.0, 0.0, 0.9], [1.0, 0.0, 0.0, 0.8]]",
+            [
+                "bolus.position = [0.0, 0.0, 0.9]",
+                "bolus.position = [0.0, 0.0, 0.8]",
+            ],
+        ),
+        (
+            balloon,
+            "lumen.volume_ratio = [[0.5, 1.3], [1.0, 1.2]]",
+            ["lumen.volume_ratio = 1.3", "lumen.volume_ratio = 1.2"],
+        ),
+        (
+            bent,
+            "ileum = { offset = [[0.5, 0.02, 0.0]], tilt_degrees = [[0.5, 0.0, 3.0], [1.0, 0.0, 0.0]] }",
+            [
+                "ileum = { offset = [0.02, 0.0], tilt_degrees = [0.0, 3.0] }",
+                "ileum.tilt_degrees = [0.0, 0.0]",
+            ],
+        ),
+    ] {
+        let stage =
+            |steps: usize, drive: &str| format!("[[stages]]\nsteps = {steps}\ndrive.{drive}\n");
+        let [listed, staged] = [
+            stage(4, list),
+            format!("{}{}", stage(2, first), stage(2, second)),
+        ]
+        .map(|stages| {
+            let symmetry = text
+                .lines()
+                .next()
+                .filter(|line| line.starts_with("symmetry"));
+            let rest = symmetry.map_or(text, |line| &text[line.len()..]);
+            let text = format!("{}\n{base}{rest}\n{stages}", symmetry.unwrap_or_default());
+            energies(&plica::case::read(&text, "lists").unwrap_or_else(|error| panic!("{error}")))
+        });
+        assert_eq!(listed.len(), staged.len());
+        assert!(listed.iter().any(|energy| *energy > 1e-7), "{list}");
+        for (a, b) in listed.iter().zip(&staged) {
+            assert!(
+                (a - b).abs() <= 1e-9 * b.abs() + 1e-16,
+                "{list}: {listed:?} {staged:?}"
+            );
+        }
+    }
+}
