@@ -184,7 +184,7 @@ pub struct PlotArguments {
     /// Directory of the run
     #[arg(value_name = "RUN_DIR")]
     pub run: PathBuf,
-    /// What to plot: walls, or columns of history.csv; one plot each
+    /// Walls, or columns of history.csv to plot, one plot each
     #[arg(value_name = "WHAT", default_value = "energy")]
     pub what: Vec<String>,
     /// Column for the horizontal axis [default: the number of the state]

@@ -1,4 +1,4 @@
-//! What the main case of Okino et al. (2025) costs on the paper's axial and thickness mesh.
+//! Cost of the main case of Okino et al. (2025) on the paper's axial and thickness mesh.
 //!
 //! `cargo bench -p plica` prints the table of docs/performance.md. Every figure is taken on one
 //! thread.

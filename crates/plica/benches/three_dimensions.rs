@@ -1,4 +1,4 @@
-//! What a Newton step of the whole tube costs, and how that grows with the mesh.
+//! Cost of a Newton step of the whole tube, and its growth with the mesh.
 //!
 //! `cargo bench -p plica --bench three_dimensions` prints the table of docs/performance.md: the
 //! contracted tube of the main case (Dmin/D = 0.25) on every thread that there is, wall seconds,
@@ -48,7 +48,7 @@ const FAR_FROM_ROUND: [(&str, &str, [usize; 3], usize); 2] = [
     ),
 ];
 
-/// What a change of the load takes to be followed to a residual of 1e-3.
+/// Cost of following a change of the load to a residual of 1e-3.
 fn far_from_round() {
     println!(
         "\n{:>8} {:>13} {:>9} {:>8} {:>7} {:>9} {:>9} {:>9} {:>5}",

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 const FEW: usize = 1500;
 /// No answer takes longer, not even on a busy machine about the largest mesh, whose imperfect wall is looked at everywhere.
 const SOON: Duration = Duration::from_secs(120);
-/// What cases are made of, and numbers that are hard to swallow.
+/// Words of cases, and extreme numbers.
 const WORDS: &[&str] = &[
     "nan",
     "inf",

@@ -34,7 +34,7 @@ pub struct Imperfection {
 /// An imperfect part of a tube.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Where an end is held. The end gives the displacement, constant along the whole path.
+    /// Constant displacement of an end that is held there along the whole path.
     End(End, EndDirection),
     /// Stress-free shape of the wall.
     Geometry,

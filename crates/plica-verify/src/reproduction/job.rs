@@ -30,7 +30,7 @@ pub struct Job {
     pub case: &'static str,
     /// Changed keys with their values.
     pub changes: Vec<(String, String)>,
-    /// Whether it runs alone, with all threads; others run in parallel, with one thread each.
+    /// True if it runs alone, with all threads; others run in parallel, with one thread each.
     pub large: bool,
 }
 

@@ -16,7 +16,7 @@ pub struct Claim {
     pub paper: String,
     /// Result of Plica.
     pub found: String,
-    /// Whether they agree.
+    /// True if they agree.
     pub verdict: Verdict,
 }
 

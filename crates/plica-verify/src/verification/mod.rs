@@ -52,7 +52,7 @@ pub struct Check {
     pub name: &'static str,
     /// Subject of the check.
     pub description: &'static str,
-    /// Whether only the full verification includes it.
+    /// True if only the full verification includes it.
     pub slow: bool,
     run: fn(&mut Recorder<'_>) -> Result<(), VerificationError>,
 }

@@ -7,7 +7,7 @@ use plica_view::draw::{Chart, DrawError};
 
 /// Collects the rows and charts of running checks.
 pub struct Recorder<'a> {
-    /// Whether the full verification runs, with finer meshes.
+    /// True if the full verification runs, with finer meshes.
     pub full: bool,
     monitor: &'a mut dyn Monitor,
     fraction: f64,
@@ -151,7 +151,7 @@ impl<'a> Recorder<'a> {
 /// Results of a verification.
 #[derive(Clone, Debug)]
 pub struct Verification {
-    /// Whether slow checks and finer meshes are included.
+    /// True if slow checks and finer meshes are included.
     pub full: bool,
     /// All rows.
     pub rows: Vec<Row>,

@@ -58,7 +58,7 @@ struct Linear {
     contact: Option<SurfaceTangent>,
     /// The term of a driven volume of the lumen, and its average around the tube, of harmonic 0.
     term: Option<[RankOne; 2]>,
-    /// Whether the displacements are the same at every ring.
+    /// True if the displacements are the same at every ring.
     symmetric: bool,
     /// The low harmonics that the state couples, if any.
     low: Option<Arc<LowHarmonics>>,

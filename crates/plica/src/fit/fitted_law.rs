@@ -26,7 +26,7 @@ pub enum FittedLaw {
 /// The unit of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterUnit {
-    /// That of the stresses.
+    /// Unit of the stresses.
     Stress,
     /// Degrees.
     Degrees,

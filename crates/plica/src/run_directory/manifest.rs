@@ -42,7 +42,7 @@ pub(super) struct Manifest {
     pub resumed: Vec<serde_json::Value>,
     /// Seconds since 1970 at the end; none while it runs.
     pub ended_unix: Option<u64>,
-    /// How the run ended.
+    /// Verdict on the run.
     pub verdict: Verdict,
     /// The verdict in a sentence.
     pub verdict_text: String,
@@ -76,7 +76,7 @@ pub(super) struct Manifest {
     /// States and modes that `plica stability` has tested; none if it has not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability: Option<serde_json::Value>,
-    /// Whether the pictures are drawn and temporary files are removed.
+    /// True once the pictures are drawn and temporary files are removed.
     pub closed: bool,
 }
 

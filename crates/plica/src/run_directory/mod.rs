@@ -70,7 +70,7 @@ pub struct RunDirectory {
     lock: Option<Lock>,
 }
 
-/// How a run ended, as its manifest says.
+/// Verdict on a run, as in its manifest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {

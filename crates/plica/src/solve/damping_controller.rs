@@ -26,7 +26,7 @@ pub(super) struct DampingController {
 /// An accepted step, as the controller judges it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AcceptedStep {
-    /// Whether the linear solver reached the required accuracy.
+    /// True if the linear solver reached the required accuracy.
     pub accurate: bool,
     /// Fraction of the step that was taken.
     pub length: f64,

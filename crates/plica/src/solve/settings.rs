@@ -63,7 +63,7 @@ pub struct PseudoTime {
     pub tolerance: f64,
     /// Pseudo-time steps after the ramp before the path ends.
     pub max_steps: usize,
-    /// Whether the state is then taken to equilibrium without damping. If not, states are accepted as
+    /// True if the state is then taken to equilibrium without damping. If not, states are accepted as
     /// in the paper, and their relative residual says how far from equilibrium they are.
     pub equilibrate: bool,
 }

@@ -65,7 +65,7 @@ pub trait Solver {
 pub struct Solved {
     /// Iterations; 0 for a direct solver.
     pub iterations: usize,
-    /// Whether the residual is as small as required. It is not if the solve was cut off, or if rounding
+    /// True if the residual is as small as required. It is not if the solve was cut off, or if rounding
     /// does not permit it.
     pub converged: bool,
 }

@@ -50,7 +50,7 @@ struct Found {
 /// Result of following the path from one state to the load of another.
 struct Connection {
     transition: Transition,
-    /// Whether the path ends at the other state.
+    /// True if the path ends at the other state.
     reaches: bool,
 }
 

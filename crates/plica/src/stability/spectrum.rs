@@ -27,7 +27,7 @@ pub struct Eigenvalue {
     pub value: f64,
     /// Relative residual, as defined by [`crate::solve::Lowest::residuals`].
     pub residual: f64,
-    /// Whether the residual is within the tolerance.
+    /// True if the residual is within the tolerance.
     pub found: bool,
     /// Share of each circumferential mode from 0 on in x · C x.
     pub shares: Vec<f64>,

@@ -30,12 +30,12 @@ pub struct Study {
     /// Number of the next state.
     next_number: usize,
     ending: Option<Ending>,
-    /// Whether the caller has received the error of a lost tube.
+    /// True once the caller has received the error of a lost tube.
     error_returned: bool,
     since: Instant,
 }
 
-/// How a study ended.
+/// End of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
     /// Every stage was completed.

@@ -1,4 +1,4 @@
-//! Where and why a tube could not be followed further.
+//! Place and reason where a tube could not be followed further.
 
 use super::{LimitPoint, Plan, Scale};
 use crate::assembly::{Inverted, Place, SplineTube};

@@ -75,7 +75,7 @@ pub struct MaterialFile {
 /// Output of a run beside its history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// Whether pictures are drawn.
+    /// True if pictures are drawn.
     pub pictures: bool,
     /// Write wall profiles for every n-th state and the last of each stage; 0 for none.
     pub profiles_every: usize,

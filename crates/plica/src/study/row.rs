@@ -61,7 +61,7 @@ pub struct Row {
     pub released_energy: f64,
     /// Method by which the state was found: rest, newton, relaxation or pseudo-time.
     pub method: Method,
-    /// Whether the state is in equilibrium: yes or no.
+    /// Equilibrium: yes or no.
     pub in_equilibrium: bool,
     /// Linear solves since the previous state, including those of rejected attempts.
     pub iterations: usize,

@@ -17,7 +17,7 @@ pub struct State {
     pub number: usize,
     /// Name of the stage; `rest` or `start` for state 0.
     pub stage: String,
-    /// Whether the state is the last of its stage, or the last before the study ended early.
+    /// True if the state is the last of its stage, or the last before the study ended early.
     pub ends_stage: bool,
     /// Fraction of the stage that is completed, 0 to 1.
     pub stage_fraction: f64,
@@ -44,7 +44,7 @@ pub struct State {
     pub relative_residual: f64,
     /// Method by which the state was found.
     pub method: Method,
-    /// Whether the relative residual without damping meets the tolerance.
+    /// True if the relative residual without damping meets the tolerance.
     pub in_equilibrium: bool,
     /// Linear solves since the previous state, including those of rejected attempts.
     pub linear_solves: usize,
