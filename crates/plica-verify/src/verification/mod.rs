@@ -11,7 +11,7 @@
 //! | `volume` | tubes inflated by the volume of their lumen |
 //! | `locking` | nearly incompressible thick walls |
 //! | `manufactured` | orders of convergence on manufactured solutions |
-//! | `contact` | contact with obstacles |
+//! | `contact`, `contact_pressure` | contact with obstacles, and its pressure along the tube |
 //! | `cross_checks` | the same result computed in two ways |
 //! | `main_case` | the main case of Okino et al. (2025) |
 //! | [`row`], `report` | rows, table and page |
@@ -22,6 +22,7 @@
 mod active_stress;
 mod columns;
 mod contact;
+mod contact_pressure;
 mod cross_checks;
 mod error;
 mod exact;
@@ -175,6 +176,16 @@ pub const CHECKS: &[Check] = &[
         "contact-symmetries",
         "contact of one ring and of the whole tube",
         contact::symmetries,
+    ),
+    quick(
+        "contact-patch",
+        "even contact on a mesh of uneven elements",
+        contact_pressure::patch_test,
+    ),
+    quick(
+        "hertz",
+        "a ball that widens in a thick tube",
+        contact_pressure::hertz,
     ),
     quick(
         "flat-ring",
