@@ -172,6 +172,7 @@ fn label(quantity: Quantity, plan: &Plan) -> String {
         Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
         Quantity::DeadLoad(wall) => format!("dead load/*E* {}", ["inside", "outside"][wall]),
         Quantity::Muscle(_)
+        | Quantity::Tension(_)
         | Quantity::Radius(_)
         | Quantity::Position(..)
         | Quantity::Growth(_)
