@@ -176,7 +176,6 @@ fn label(quantity: Quantity, plan: &Plan) -> String {
         | Quantity::Radius(_)
         | Quantity::Position(..)
         | Quantity::Growth(_)
-        | Quantity::Tension(_)
         | Quantity::Shift(_) => quantity.name(&plan.tube),
     }
 }
