@@ -172,10 +172,10 @@ fn label(quantity: Quantity, plan: &Plan) -> String {
         Quantity::Pressure(wall) => format!("*p*/*E* {}", ["inside", "outside"][wall]),
         Quantity::DeadLoad(wall) => format!("dead load/*E* {}", ["inside", "outside"][wall]),
         Quantity::Muscle(_)
-        | Quantity::Tension(_)
         | Quantity::Radius(_)
         | Quantity::Position(..)
         | Quantity::Growth(_)
+        | Quantity::Tension(_)
         | Quantity::Shift(_) => quantity.name(&plan.tube),
     }
 }

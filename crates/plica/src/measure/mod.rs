@@ -46,6 +46,7 @@ pub use rotation::{Flank, Rotation};
 pub use shape::{Shape, Side};
 pub use wall::{Face, Wall};
 
+use crate::activation::{Direction, Muscle};
 use crate::assembly::SplineTube;
 use crate::tube::{Load, Tube};
 use surface::Surface;
@@ -153,12 +154,21 @@ impl Measures {
                 &relative[deepest],
                 &own_inner[deepest],
                 angle,
-                tube.tube.diameter_ratio(load),
+                contracts(&tube.tube, load),
                 asymmetry.amplitude,
             ),
             asymmetry,
         }
     }
+}
+
+/// Returns true if a circular muscle contracts, by growth to a Dmin/D that is visible or by a tension.
+fn contracts(tube: &Tube, load: &Load) -> bool {
+    let pulls = |(muscle, &tension): (&Muscle, &f64)| {
+        !muscle.grows() && muscle.direction == Direction::Circular && tension > 0.0
+    };
+    tube.diameter_ratio(load) <= 1.0 - Shape::MIN_DEPTH
+        || tube.muscles.iter().zip(&load.muscles).any(pulls)
 }
 
 #[cfg(test)]

@@ -61,18 +61,17 @@ impl Shape {
     const SQUARE_ANGLE_DEG: f64 = 78.0;
 
     /// Classifies a tube by its narrowest outer meridian, the inner meridian there, its largest wall angle in degrees,
-    /// its diameter ratio Dmin/D, and the amplitude of its asymmetry in D.
+    /// whether a circular muscle contracts, and the amplitude of its asymmetry in D.
     pub fn of(
         outer: &Wall,
         inner: &Wall,
         wall_angle_deg: f64,
-        diameter_ratio: f64,
+        contracted: bool,
         asymmetry: f64,
     ) -> Self {
         let depth = Tube::OUTER_RADIUS - outer.narrowest().1;
         let widest = outer.points.iter().map(|p| p.1).fold(0.0, f64::max);
         let bulge = widest - Tube::OUTER_RADIUS;
-        let contracted = diameter_ratio <= 1.0 - Self::MIN_DEPTH;
         let is_one_neck =
             bulge < Self::MIN_DEPTH && asymmetry < Self::MIN_DEPTH && narrows_once(outer);
         if inner.narrowest().1 <= 0.0 {
@@ -182,7 +181,7 @@ mod tests {
             &outer,
             &inner,
             outer.steepest_angle_deg(),
-            diameter_ratio,
+            diameter_ratio <= 1.0 - Shape::MIN_DEPTH,
             0.0,
         )
     }
@@ -226,7 +225,7 @@ mod tests {
             (89.9, Shape::Square),
             (90.0, Shape::Invaginated),
         ] {
-            let found = Shape::of(&outer, &inner, angle, 0.25, 0.0);
+            let found = Shape::of(&outer, &inner, angle, true, 0.0);
             assert_eq!(found, expected, "{angle}");
         }
     }
@@ -266,7 +265,7 @@ mod tests {
         let mut inner = outer.clone();
         inner.points.iter_mut().for_each(|p| p.1 -= 0.06);
         for (asymmetry, expected) in [(0.0199, Shape::V), (0.0201, Shape::Collapsed)] {
-            let found = Shape::of(&outer, &inner, 30.0, 1.0, asymmetry);
+            let found = Shape::of(&outer, &inner, 30.0, false, asymmetry);
             assert_eq!(found, expected, "{asymmetry}");
         }
     }
