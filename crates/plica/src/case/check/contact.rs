@@ -45,11 +45,16 @@ pub(super) fn check(
         let tone = muscle.active_stress.as_ref();
         tone.is_none_or(Tone::is_mirror_symmetric)
     };
-    let twists = !tube.layers.iter().all(symmetric) || !tube.muscles.iter().all(acts_straight);
-    if twists && problems.are_sound(&["layers", "muscles"]) {
-        let help = "set `contact = false`, or give the fibres of each layer their mirror images";
-        let rule = "must be false if fibres of one hand twist the tube";
-        problems.value(CONTACT, rule, help);
+    let rule = "must be false if fibres of one hand twist the tube";
+    if problems.are_sound(&["layers", "muscles"]) {
+        if !tube.layers.iter().all(symmetric) {
+            let help =
+                "set `contact = false`, or give the fibres of each layer their mirror images";
+            problems.value(CONTACT, rule, help);
+        } else if !tube.muscles.iter().all(acts_straight) {
+            let help = "set `contact = false`, or `active_stress.angle_degrees` of each muscle to 0, 90 or -90";
+            problems.value(CONTACT, rule, help);
+        }
     }
     let twists = |load: &Load| load.ends.iter().any(|end| end.twist != 0.0);
     if stages.iter().flat_map(Stage::loads).any(twists) {
