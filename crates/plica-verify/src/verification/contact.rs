@@ -131,6 +131,18 @@ impl Case {
     }
 }
 
+/// Returns the contact pressure, per current area, of a wall that grows around by 1.2 into a sheath of radius 0.55, by the
+/// one-dimensional solution held at the gap of the barrier.
+pub(super) fn pressure_in_sheath(range: f64) -> Result<f64, VerificationError> {
+    let case = Case {
+        shape: ObstacleShape::Sheath,
+        radius: 0.55,
+        growth: 1.2,
+        range,
+    };
+    Ok(case.reference(true)?[0])
+}
+
 /// Returns the problem with another range of contact.
 fn with_range(problem: &TubeProblem, range: f64) -> TubeProblem {
     let barrier = Barrier {
