@@ -1,4 +1,4 @@
-"""Compares what runs say about themselves with an independent evaluation of their saved states, in NumPy alone.
+"""Compares the results that runs report with an independent evaluation of their saved states, in NumPy alone.
 
     python3 scripts/check_runs.py PLICA RUN_DIR...
 
@@ -386,12 +386,12 @@ def number(text):
 def covered(case):
     """True if the independent energy covers the case."""
     material = case.get("material", {})
-    unknown = ("layers", "patches", "foundations", "residual", "fibres")
+    unknown = ("layers", "patches", "foundations", "residual", "fibres", "start")
     muscles = case.get("muscles", {}).values()
     return (
         (not material or "neo-hookean" in material and "shear_modulus" not in material["neo-hookean"])
         and not any(key in case for key in unknown)
-        and not any(key in muscle for muscle in muscles for key in ("sector", "repeat", "layer"))
+        and not any(key in muscle for muscle in muscles for key in ("sector", "repeat", "layer", "active_stress"))
         and case.get("mesh", {}).get("volumetric_integration", "full") == "full"
         and all(i["of"] == "geometry" for i in case.get("imperfections", []))
         and not any("shift" in drive for stage in case["stages"] for drive in stage.get("drive", {}).values())
@@ -400,7 +400,9 @@ def covered(case):
 
 def check_states(check, path, case, rows):
     units = case.get("units")
-    D = case.get("tube", {}).get("diameter", 1.0) if units else 1.0
+    # Without units, results are in diameters, whatever the unit of the lengths in the case.
+    size = case.get("tube", {}).get("diameter", 1.0)
+    D = size if units else 1.0
     law = case.get("material", {}).get("neo-hookean", {})
     E = law.get("youngs_modulus", 1.0) if units else 1.0
     W, Fo = E * D**3, E * D**2
@@ -419,7 +421,7 @@ def check_states(check, path, case, rows):
         volume = {face: wall_integrals(tube, face) for face in tube.faces()}
         check.close("lumen_volume", n, row["lumen_volume"] / D**3, volume["inner"][0], 1e-8 * tube.length)
         if energy_is_covered:
-            w, ungrown, forces = energy_and_force(tube, rest, case, about["load"], D)
+            w, ungrown, forces = energy_and_force(tube, rest, case, about["load"], size)
             check.close("energy", n, row["energy"] / W, w, 1e-10 * abs(largest_w / W) + 1e-15)
             check.close("energy_ungrown_volume", n, row["energy_ungrown_volume"] / W, ungrown, 1e-10 * abs(largest_w / W) + 1e-15)
             # The support holds the wall and the lids: what the stress carries, less the forces of pressures on the wall.
@@ -465,7 +467,7 @@ def check_states(check, path, case, rows):
             place = [row[f"{axis}_{name}"] / D for axis in "xyz"]
             for face in tube.faces():
                 radius = row[f"radius_{name}"] / D
-                distance = distance_to_obstacle(obstacle["shape"], place, radius, surface(tube, face), D)
+                distance = distance_to_obstacle(obstacle["shape"], place, radius, surface(tube, face), size)
                 if row["equilibrium"] == "yes":
                     check.that(distance.min() > -2e-4, f"state {n}: {face} wall {-distance.min():.2e} D inside {name}")
     return crossed
