@@ -126,8 +126,8 @@ impl Tube {
         moduli.fold(0.0, f64::max)
     }
 
-    /// Returns the load at rest: all muscles at ratio one or without tension, no displacement of the ends, no pressure, obstacles at their
-    /// first placement, no growth of patches.
+    /// Returns the load at rest: all muscles at ratio one or without tension, no displacement of the ends, no pressure,
+    /// obstacles at their first placement, no growth of patches.
     pub fn rest(&self) -> Load {
         Load {
             muscles: self
