@@ -51,7 +51,7 @@ pub struct State {
 }
 
 /// Names of the fields, with the number of components.
-const FIELDS: [(&str, usize); 13] = [
+const FIELDS: [(&str, usize); 15] = [
     ("position", 3),
     ("displacement", 3),
     ("cauchy_stress", 9),
@@ -64,6 +64,8 @@ const FIELDS: [(&str, usize); 13] = [
     ("elastic_stretch", 3),
     ("theta_zeta", 1),
     ("theta_eta", 1),
+    ("theta_xi", 1),
+    ("tension", 1),
     ("contact_pressure", 1),
 ];
 
@@ -110,7 +112,7 @@ impl State {
         let scale = &self.tube.scale;
         let unit = |name: &str| match name {
             "position" | "displacement" => Some(scale.length_name.clone()),
-            "det_Fe" | "elastic_stretch" | "theta_zeta" | "theta_eta" => None,
+            "det_Fe" | "elastic_stretch" | "theta_zeta" | "theta_eta" | "theta_xi" => None,
             _ => Some(scale.stress_name.clone()),
         };
         FIELDS.iter().map(|&(name, _)| (name, unit(name))).collect()
@@ -161,6 +163,8 @@ impl State {
                     "elastic_stretch" => wall.stretches().map(|(stretch, _)| stretch).to_vec(),
                     "theta_zeta" => vec![wall.grown[0]],
                     "theta_eta" => vec![wall.grown[1]],
+                    "theta_xi" => vec![wall.grown_through],
+                    "tension" => vec![scale.stress * wall.tension],
                     _ => vec![scale.stress * sample.contact_pressure],
                 };
                 names.iter().map(of).collect()

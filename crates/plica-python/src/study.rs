@@ -43,7 +43,7 @@ impl Study {
     }
 
     /// Follows the tube through other stages from its last state on: those of a case with the same tube.
-    fn go_on(&mut self, py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<()> {
+    fn extend(&mut self, py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<()> {
         let plan = read_checked(text, name, &folder)?;
         let ended = || PyRuntimeError::new_err("the study has ended early");
         let from = self.study.continuation().ok_or_else(ended)?;

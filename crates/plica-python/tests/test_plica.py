@@ -143,7 +143,16 @@ class Runs(unittest.TestCase):
         self.assertEqual(run.case.text, case.text)
         self.assertIn("stages", run.findings)
         self.assertIn("stage contract", run.table)
-        self.assertEqual(run["stage"], ["rest"] + 3 * ["contract"])
+        self.assertEqual(list(run["stage"]), ["rest"] + 3 * ["contract"])
+        self.assertEqual(len(run["energy"][run["stage"] == "contract"]), 3)
+        self.assertEqual(run.state(run["step"][-1]).energy, run["energy"][-1])
+        self.assertEqual(("energy" in run, "colour" in run), (True, False))
+        self.assertEqual([state.step for state in run[1:3]], [1, 2])
+        last = dict(run[-1])
+        self.assertEqual((last["step"], "shape" in run[-1], "colour" in run[-1]), (3, True, False))
+        stress = run[-1].fields("hoop_stress", [1.0], 0.45)
+        stress *= 2.0
+        self.assertEqual(run[-1].fields("tension", 1.0, 0.45), 0.0)
         with self.assertRaises(FileExistsError):
             case.run(self.path, progress=False)
         longer = case.with_({"stages[1].steps": 3}).text + "\n[[stages]]\nsteps = 1\ndrive.ring.stretch = 0.6\n"

@@ -165,7 +165,7 @@ class Stability(OneRun):
         eigenvalues = found.eigenvalues
         self.assertEqual(int((eigenvalues["negative_1"] > 0).sum()), 3)
         (mode,) = found.modes
-        self.assertEqual((mode.harmonic, mode.state), (1, 32))
+        self.assertEqual((mode.mode, mode.state), (1, 32))
         self.assertLess(abs(mode.eigenvalue), 0.1 * eigenvalues["lowest_1"].iloc[1])
         # A tilt moves opposite sides alike across the axis and contrarily along it.
         z = np.linspace(0.2, 2.8, 27)

@@ -177,7 +177,7 @@ class Case:
             problems = [Problem(*p) for p in _native.problems(text, self._name, self._folder)]
             if problems:
                 raise CaseError(self._name, problems)
-            study.go_on(text, self._name, self._folder)
+            study.extend(text, self._name, self._folder)
 
     def run(
         self,
@@ -190,7 +190,7 @@ class Case:
     ) -> Run:
         """Run the case in a directory, as ``plica run`` does, and return the run.
 
-        ``overwrite`` replaces a run that is there; ``resume`` goes on with it. Ctrl-C stops the run cleanly, and raises
+        ``overwrite`` replaces a run that is there; ``resume`` resumes it. Ctrl-C stops the run cleanly, and raises
         KeyboardInterrupt; ``resume=True`` then continues it, with the same results to the bit. Where the tube cannot be
         followed further, the run ends with the verdict ``lost``, and a RuntimeWarning says why.
         """

@@ -28,6 +28,13 @@ _WHOLE = ("step", "iterations", "cg_iterations", "asymmetry_mode")
 """Columns of whole numbers."""
 
 
+def _array(name: str, raw: bytes | list[str]) -> Any:
+    """Return a column as an array of its own."""
+    if isinstance(raw, list):
+        return np.asarray(raw, dtype=str)
+    return np.frombuffer(raw).astype(np.int64 if name in _WHOLE else np.float64)
+
+
 class Run:
     """A run directory, complete or not.
 
@@ -42,7 +49,7 @@ class Run:
 
     @property
     def columns(self) -> dict[str, Any]:
-        """The columns of ``history.csv``: arrays of numbers, and lists of texts."""
+        """The columns of ``history.csv`` as arrays: of numbers, whole numbers (``step``, ``iterations``, …) or texts."""
         return {name: values for name, (_, values) in self._read().items()}
 
     @property
@@ -53,25 +60,21 @@ class Run:
     def _read(self) -> dict[str, tuple[str | None, Any]]:
         if self._columns is None:
             columns = self._native.columns().items()
-            self._columns = {
-                name: (unit, np.frombuffer(raw) if isinstance(raw, bytes) else raw) for name, (unit, raw) in columns
-            }
+            self._columns = {name: (unit, _array(name, raw)) for name, (unit, raw) in columns}
         return self._columns
 
     @property
     def history(self) -> pandas.DataFrame:
         """The history as a ``pandas.DataFrame``; ``history.attrs["units"]`` has the units."""
         frame: pandas.DataFrame = require("pandas").DataFrame(self.columns)
-        frame = frame.astype({name: int for name in _WHOLE if name in frame})
         frame.attrs["units"] = self.units
         return frame
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the history as an ``xarray.Dataset`` along ``step``; each variable has its unit in ``attrs["units"]``."""
         units = self.units
-        variables = {name: ("step", np.asarray(values)) for name, values in self.columns.items()}
+        variables = {name: ("step", values) for name, values in self.columns.items()}
         dataset: xarray.Dataset = require("xarray").Dataset(variables).set_coords("step")
-        dataset["step"] = dataset["step"].astype(int)
         for name, unit in units.items():
             if unit is not None:
                 dataset[name].attrs["units"] = unit
@@ -136,13 +139,24 @@ class Run:
     def __len__(self) -> int:
         return len(self.state_numbers)
 
+    def __contains__(self, name: object) -> bool:
+        """Return whether the history has a column of that name."""
+        return name in self._read()
+
     @overload
     def __getitem__(self, which: int) -> State: ...
     @overload
+    def __getitem__(self, which: slice) -> list[State]: ...
+    @overload
     def __getitem__(self, which: str) -> Any: ...
 
-    def __getitem__(self, which: int | str) -> Any:
-        """Return a saved state by its place, from the last one if negative, or a column of the history by its name."""
+    def __getitem__(self, which: int | slice | str) -> Any:
+        """Return a saved state by its place, from the last one if negative, or a column of the history by its name.
+
+        A slice is a list of saved states.
+        """
+        if isinstance(which, slice):
+            return [self.state(number) for number in self.state_numbers[which]]
         if isinstance(which, str):
             columns = self.columns
             if which not in columns:
@@ -152,7 +166,7 @@ class Run:
 
     def state(self, number: int) -> State:
         """Return a saved state by its number, the column ``step`` of the history."""
-        return State(self._native.state(number))
+        return State(self._native.state(int(number)))
 
     def __iter__(self) -> Iterator[State]:
         for number in self.state_numbers:

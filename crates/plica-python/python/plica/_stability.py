@@ -49,7 +49,7 @@ class Mode:
         self._native = native
 
     @property
-    def harmonic(self) -> int:
+    def mode(self) -> int:
         """The circumferential mode, or in a three-dimensional state the one with the largest share."""
         return self._native.harmonic
 
@@ -70,7 +70,8 @@ class Mode:
         """
         points = np.stack(np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (z, radius, angle))), axis=-1)
         position, displacement = self._native.evaluate(points.tobytes())
-        return np.frombuffer(position).reshape(points.shape), np.frombuffer(displacement).reshape(points.shape)
+        shape = points.shape
+        return np.frombuffer(position).reshape(shape).copy(), np.frombuffer(displacement).reshape(shape).copy()
 
     def wall(self, scale: float = 0.05, face: str = "outer", points: tuple[int, int] = (201, 73)) -> pyvista.StructuredGrid:
         """Return a face of the wall, displaced by the mode, with the displacement ``mode``.
@@ -87,7 +88,7 @@ class Mode:
         return grid
 
     def __repr__(self) -> str:
-        return f"<Mode {self.harmonic} at state {self.state}, eigenvalue {self.eigenvalue:.3g} E/D^2>"
+        return f"<Mode {self.mode} at state {self.state}, eigenvalue {self.eigenvalue:.3g} E/D^2>"
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, KeysView, Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any, overload
@@ -107,6 +107,18 @@ class State:
         names = ("axial_force", "shear_force", "bending_moment", "torque")
         return {end: Reaction(*(float(numbers[f"{name}_{end}"]) for name in names)) for end in ends}
 
+    def __contains__(self, name: object) -> bool:
+        """Return whether there is a column of that name."""
+        return name in self._read()
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the columns."""
+        return iter(self._read())
+
+    def keys(self) -> KeysView[str]:
+        """Return the names of the columns, so that ``dict(state)`` has all of them."""
+        return self._read().keys()
+
     def __getitem__(self, name: str) -> Any:
         """Return a column of ``history.csv``."""
         numbers = self._read()
@@ -120,7 +132,7 @@ class State:
         numbers = self._read()
         if name in numbers:
             return numbers[name]
-        raise AttributeError(f"a state has no {name}")
+        raise AttributeError(f"a state has no {name}; the columns are in state.numbers")
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._read()]
@@ -161,7 +173,7 @@ class State:
         shaped: dict[str, Array] = {}
         for name, (raw, components) in found.items():
             last = {1: (), 9: (3, 3)}.get(components, (components,))
-            shaped[name] = np.frombuffer(raw).reshape(*z.shape, *last)
+            shaped[name] = np.frombuffer(raw).reshape(*z.shape, *last).copy()
         return shaped[names] if isinstance(names, str) else shaped
 
     @property
@@ -232,18 +244,18 @@ class State:
         arrays: dict[str, Any] = {}
         for name in names:
             raw, components = found[name]
-            values = np.frombuffer(raw, dtype=np.float32)
+            values = np.frombuffer(raw, dtype=np.float32).copy()
             arrays[name] = values if components == 1 else values.reshape(-1, components)
         shaped = np.frombuffer(cells, dtype=np.int64).reshape(-1, per_cell)
         kept = None if faces is None else np.frombuffer(faces, dtype=np.uint8)
-        return np.frombuffer(points).reshape(-1, 3), shaped, per_cell, kind, kept, arrays
+        return np.frombuffer(points).reshape(-1, 3).copy(), shaped, per_cell, kind, kept, arrays
 
     def pressed(self) -> tuple[Array, Array, Array]:
         """Return the points at which the wall touches itself: positions along the axis, areas and pressures.
 
         The points are those of the quadrature of contact on both faces; an area is that around the whole tube.
         """
-        z, area, pressure = np.frombuffer(self._native.pressed()).reshape(-1, 3).T
+        z, area, pressure = np.frombuffer(self._native.pressed()).reshape(-1, 3).T.copy()
         return z, area, pressure
 
     def __repr__(self) -> str:
