@@ -54,8 +54,8 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
             "tube",
             format!(
                 "{} D long, wall {} D thick{}",
-                tube.length,
-                tube.thickness,
+                six_decimals(tube.length),
+                six_decimals(tube.thickness),
                 match tube.layers[0].material {
                     Material::NeoHookean(NeoHookean {
                         volumetric: Volumetric::Quadratic,
@@ -183,6 +183,11 @@ fn rows(plan: &Plan) -> Vec<(&'static str, String)> {
         }
     }
     rows
+}
+
+/// Rounds a length to six decimals, which are printed without zeros at the end.
+fn six_decimals(x: f64) -> f64 {
+    (1e6 * x).round() / 1e6
 }
 
 /// Describes a layer: thickness, elements, law, fibres and residual stretches.
