@@ -71,7 +71,7 @@ fn pressure(problem: &TubeProblem, state: &State<Load>, z: f64, radius: f64) -> 
 /// factor of 8: it is constant.
 pub fn patch_test(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     let mut model =
-        TubeModel::new(1.0, 0.06, 0.495, [30, 24, 3]).with_uniform_muscle(Direction::Circular);
+        TubeModel::new(1.0, 0.06, 0.495, [30, 60, 3]).with_uniform_muscle(Direction::Circular);
     add(&mut model, ObstacleShape::Sheath, 0.55);
     let zone = Refinement {
         from: 0.3,
