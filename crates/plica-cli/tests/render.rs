@@ -65,7 +65,7 @@ fn columns_and_walls_are_plotted_as_svg_and_png() {
     succeed(&directory, &arguments);
     let svg = |name: &str| fs::read_to_string(run.join("pictures").join(name)).unwrap();
     let plot = svg("outer_radius_min-against-diameter_ratio-path.svg");
-    assert!(plot.contains("smallest radius of the outer wall (") && plot.contains("<path d="));
+    assert!(plot.contains("smallest outer radius (") && plot.contains("<path d="));
     assert!(svg("walls-state-0003.svg").contains("inner wall"));
     // Any column against any other, also those that the page leaves out.
     let columns = [

@@ -39,19 +39,11 @@ const FIRST: [(&str, &str, Role); 22] = [
     ),
     ("max_wall_angle_deg", "steepest wall angle", Role::Table),
     ("overhang", "overhang", Role::Table),
-    (
-        "outer_radius_min",
-        "smallest radius of the outer wall",
-        Role::Table,
-    ),
-    (
-        "outer_radius_max",
-        "largest radius of the outer wall",
-        Role::Other,
-    ),
+    ("outer_radius_min", "smallest outer radius", Role::Table),
+    ("outer_radius_max", "largest outer radius", Role::Other),
     (
         "outer_radius_mid",
-        "radius of the outer wall at mid-length",
+        "outer radius at mid-length",
         Role::Other,
     ),
     ("flatness", "flatness", Role::Other),
