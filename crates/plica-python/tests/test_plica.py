@@ -198,7 +198,11 @@ class Runs(unittest.TestCase):
 
     def test_ctrl_c_stops_cleanly_and_the_run_goes_on(self) -> None:
         fine = plica.Case(**RING).with_({"stages[1].steps": 400})
-        script = f"import plica; plica.Case.load({str(self.path) + '.toml'!r}).run({str(self.path)!r}, progress=False)"
+        # Where the tests run in the background of a shell, Ctrl-C is ignored, and Python inherits that.
+        script = (
+            "import plica, signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+            f"plica.Case.load({str(self.path) + '.toml'!r}).run({str(self.path)!r}, progress=False)"
+        )
         Path(f"{self.path}.toml").write_text(fine.text, encoding="utf-8")
         process = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.PIPE, text=True)
         history = self.path / "history.csv"

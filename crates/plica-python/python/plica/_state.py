@@ -173,7 +173,7 @@ class State:
         shaped: dict[str, Array] = {}
         for name, (raw, components) in found.items():
             last = {1: (), 9: (3, 3)}.get(components, (components,))
-            shaped[name] = np.frombuffer(raw).reshape(*z.shape, *last).copy()
+            shaped[name] = np.frombuffer(raw).reshape((*z.shape, *last)).copy()
         return shaped[names] if isinstance(names, str) else shaped
 
     @property
