@@ -128,7 +128,10 @@ pub fn plan_of(directory: &RunDirectory) -> PyResult<Plan> {
 pub fn error_of(error: RunError) -> PyErr {
     let text = error.to_string();
     match error {
-        RunError::Occupied(_) => PyFileExistsError::new_err(text),
+        RunError::Occupied(_) => {
+            let help = "overwrite=True replaces it, resume=True resumes it";
+            PyFileExistsError::new_err(format!("{text}; {help}"))
+        }
         _ if error.is_about_files() => PyOSError::new_err(text),
         _ => PyRuntimeError::new_err(text),
     }

@@ -153,6 +153,14 @@ class Runs(unittest.TestCase):
         stress = run[-1].fields("hoop_stress", [1.0], 0.45)
         stress *= 2.0
         self.assertEqual(run[-1].fields("tension", 1.0, 0.45), 0.0)
+        for z, radius in ((2.1, 0.45), (1.0, 0.39), (np.nan, 0.45)):
+            with self.assertRaisesRegex(ValueError, "in the wall at rest"):
+                run[-1].fields("hoop_stress", z, radius)
+        energy = run["energy"]
+        energy -= energy[-1]
+        self.assertGreater(run["energy"][-1], 0.0)
+        with self.assertRaisesRegex(IndexError, "4 saved states"):
+            run[100]
         with self.assertRaises(FileExistsError):
             case.run(self.path, progress=False)
         longer = case.with_({"stages[1].steps": 3}).text + "\n[[stages]]\nsteps = 1\ndrive.ring.stretch = 0.6\n"
@@ -174,7 +182,9 @@ class Runs(unittest.TestCase):
         with self.assertRaises(RuntimeError) as raised:
             list(case.states())
         self.assertEqual(str(raised.exception), why)
-        self.assertEqual(plica.evaluate(case)["lost"], why)
+        found = plica.evaluate(case)
+        self.assertEqual(found["lost"], why)
+        self.assertTrue(np.isnan(found["energy"]))
 
     def test_a_history_is_a_data_frame(self) -> None:
         import pandas

@@ -153,13 +153,15 @@ fn a_stress_contracts_alike_in_all_symmetries() {
 #[test]
 fn a_tube_that_a_tension_narrows_has_the_shapes_of_a_contraction() {
     let rest = "[[stages]]\nname = 'fill'\nsteps = 2\ndrive.inner-wall.pressure = 0.8\n\
-         [[stages]]\nname = 'contract'\nsteps = 3\ndrive.ring.tension = 12.0\n";
+         [[stages]]\nname = 'contract'\nsteps = 3\ndrive.ring.tension = 12.0\n\
+         [[stages]]\nname = 'leave'\nsteps = 1\ndrive.ring.shift = 3.0\n";
     let states = states(&plan(&tube(RACHEV, rest)));
     let shape = |stage: &str| {
         let last = states.iter().rfind(|state| state.stage == stage);
         last.unwrap().measures.shape
     };
     assert_eq!(shape("fill"), Shape::Swollen);
+    assert_eq!(shape("leave"), Shape::Swollen);
     let contracted = shape("contract");
     assert!([Shape::V, Shape::U].contains(&contracted), "{contracted}");
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping
@@ -230,7 +231,8 @@ def evaluate(case: Case, parameters: Mapping[str, Any] | None = None, *, threads
     """Return the numbers of the last state of a case with keys changed: a function for optimisers and samplers.
 
     The result has the columns of ``history.csv`` by name, and ``lost``: why the tube could not be followed to the end, or
-    None. It can be pickled, and uses one thread unless told otherwise.
+    None. If it could not, numbers with a decimal point are NaN, so that an optimiser does not settle there. The result can
+    be pickled. One thread is used unless told otherwise.
     """
     changed = case.with_(parameters) if parameters else case
     numbers: dict[str, Any] = {}
@@ -240,4 +242,5 @@ def evaluate(case: Case, parameters: Mapping[str, Any] | None = None, *, threads
             numbers = state.numbers
     except RuntimeError as error:
         lost = str(error)
+        numbers = {name: math.nan if isinstance(value, float) else value for name, value in numbers.items()}
     return {**numbers, "lost": lost}

@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _native
 from ._case import Case
+from ._native import Run as NativeRun
 from ._names import Verdict
 from ._optional import require
 from ._progress import reporter
@@ -44,13 +45,21 @@ class Run:
 
     def __init__(self, directory: str | os.PathLike[str]) -> None:
         self.path = Path(directory)
-        self._native = _native.Run(os.fspath(directory))
+        self._opened = _native.Run(os.fspath(directory))
         self._columns: dict[str, tuple[str | None, Any]] | None = None
+
+    @property
+    def _native(self) -> NativeRun:
+        """The run; opened again while it is being written."""
+        if self._opened.verdict == Verdict.RUNNING:
+            self._opened = _native.Run(os.fspath(self.path))
+            self._columns = None
+        return self._opened
 
     @property
     def columns(self) -> dict[str, Any]:
         """The columns of ``history.csv`` as arrays: of numbers, whole numbers (``step``, ``iterations``, …) or texts."""
-        return {name: values for name, (_, values) in self._read().items()}
+        return {name: values.copy() for name, (_, values) in self._read().items()}
 
     @property
     def units(self) -> dict[str, str | None]:
@@ -58,8 +67,9 @@ class Run:
         return {name: unit for name, (unit, _) in self._read().items()}
 
     def _read(self) -> dict[str, tuple[str | None, Any]]:
+        native = self._native
         if self._columns is None:
-            columns = self._native.columns().items()
+            columns = native.columns().items()
             self._columns = {name: (unit, _array(name, raw)) for name, (unit, raw) in columns}
         return self._columns
 
@@ -158,19 +168,24 @@ class Run:
         if isinstance(which, slice):
             return [self.state(number) for number in self.state_numbers[which]]
         if isinstance(which, str):
-            columns = self.columns
+            columns = self._read()
             if which not in columns:
                 raise KeyError(f"{which}; the columns are {', '.join(columns)}")
-            return columns[which]
-        return State(self._native.state(self.state_numbers[which]))
+            return columns[which][1].copy()
+        native = self._native
+        numbers = native.state_numbers
+        if not -len(numbers) <= which < len(numbers):
+            raise IndexError(f"the run has {len(numbers)} saved states")
+        return State(native.state(numbers[which]))
 
     def state(self, number: int) -> State:
         """Return a saved state by its number, the column ``step`` of the history."""
         return State(self._native.state(int(number)))
 
     def __iter__(self) -> Iterator[State]:
-        for number in self.state_numbers:
-            yield State(self._native.state(number))
+        native = self._native
+        for number in native.state_numbers:
+            yield State(native.state(number))
 
     @property
     def plot(self) -> RunPlots:

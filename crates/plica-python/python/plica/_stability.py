@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from . import _native
 from ._optional import require
-from ._state import Array, material_grid
+from ._state import Array, check_points, material_grid
 
 if TYPE_CHECKING:
     import pandas
@@ -68,7 +68,9 @@ class Mode:
 
         Both have a last axis (x, y, z). The largest displacement on the outer face is one.
         """
-        points = np.stack(np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (z, radius, angle))), axis=-1)
+        z, radius, angle = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (z, radius, angle)))
+        check_points(self._native.size, z, radius)
+        points = np.stack([z, radius, angle], axis=-1)
         position, displacement = self._native.evaluate(points.tobytes())
         shape = points.shape
         return np.frombuffer(position).reshape(shape).copy(), np.frombuffer(displacement).reshape(shape).copy()

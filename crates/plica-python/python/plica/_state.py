@@ -54,6 +54,15 @@ def material_grid(size: tuple[float, float, float, str], face: str, points: tupl
     return list(np.broadcast_arrays(z, inner if face == "inner" else outer, angle))
 
 
+def check_points(size: tuple[float, float, float, str], z: Array, radius: Array) -> None:
+    """Raise ValueError if a point is not in the wall at rest."""
+    inner, outer, length, unit = size
+    slack = 1e-9 * outer
+    for name, values, low, high in (("z", z, 0.0, length), ("radius", radius, inner, outer)):
+        if not np.all((values >= low - slack) & (values <= high + slack)):
+            raise ValueError(f"{name} must lie between {low:.6g} and {high:.6g} {unit}, in the wall at rest")
+
+
 class State:
     """An equilibrium of a tube, in the units of its case (without units: diameters D and Young's moduli E).
 
@@ -164,10 +173,12 @@ class State:
         ``z``, ``radius`` and ``angle`` (radians) are broadcast against each other. Returns an array of their common shape for
         one name, and a dictionary of arrays for several names. A last axis holds the components of ``position`` and
         ``displacement`` (x, y, z) and ``elastic_stretch`` (three, largest first), two last axes those of ``cauchy_stress``
-        (3 by 3: along the axis, outwards, around). :attr:`field_units` has all names.
+        (3 by 3: along the axis, outwards, around). :attr:`field_units` has all names. Raises ValueError for points that are
+        not in the wall at rest.
         """
         z, radius, angle = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (z, radius, angle)))
         points = np.stack([z, radius, angle], axis=-1)
+        check_points(self._native.size, z, radius)
         several = [names] if isinstance(names, str) else list(names)
         found = self._native.fields(points.tobytes(), several)
         shaped: dict[str, Array] = {}

@@ -162,14 +162,23 @@ impl Measures {
     }
 }
 
-/// Returns true if a circular muscle contracts, by growth to a Dmin/D that is visible or by a tension.
+/// Returns true if a circular muscle contracts in the tube, by growth to a Dmin/D that is visible or by a tension.
 fn contracts(tube: &Tube, load: &Load) -> bool {
-    let pulls = |(muscle, &tension): (&Muscle, &f64)| {
-        !muscle.grows() && muscle.direction == Direction::Circular && tension > 0.0
+    let acts = |m: usize| {
+        let muscle = &tube.muscles[m];
+        let active = |z: f64| muscle.activity(muscle.unshifted(z, load.shifts[m])) > 0.0;
+        (1..POINTS).any(|i| active(tube.length * f64::from(i) / f64::from(POINTS)))
     };
-    tube.diameter_ratio(load) <= 1.0 - Shape::MIN_DEPTH
-        || tube.muscles.iter().zip(&load.muscles).any(pulls)
+    let pulls = |m: usize| {
+        let muscle: &Muscle = &tube.muscles[m];
+        let is_circular = !muscle.grows() && muscle.direction == Direction::Circular;
+        is_circular && load.muscles[m] > 0.0 && acts(m)
+    };
+    tube.diameter_ratio(load) <= 1.0 - Shape::MIN_DEPTH || (0..tube.muscles.len()).any(pulls)
 }
+
+/// Intervals along the tube between points where the activity of a muscle is looked for.
+const POINTS: i32 = 240;
 
 #[cfg(test)]
 mod tests;
