@@ -1,12 +1,13 @@
 //! Muscles with active stress.
 
+use super::patches::sector;
 use super::reference::assert_agreement;
 use super::symmetry::harmonic;
 use super::{
     TubeAndLoad, assert_close, direction, dot, largest, linearised, mesh, moved, repeated,
     replicated, tube_and_load, unknowns, wavy,
 };
-use crate::activation::{AngularSector, Direction, Muscle, Profile};
+use crate::activation::{Direction, Muscle, Profile};
 use crate::assembly::{LowHarmonics, Point, SplineTube};
 use crate::material::{Composite, LengthTension, Material, Matrix, NeoHookean, Tone};
 use crate::matrix::BlockBanded;
@@ -23,15 +24,6 @@ const GAUSSIAN: LengthTension = LengthTension::Gaussian {
     best: 1.3,
     width: 0.4,
 };
-
-fn sector(repeats: usize) -> AngularSector {
-    AngularSector {
-        centre: 0.4,
-        width: 4.5 / repeats as f64,
-        edge: 1.5 / repeats as f64,
-        repeats,
-    }
-}
 
 /// Returns a tube with two muscles that change the stress, one of them oblique and repeated, beside those that change the
 /// stress-free state if `growing`. In `repeats` sectors around it unless that is zero.

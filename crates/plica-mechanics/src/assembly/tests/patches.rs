@@ -27,7 +27,8 @@ fn patch(sector: Option<AngularSector>) -> Patch {
     }
 }
 
-fn sector(repeats: usize) -> AngularSector {
+/// Returns most of the circumference, or `repeats` parts of it.
+pub(super) fn sector(repeats: usize) -> AngularSector {
     AngularSector {
         centre: 0.4,
         width: 4.5 / repeats as f64,
