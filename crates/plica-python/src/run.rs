@@ -183,7 +183,7 @@ impl Run {
         self.tube.size()
     }
 
-    /// Whether the wall can touch itself.
+    /// True if the wall can touch itself.
     #[getter]
     fn has_contact(&self) -> bool {
         self.tube.exporter.tube().has_contact()

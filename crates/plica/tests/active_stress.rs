@@ -54,8 +54,7 @@ fn an_artery_constricts_to_the_radius_that_its_case_describes() {
             assert!(text.contains(expected));
         }
     }
-    // Each stage closes the balance of its work. The potential of a tension, T w(λ), falls with the stretch, as the muscle
-    // does work only where it shortens.
+    // Each stage closes the balance of its work, with the error of the trapezoidal rule.
     let rows = rows(&plan(text), &states);
     for stage in ["inflate", "constrict"] {
         let last = rows.iter().rfind(|row| row.stage == stage).unwrap();

@@ -57,11 +57,11 @@ pub struct SplineTube {
 /// The energy of a part of the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PartKind {
-    /// That of the law of a layer, or of its shear part.
+    /// Energy of the law of a layer, or of its shear part.
     Law,
-    /// The volumetric part of a law, integrated at fewer points than the shear part.
+    /// Energy of the volumetric part of a law, integrated at fewer points than the shear part.
     Volume,
-    /// The active stress of a muscle in a layer: a law for a tension of one, which the tension of the muscle multiplies.
+    /// Energy of the active stress of a muscle in a layer: a law for a tension of one, which the tension of the muscle multiplies.
     Muscle(usize),
 }
 
