@@ -351,7 +351,7 @@ def extremes(rows):
         part = [i for i in range(first, last + 1)]
         keep = [part[0]]
         for i in part[1:]:
-            if abs(w[i] - w[keep[-1]]) > 1e-9 * largest:
+            if abs(w[i] - w[keep[-1]]) > 1e-6 * largest:
                 keep.append(i)
         for a, b, c in zip(keep, keep[1:], keep[2:]):
             if (w[b] - w[a]) * (w[c] - w[b]) < 0:

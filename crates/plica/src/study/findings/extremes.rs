@@ -26,8 +26,9 @@ pub struct Jump {
     pub energy: [f64; 2],
 }
 
-/// Change of energy, relative to the largest on the path, below which two states have the same energy.
-const ROUNDING: f64 = 1e-9;
+/// Change of energy, relative to the largest on the path, below which two states have the same energy. Smaller waves of the
+/// energy come from the mesh.
+const RESOLVED: f64 = 1e-6;
 
 /// Returns the extremes of the energy inside the stages. The first and the last state of a stage are none: the loads that
 /// change there are others.
@@ -41,7 +42,7 @@ pub(super) fn extremes(path: &Path<'_>) -> Vec<Extreme> {
         let (mut turn, mut sign) = (first, 0.0);
         for i in first + 1..=last {
             let change = energies[i] - energies[turn];
-            if change.abs() <= ROUNDING * largest {
+            if change.abs() <= RESOLVED * largest {
                 continue;
             }
             if change.signum() == -sign {

@@ -156,11 +156,27 @@ pub fn describe(loads: &[NamedLoad]) -> String {
 
 /// Describes the loads of two states with the same quantities, each as `name = value to value`.
 pub fn describe_range(from: &[NamedLoad], to: &[NamedLoad]) -> String {
+    describe_course(from, &[], to)
+}
+
+/// Describes the loads of two states, each as `name = value to value`, with extreme values in between: `by way of value`.
+pub fn describe_course(from: &[NamedLoad], through: &[NamedLoad], to: &[NamedLoad]) -> String {
     let one = |(from, to): (&NamedLoad, &NamedLoad)| {
-        if from.value == to.value {
-            format!("{} = {}", to.name, to.with_unit())
-        } else {
-            format!("{} = {} to {}", from.name, from.formatted(), to.with_unit())
+        let between = through.iter().filter(|load| load.name == to.name);
+        let between: Vec<String> = between.map(NamedLoad::formatted).collect();
+        let between = between.join(" and ");
+        match (between.is_empty(), from.value == to.value) {
+            (true, true) => format!("{} = {}", to.name, to.with_unit()),
+            (true, false) => format!("{} = {} to {}", from.name, from.formatted(), to.with_unit()),
+            (false, true) => {
+                format!("{} = {} to {between} and back", from.name, to.with_unit())
+            }
+            (false, false) => format!(
+                "{} = {} to {} by way of {between}",
+                from.name,
+                from.formatted(),
+                to.with_unit()
+            ),
         }
     };
     from.iter().zip(to).map(one).collect::<Vec<_>>().join(", ")

@@ -98,6 +98,8 @@ pub struct StageEnd {
     pub from: Vec<NamedLoad>,
     /// The same loads at its last state.
     pub to: Vec<NamedLoad>,
+    /// The smallest and largest values in between of those loads that leave the range from the one to the other.
+    pub through: Vec<NamedLoad>,
     /// Shape of its last state.
     pub shape: Shape,
     /// Side of the overhang of its last state.
@@ -190,11 +192,13 @@ impl Findings {
         let stage = |part: &place::Part| {
             let [first, last] = part.rows.map(|i| &rows[i]);
             let [from, to] = path.driven(part);
+            let through = path.through(part);
             StageEnd {
                 name: last.stage.clone(),
                 states: [first.step, last.step],
                 from,
                 to,
+                through,
                 shape: last.shape,
                 side: last.side,
                 toward: last.name_of(last.side).to_owned(),

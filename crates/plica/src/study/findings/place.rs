@@ -123,6 +123,23 @@ impl<'a> Path<'a> {
         found.into_iter().map(interval).collect()
     }
 
+    /// Returns the smallest and largest values of the loads that leave, inside a part, the range from its beginning to its end.
+    pub fn through(&self, part: &Part) -> Vec<NamedLoad> {
+        let rows = part.rows[0].saturating_sub(1)..=part.rows[1];
+        let all: Vec<_> = rows.map(|row| self.loads(row)).collect();
+        let mut found = vec![];
+        for &k in &part.driven {
+            let values = || all.iter().map(|loads| &loads[k]);
+            let by_value = |a: &&NamedLoad, b: &&NamedLoad| a.value.total_cmp(&b.value);
+            let ends = [&all[0][k], &all[all.len() - 1][k]].map(|load| load.value);
+            let least = values().min_by(by_value);
+            let most = values().max_by(by_value);
+            found.extend(least.filter(|load| ends.iter().all(|end| load.value < *end)));
+            found.extend(most.filter(|load| ends.iter().all(|end| load.value > *end)));
+        }
+        found.into_iter().cloned().collect()
+    }
+
     /// Returns the loads at the beginning and at the end of a part that changed in it.
     pub fn driven(&self, part: &Part) -> [Vec<NamedLoad>; 2] {
         [part.rows[0].saturating_sub(1), part.rows[1]].map(|row| {

@@ -1,6 +1,6 @@
 //! The closing table of a run.
 
-use super::loads::{describe_range, number};
+use super::loads::{describe_course, number};
 use super::place::{Interval, list};
 use super::{
     Contact, Findings, Invagination, LargestForce, ObstacleContacts, Return, SmallestStretch,
@@ -58,7 +58,7 @@ impl Findings {
         let loads = if stage.to.is_empty() {
             "no change of load".to_owned()
         } else {
-            describe_range(&stage.from, &stage.to)
+            describe_course(&stage.from, &stage.through, &stage.to)
         };
         let end = match (stage.shape, stage.side) {
             (Shape::Invaginated, Side::Colon | Side::Ileum) => format!(

@@ -114,6 +114,34 @@ fn a_minimum_and_a_maximum_inside_a_stage_are_found_with_their_load() {
 }
 
 #[test]
+fn waves_of_the_energy_that_come_from_the_mesh_are_no_extremes() {
+    for (wave, expected) in [(1e-7, 0), (1e-5, 2)] {
+        let steps = [(1.1, 1.0), (1.2, 1.0 + wave), (1.3, 1.0 - wave), (1.4, 2.0)];
+        let rows = path(&[("relax", relaxing(&steps))]);
+        assert_eq!(findings(&rows[1..]).extremes.len(), expected);
+    }
+}
+
+#[test]
+fn a_stage_that_turns_back_tells_how_far_it_went() {
+    let there = [(1.1, 1.0), (1.3, 2.0), (1.2, 1.5)];
+    let back = [(0.9, 0.8), (1.2, 1.5)];
+    let found = findings(&path(&[
+        ("there", relaxing(&there)),
+        ("back", relaxing(&back)),
+    ]));
+    let [there, back] = ["stage there", "stage back"].map(|name| line(&found, name));
+    assert!(
+        there.starts_with("states 1 to 3, Lmax/L = 1.0000 to 1.2000 by way of 1.3000; at the end"),
+        "{there}"
+    );
+    assert!(
+        back.starts_with("states 4 to 5, Lmax/L = 1.2000 to 0.9000 and back; at the end"),
+        "{back}"
+    );
+}
+
+#[test]
 fn a_minimum_survives_a_further_stage_and_a_kink_between_stages_is_none() {
     let steps = [(1.1, 4.0), (1.2, 3.0), (1.3, 5.0)];
     let back = [(1.2, 4.5), (1.1, 4.6)];
