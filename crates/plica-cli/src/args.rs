@@ -74,6 +74,10 @@ pub struct CaseArguments {
     /// The case file
     #[arg(value_name = "CASE")]
     pub file: PathBuf,
+    /// Change a key of the case, for example mesh.degree=2 or stages[2].steps=40; may be repeated. The case.toml of a run
+    /// has the change
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<Setting>,
     /// Also allow the case to read files in this directory [default: only the directory of the case and the working directory]
     #[arg(long, value_name = "DIR")]
     pub within: Option<PathBuf>,
@@ -100,10 +104,6 @@ pub struct RunArguments {
     /// steps of the current stage, and later stages of the case may have changed
     #[arg(long, conflicts_with = "overwrite")]
     pub resume: bool,
-    /// Change a key of the case, for example mesh.degree=2 or stages[2].steps=40; may be repeated. The case.toml of the run
-    /// has the change
-    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
-    pub set: Vec<Setting>,
     /// Stop after the first state that fulfils a condition, for example "shape = invaginated", overhangs, unstable, or
     /// "overhang > 0.1" with any column of history.csv. The run is then complete; plica resume goes on
     #[arg(long, value_name = "CONDITION")]

@@ -13,19 +13,11 @@ use std::path::Path;
 /// Largest size of a case file, in bytes.
 const LARGEST: u64 = 1 << 20;
 
-/// Reads a case file, and returns its text and its plan. Paths in it are relative to its folder; the
-/// files lie in that folder, in the current one, or in the one that `--within` names.
+/// Reads a case file with the keys of `--set` changed, and returns its text and its plan. Paths in it are relative to its
+/// folder; the files lie in that folder, in the current one, or in the one that `--within` names.
 pub fn open(arguments: &CaseArguments) -> Result<(String, Plan), Failure> {
-    open_changed(arguments, &[])
-}
-
-/// Reads a case file with keys changed; else as [`open`].
-pub fn open_changed(
-    arguments: &CaseArguments,
-    changes: &[Setting],
-) -> Result<(String, Plan), Failure> {
     let folders = Folders::of(arguments)?;
-    open_with(&arguments.file, changes, &|file| folders.read(file))
+    open_with(&arguments.file, &arguments.set, &|file| folders.read(file))
 }
 
 /// Returns advice on a case that is allowed but perhaps not meant, a sentence each.
@@ -159,7 +151,7 @@ pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
         read.map_err(|source| Failure::Run(RunError::State { path, source }))?;
     }
     let case = directory.path().join("case.toml");
-    let (_, mut plan) = open_with(&case, &[], &|file| kept(directory, file))?;
+    let (_, mut plan) = open_with(&case, &[], &|file| Input::kept(file, directory))?;
     // Without a title of its own, a case has the name of its file, which is another one here.
     let manifest = directory.manifest();
     let titled = manifest["title"].as_str().filter(|title| !title.is_empty());
@@ -173,12 +165,11 @@ pub fn of_run(directory: &RunDirectory) -> Result<Plan, Failure> {
 /// before are read from the run directory.
 pub fn open_again(
     arguments: &CaseArguments,
-    changes: &[Setting],
     directory: &RunDirectory,
     old: &Plan,
 ) -> Result<(String, Plan), Failure> {
     let folders = Folders::of(arguments)?;
-    open_with(&arguments.file, changes, &|wanted| {
+    open_with(&arguments.file, &arguments.set, &|wanted| {
         let is_same = match wanted {
             InputFile::State(file) => old.start.iter().any(|start| start.file == file),
             InputFile::Mode(number, file) => {
@@ -191,24 +182,10 @@ pub fn open_again(
             }
         };
         match is_same {
-            true => kept(directory, wanted),
+            true => Input::kept(wanted, directory),
             false => folders.read(wanted),
         }
     })
-}
-
-/// Reads the copy of a file that a run directory keeps.
-fn kept(directory: &RunDirectory, wanted: InputFile<'_>) -> Result<Input, SavedStateError> {
-    let path = match wanted {
-        // Older run directories have only their first state.
-        InputFile::State(_) if !directory.start().exists() => {
-            directory.path().join(RunDirectory::name_of_state(0))
-        }
-        InputFile::State(_) => directory.start(),
-        InputFile::Mode(number, _) => directory.imperfection(number),
-        InputFile::Materials(number, _) => directory.materials(number),
-    };
-    Input::read(wanted, &path)
 }
 
 /// Returns the name of a case: that of its file, without the extension.

@@ -259,6 +259,7 @@ fn laws(library: &[LibraryMaterial], what: &str) -> Result<(Vec<NamedLaw>, Strin
     }
     let arguments = CaseArguments {
         file: path.to_owned(),
+        set: vec![],
         within: None,
     };
     let (_, plan) = case_file::open(&arguments)?;

@@ -45,7 +45,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     if arguments.resume && RunDirectory::exists(&out) {
         return resume_with_case(arguments, &out);
     }
-    let (text, plan) = case_file::open_changed(&arguments.case, &arguments.set)?;
+    let (text, plan) = case_file::open(&arguments.case)?;
     let until = until(arguments, &plan)?;
     let interrupt = Interrupt::listen()?;
     check_memory(&plan).map_err(RunError::from)?;
@@ -83,11 +83,10 @@ fn resume_with_case(arguments: &RunArguments, out: &Path) -> Result<(), Failure>
     directory.lock()?;
     let before = directory.read("case.toml").unwrap_or_default();
     let (text, plan) = if directory.has_hardly_begun() {
-        case_file::open_changed(&arguments.case, &arguments.set)?
+        case_file::open(&arguments.case)?
     } else {
         let old = case_file::of_run(&directory)?;
-        let (text, plan) =
-            case_file::open_again(&arguments.case, &arguments.set, &directory, &old)?;
+        let (text, plan) = case_file::open_again(&arguments.case, &directory, &old)?;
         if before == text.as_bytes() {
             if directory.is_complete() {
                 return nothing_to_do(&mut directory, &plan);

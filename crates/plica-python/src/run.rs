@@ -109,18 +109,7 @@ pub fn plan_of(directory: &RunDirectory) -> PyResult<Plan> {
     let text = String::from_utf8_lossy(&text);
     let manifest = directory.manifest();
     let title = manifest["title"].as_str().unwrap_or("case");
-    let open = |wanted: InputFile<'_>| {
-        let path = match wanted {
-            // Older run directories have only their first state.
-            InputFile::State(_) if !directory.start().exists() => {
-                directory.path().join(RunDirectory::name_of_state(0))
-            }
-            InputFile::State(_) => directory.start(),
-            InputFile::Mode(number, _) => directory.imperfection(number),
-            InputFile::Materials(number, _) => directory.materials(number),
-        };
-        Input::read(wanted, &path)
-    };
+    let open = |wanted: InputFile<'_>| Input::kept(wanted, directory);
     case::read_with(&text, title, &open).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 

@@ -1,5 +1,6 @@
 //! The files that a case names: saved states, modes, and libraries of materials.
 
+use crate::run_directory::RunDirectory;
 use crate::saved_state::{SavedState, SavedStateError};
 use std::path::Path;
 
@@ -56,6 +57,23 @@ impl Input {
             return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, why).into());
         }
         Ok(Self::Text(std::fs::read_to_string(file)?))
+    }
+
+    /// Reads the copy that a run directory keeps of a file that its case names.
+    ///
+    /// # Errors
+    /// As [`Input::read`].
+    pub fn kept(wanted: InputFile<'_>, directory: &RunDirectory) -> Result<Self, SavedStateError> {
+        let path = match wanted {
+            // Older run directories have only their first state.
+            InputFile::State(_) if !directory.start().exists() => {
+                directory.path().join(RunDirectory::name_of_state(0))
+            }
+            InputFile::State(_) => directory.start(),
+            InputFile::Mode(number, _) => directory.imperfection(number),
+            InputFile::Materials(number, _) => directory.materials(number),
+        };
+        Self::read(wanted, &path)
     }
 
     /// Returns the saved state.
