@@ -3,7 +3,7 @@
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use plica::monitor::Monitor;
-use plica::study::{Plan, Row};
+use plica::study::{Plan, Row, Stage};
 use std::fmt::Display;
 
 /// Shows the states of a run and cancels it when the user asks.
@@ -12,7 +12,63 @@ pub struct Progress {
     stage_width: usize,
     is_axisymmetric: bool,
     has_pressures: bool,
+    others: Vec<Other>,
     has_heading: bool,
+}
+
+/// A driven quantity with a column of its own, besides the muscles' ratios and the pressure.
+#[derive(Clone, Copy)]
+enum Other {
+    /// The largest tension of the muscles with active stress.
+    Tension,
+    /// The shift of the first muscle whose zone travels.
+    Shift,
+    /// The volume of the lumen.
+    Volume,
+}
+
+impl Other {
+    /// Returns those that the stages of a plan drive.
+    fn of(plan: &Plan) -> Vec<Self> {
+        let muscles = &plan.tube.muscles;
+        let loads = || plan.stages.iter().map(|stage| &stage.load);
+        let has_tension = muscles.iter().any(|muscle| !muscle.grows());
+        let has_shift = plan.stages.iter().flat_map(Stage::loads);
+        let has_shift = has_shift
+            .into_iter()
+            .any(|load| load.shifts.iter().any(|x| *x != 0.0));
+        let has_volume = loads().any(|load| load.lumen_volume.is_some());
+        [
+            (Self::Tension, has_tension),
+            (Self::Shift, has_shift),
+            (Self::Volume, has_volume),
+        ]
+        .into_iter()
+        .filter_map(|(other, is_driven)| is_driven.then_some(other))
+        .collect()
+    }
+
+    /// Returns the heading of its column.
+    fn heading(self) -> &'static str {
+        match self {
+            Self::Tension => "tension",
+            Self::Shift => "shift",
+            Self::Volume => "volume",
+        }
+    }
+
+    /// Returns its value at a state.
+    fn of_state(self, row: &Row) -> f64 {
+        let mut muscles = row.muscles.iter();
+        match self {
+            Self::Tension => {
+                let tensions = muscles.filter(|muscle| muscle.stretch.is_none());
+                tensions.map(|muscle| muscle.target).fold(0.0, f64::max)
+            }
+            Self::Shift => muscles.find_map(|muscle| muscle.shift).unwrap_or(0.0),
+            Self::Volume => row.lumen_volume,
+        }
+    }
 }
 
 impl Progress {
@@ -24,6 +80,7 @@ impl Progress {
             stage_width: names.max().unwrap_or(0).clamp(5, 24),
             is_axisymmetric: plan.mesh.rings(plan.symmetry) == 1,
             has_pressures: plan.has_pressures(),
+            others: Other::of(plan),
             has_heading: false,
         }
     }
@@ -58,7 +115,8 @@ impl Progress {
                 "stage",
                 "Lmax/L",
                 "Dmin/D",
-                pressure_column(format!(" {:>10}", "pressure")),
+                pressure_column(format!(" {:>10}", "pressure"))
+                    + &cells(&self.others, |other| format!(" {:>10}", other.heading())),
                 "W",
                 "found by",
                 "angle",
@@ -74,7 +132,8 @@ impl Progress {
             row.stage,
             row.length_ratio,
             row.diameter_ratio,
-            pressure_column(format!(" {:>10.2e}", pressure(row))),
+            pressure_column(format!(" {:>10.2e}", pressure(row)))
+                + &cells(&self.others, |other| format!(" {:>10.4}", other.of_state(row))),
             row.energy,
             row.method,
             row.max_wall_angle_deg,
@@ -98,6 +157,11 @@ impl Monitor for Progress {
     fn is_cancelled(&self) -> bool {
         self.ticker.stop()
     }
+}
+
+/// Joins the cells of further columns.
+fn cells(others: &[Other], cell: impl Fn(Other) -> String) -> String {
+    others.iter().map(|other| cell(*other)).collect()
 }
 
 /// Returns the first pressure of a state that is not zero; 0 if there is none.
