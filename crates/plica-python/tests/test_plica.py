@@ -50,8 +50,9 @@ class Cases(unittest.TestCase):
         self.assertEqual((len(thin), len(case)), (3, 4))
         with self.assertRaises(plica.CaseError):
             case.with_({"tube.thickness": 0.7})
-        with self.assertRaises(ValueError):
-            case.with_({"title.x": 1})
+        for wrong in ({"title.x": 1}, {"stages[3].steps": 2}):
+            with self.assertRaises(plica.CaseError):
+                case.with_(wrong)
         with self.assertRaises(TypeError):
             case.with_({"title": object()})
         with self.assertRaises(AttributeError):
@@ -204,7 +205,12 @@ class Runs(unittest.TestCase):
         figure, axes = pyplot.subplots(1, 2)
         self.assertIs(run.plot.energy(axes[0]), axes[0])
         self.assertEqual(len(run.plot.walls((0, -1), axes[1]).lines), 8)
-        pyplot.close(figure)
+        bare = plica.Case(**RING).with_({"output.states_every": 0}).run(f"{self.path}-bare", progress=False)
+        self.assertTrue(bare.plot.energy(axes[0]).has_data())
+        for draw in (bare.plot.walls, bare.plot.tube, bare.plot.pressure_map, bare.plot.animation):
+            with self.assertRaisesRegex(ValueError, "no saved states"):
+                draw()
+        pyplot.close("all")
 
     def test_ctrl_c_stops_cleanly_and_the_run_goes_on(self) -> None:
         fine = plica.Case(**RING).with_({"stages[1].steps": 400})

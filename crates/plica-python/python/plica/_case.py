@@ -115,7 +115,11 @@ class Case:
         "stages[1].steps": 40})``. Keys without dots may be keywords.
         """
         changes = {**(changes or {}), **more}
-        text = _native.edited(self._text, [(key, _toml.value(value)) for key, value in changes.items()])
+        written = [(key, _toml.value(value)) for key, value in changes.items()]
+        try:
+            text = _native.edited(self._text, written)
+        except ValueError as error:
+            raise CaseError(self._name, [Problem("", None, str(error), None, 0, 0)]) from None
         return Case.parse(text, self._name, self._folder)
 
     @property

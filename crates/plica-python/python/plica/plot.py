@@ -141,9 +141,15 @@ class RunPlots:
                     axes.text(place[step], 0.98, f" {what}", transform=end, va="top", rotation=90, fontsize="small")
         return axes
 
+    def _saved(self) -> list[int]:
+        """Return the numbers of the saved states; at least one."""
+        if not (saved := self._run.state_numbers):
+            raise ValueError(f"{self._run.path} has no saved states; output.states_every = 1 saves all")
+        return saved
+
     def _chosen(self, states: Sequence[int] | None) -> list[int]:
         """Return the numbers of saved states, given by their places, or of those that the program draws."""
-        saved = self._run.state_numbers
+        saved = self._saved()
         if states is not None:
             return [saved[place] for place in states]
         chosen = [number for number in self._run._native.excerpt()[2] if number in saved]
@@ -210,7 +216,7 @@ class RunPlots:
             raise ValueError("the wall of this run cannot touch itself; set contact = true in its case, or map lumen_radius")
         z, values = self.pressures(quantity)
         axes = _axes(axes)
-        numbers = np.asarray(run.state_numbers, dtype=float)
+        numbers = np.asarray(self._saved(), dtype=float)
         mesh = axes.pcolormesh(z, numbers, values, **{"shading": "nearest", "cmap": "magma", **style})
         length, stress = run._native.size[3], run._native.stress_unit
         names = {
@@ -230,6 +236,7 @@ class RunPlots:
         Where there is no contact, pressure and force are zero; where there is no wall, the radius is NaN.
         """
         run = self._run
+        self._saved()
         step = run._native.size[2] / INTERVALS
         of_state = _radii if quantity == "lumen_radius" else _contact
         rows = [of_state(state, step, quantity) for state in run]
@@ -257,6 +264,7 @@ class RunPlots:
         """Draw all saved states one after another, above their energy, as ``plica animate`` does; a notebook plays it."""
         if not fps > 0:
             raise ValueError(f"fps must be positive, not {fps}")
+        self._saved()
         with reporter(progress, "animation") as report:
             look = _look(field, cutaway, see_through, view, width)
             return Animation(self._run._native.animate(look, 1.0 / fps, report))
