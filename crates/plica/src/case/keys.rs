@@ -598,7 +598,7 @@ table! {
         tolerance: f64 = default("1e-5").unit("D").above(0.0).to(0.01);
         /// Pseudo-time steps after the ramp before the run stops.
         max_steps: usize = default("2000").from(1.0).to(1e7);
-        /// Whether each state is then brought to equilibrium without damping. If not, states are accepted
+        /// Brings each state to equilibrium without damping afterwards. Otherwise states are accepted
         /// as in the paper, and their residual is reported.
         equilibrate: bool = default("true");
     }
@@ -606,7 +606,7 @@ table! {
 
 table! {
     Output {
-        /// Whether pictures are drawn.
+        /// Draws pictures at the end of a run.
         pictures: bool = default("true");
         /// Wall profiles are written for every n-th state and for the last of a stage; 0 for none.
         profiles_every: usize = default("1").from(0.0).to(100_000.0);
