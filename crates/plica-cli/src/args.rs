@@ -1,6 +1,7 @@
 //! The command line: commands, arguments and help.
 
 use crate::materials::MaterialsArguments;
+use crate::sweep::SweepArguments;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use plica_view::report::ColourScale;
@@ -26,6 +27,9 @@ pub enum Command {
     /// Find where a run becomes unstable, and the buckling modes
     #[command(after_long_help = STABILITY_EPILOGUE)]
     Stability(StabilityArguments),
+    /// Compute a study of many tubes: a case with axes over its keys
+    #[command(after_long_help = SWEEP_EPILOGUE)]
+    Sweep(SweepArguments),
     /// Compare Plica with closed forms and independent solutions
     #[command(after_long_help = VERIFY_EPILOGUE)]
     Verify(VerifyArguments),
@@ -473,6 +477,27 @@ Output in the directory of the run:
 
 Ctrl-C or SIGTERM stops the analysis after the current iteration; completed states are written. \
 Earlier results of other states stay in any case.";
+
+const SWEEP_EPILOGUE: &str = "\
+A study file names a base case and the values of its keys:
+
+  base = \"invagination.toml\"
+
+  [axes]
+  \"tube.thickness\" = [0.04, 0.05, 0.06]
+  \"stages.contract.drive.circular.diameter_ratio\" = { from = 0.2, to = 0.5, points = 16 }
+
+  [refine]                       # optional: bisect where neighbours differ
+  of = \"shape\"
+  until = { \"stages.contract.drive.circular.diameter_ratio\" = 0.01 }
+
+Output in the folder of the study:
+  points/NAME/   the run of a point, named by its content
+  table.csv      one row for each point
+  failed/        the reasons of runs that ended with an error
+
+Ctrl-C, SIGTERM or a kill loses nothing: the same command computes what is missing. Several processes, also on several \
+machines that share a disk, may work on a study at once. docs/how-to/study.md shows a job array.";
 
 const VERIFY_EPILOGUE: &str = "\
 The checks compare Plica with closed forms, an independent one-dimensional solution, expected orders of convergence and \

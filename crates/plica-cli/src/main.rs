@@ -20,6 +20,7 @@ mod report;
 mod reproduce;
 mod run;
 mod stability;
+mod sweep;
 mod table;
 mod threads;
 mod ticker;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Resume(arguments) => run::resume(&arguments),
         Command::Stability(arguments) => stability::stability(&arguments),
+        Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Command::Export(arguments) => export::export(&arguments),

@@ -35,6 +35,7 @@ fn help_texts_match_the_snapshot() {
         &["plot", "--help"],
         &["animate", "--help"],
         &["report", "--help"],
+        &["sweep", "--help"],
         &["check", "--help"],
         &["new", "--help"],
     ] {

@@ -164,6 +164,17 @@ fn split(case: &str) -> [String; 2] {
     parts
 }
 
+/// Checks that all points of a study of the starter case are valid cases.
+fn check_study(study: &str) {
+    let folder = scratch("documented-study");
+    fs::write(folder.join("tube.toml"), plica::case::STARTER).unwrap();
+    fs::write(folder.join("study.toml"), study).unwrap();
+    let sweep = plica::sweep::Sweep::read(&folder.join("study.toml")).unwrap();
+    for i in 0..sweep.size() {
+        sweep.case(&sweep.point(i)).unwrap();
+    }
+}
+
 /// Pieces of cases in the how-to guides, each with what the comment before it adds.
 #[test]
 fn the_pieces_of_cases_in_the_guides_are_valid() {
@@ -174,6 +185,11 @@ fn the_pieces_of_cases_in_the_guides_are_valid() {
         while let Some((before, after)) = rest.split_once("```toml\n") {
             let (block, after) = after.split_once("```").unwrap();
             rest = after;
+            if block.starts_with("base = ") {
+                check_study(block);
+                checked += 1;
+                continue;
+            }
             let comment = before.trim_end().strip_suffix("-->");
             let context = comment.map_or("", |text| text.rsplit_once("<!-- with\n").unwrap().1);
             if context.trim() == "a library" {

@@ -19,6 +19,7 @@ mod reproduce;
 mod resume;
 mod stability;
 mod start_state;
+mod sweeps;
 mod table;
 mod threads;
 mod unfinished;

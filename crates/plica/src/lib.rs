@@ -39,6 +39,7 @@
 //! - [`run_directory`]: states on disk, and resuming a run;
 //! - [`saved_state`]: the file format of a state;
 //! - [`stability`]: critical loads and modes of a run;
+//! - [`sweep`]: studies of many tubes;
 //! - [`measure`]: radii, angles, overhang and shape of deformed walls;
 //! - [`tube`], [`activation`], [`material`]: geometry, muscles and laws of a tube;
 //! - [`homogeneous`], [`fit`]: curves of mechanical tests of a law, its ellipticity, and fits to such tests;
@@ -64,6 +65,7 @@ pub mod saved_state;
 pub mod solve;
 pub mod stability;
 pub mod study;
+pub mod sweep;
 
 pub use plica_mechanics::{activation, assembly, material, matrix, rings, spline, tensor, tube};
 pub use study::Study;
