@@ -106,7 +106,8 @@ impl StudyFolder {
         let (outcome, file) = match follow(case, &path, monitor) {
             Ok(Some(outcome)) => (outcome, path.join(OUTCOME)),
             Ok(None) => return Ok(Claim::Cancelled),
-            Err(RunError::Busy { .. }) => return Ok(Claim::Taken),
+            // Occupied: another process has just begun it.
+            Err(RunError::Busy { .. } | RunError::Occupied(_)) => return Ok(Claim::Taken),
             Err(error) => (
                 Outcome::without_states(Status::Failed, error),
                 self.failed(&case.name),
@@ -170,30 +171,29 @@ fn follow(
         false => RunDirectory::create(path, &case.text, &plan.title, false)?,
     };
     directory.lock()?;
-    let scale = Scale::of(plan.units.as_ref());
-    let outcome = |rows: &[_], verdict, reason: &str| {
-        Outcome::of_run(&Findings::of(rows, &scale, plan.symmetry), verdict, reason)
-    };
-    if matches!(directory.verdict(), Verdict::Complete | Verdict::Lost) {
-        // Killed before its outcome was written.
-        let rows = directory.checked_history()?.rows;
-        let manifest = directory.manifest();
-        let reason = manifest["reason"].as_str().unwrap_or_default();
-        return Ok(Some(outcome(&rows, directory.verdict(), reason)));
+    // Ended, but killed before its outcome was written.
+    let has_ended = matches!(directory.verdict(), Verdict::Complete | Verdict::Lost);
+    if !has_ended {
+        let mut run = match is_begun {
+            true => Run::resume(plan, &mut directory, monitor)?,
+            false => Run::begin(plan, &mut directory)?,
+        };
+        while run.next_row(monitor)?.is_some() {}
+        if *run.finish()?.ending() == Ending::Stopped {
+            return Ok(None);
+        }
     }
-    let mut run = match is_begun {
-        true => Run::resume(plan, &mut directory, monitor)?,
-        false => Run::begin(plan, &mut directory)?,
-    };
-    while run.next_row(monitor)?.is_some() {}
-    let summary = run.finish()?;
-    let found = match summary.ending() {
-        Ending::Stopped => return Ok(None),
-        Ending::Complete => outcome(summary.rows(), Verdict::Complete, ""),
-        Ending::Lost(lost) => outcome(summary.rows(), Verdict::Lost, &lost.to_string()),
-    };
     directory.close()?;
-    Ok(Some(found))
+    // From the files, so that an outcome has the same digits whenever it is made.
+    let rows = directory.checked_history()?.rows;
+    let scale = Scale::of(plan.units.as_ref());
+    let findings = Findings::of(&rows, &scale, plan.symmetry);
+    let (verdict, manifest) = (directory.verdict(), directory.manifest());
+    let reason = match verdict {
+        Verdict::Lost => manifest["verdict_text"].as_str().unwrap_or_default(),
+        _ => "",
+    };
+    Ok(Some(Outcome::of_run(&findings, verdict, reason)))
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
