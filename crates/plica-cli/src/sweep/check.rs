@@ -5,7 +5,6 @@ use crate::console;
 use crate::failure::Failure;
 use plica::run_directory::DiskUse;
 use plica::study::forecast;
-use plica::sweep::PointCase;
 use rayon::prelude::*;
 
 /// Points that are not valid of which the reasons are printed.
@@ -63,13 +62,7 @@ pub fn check(study: &Study) -> Result<(), Failure> {
 
 /// Describes the cost of a study by that of its first, middle and last valid points.
 fn cost(study: &Study, sound: usize) -> String {
-    let size = study.sweep.size();
-    let mut samples: Vec<PointCase> = vec![];
-    for from in [0, size / 2, size - 1] {
-        let valid = (from..size).find_map(|i| study.sweep.case(&study.sweep.point(i)).ok());
-        samples.extend(valid);
-    }
-    samples.dedup_by(|a, b| a.name == b.name);
+    let samples = study.samples();
     let all: Vec<_> = samples
         .iter()
         .map(|case| (forecast(&case.plan), DiskUse::of(&case.plan).total()))

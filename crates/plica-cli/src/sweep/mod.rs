@@ -11,7 +11,10 @@ use crate::interrupt::Interrupt;
 use crate::threads;
 use clap::{Args, Subcommand};
 use engine::{Engine, Known, Quiet};
-use plica::sweep::{Claim, Outcome, Point, Status, StudyFolder, Sweep, SweepError, table};
+use plica::study::{available_memory, memory_bytes};
+use plica::sweep::{
+    Claim, Outcome, Point, PointCase, Status, StudyFolder, Sweep, SweepError, table,
+};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -128,6 +131,18 @@ impl Study {
         known.rows()
     }
 
+    /// Returns the cases of the first, the middle and the last valid point, as samples of all.
+    fn samples(&self) -> Vec<PointCase> {
+        let size = self.sweep.size();
+        let mut samples: Vec<PointCase> = vec![];
+        for from in [0, size / 2, size.saturating_sub(1)] {
+            let valid = (from..size).find_map(|i| self.sweep.case(&self.sweep.point(i)).ok());
+            samples.extend(valid);
+        }
+        samples.dedup_by(|a, b| a.name == b.name);
+        samples
+    }
+
     /// Describes a point.
     fn describe(&self, point: &Point) -> String {
         let axes = self.sweep.axes().iter().zip(&point.values);
@@ -155,8 +170,7 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
         let removed = study.folder.retry()?;
         console::message(&format!("{removed} failed points are computed again"));
     }
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let jobs = arguments.jobs.map_or(cores, usize::from);
+    let jobs = jobs(&study, arguments.jobs);
     let engine = Engine {
         study: &study,
         interrupt: interrupt.clone(),
@@ -181,6 +195,26 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
             Err(Failure::Unfinished)
         }
     }
+}
+
+/// Returns the number of points to compute at a time: as many as asked for or as there are cores, and as fit into the memory.
+fn jobs(study: &Study, asked: Option<u16>) -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let wanted = asked.map_or(cores, usize::from);
+    let samples = study.samples();
+    let needed = samples.iter().map(|case| memory_bytes(&case.plan)).max();
+    let (Some(needed), Some(available)) = (needed, available_memory()) else {
+        return wanted;
+    };
+    let fit = usize::try_from(available / needed.max(1)).unwrap_or(wanted);
+    if fit < wanted {
+        console::message(&format!(
+            "{} at a time: a point needs about {:.1} GB",
+            fit.max(1),
+            needed as f64 / 1e9
+        ));
+    }
+    wanted.min(fit.max(1))
 }
 
 /// Prints how many points are computed.

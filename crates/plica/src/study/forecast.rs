@@ -265,7 +265,7 @@ pub fn check_memory(plan: &Plan) -> Result<(), StudyError> {
 }
 
 /// Returns the free memory in bytes, where the system reports it (Linux).
-fn available_memory() -> Option<u64> {
+pub fn available_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text
         .lines()

@@ -39,7 +39,7 @@ use contact_row::WALLS;
 pub use contact_row::{ContactRow, RESOLVED_TURN_DEG, WallContactRow};
 pub use error::StudyError;
 pub use findings::Findings;
-pub use forecast::{Forecast, check_memory, forecast};
+pub use forecast::{Forecast, available_memory, check_memory, forecast, memory_bytes};
 pub use iterator::{Continuation, Ending, Study};
 pub use limit_point::LimitPoint;
 pub use lost::{Location, Lost, Phase};
