@@ -177,7 +177,7 @@ impl Engine<'_> {
             Ok(case) => case,
             Err(error) => {
                 let outcome = Outcome::without_states(Status::Unsound, error);
-                return Ok(Claim::Done(outcome));
+                return Ok(Claim::Done(outcome.into()));
             }
         };
         let compute = || folder.compute(&case, &mut Quiet::new(self.interrupt.clone()));

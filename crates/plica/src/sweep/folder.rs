@@ -33,7 +33,7 @@ pub struct StudyFolder {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Claim {
     /// The point has an outcome now.
-    Done(Outcome),
+    Done(Box<Outcome>),
     /// Another process works on it.
     Taken,
     /// The attempt was cancelled; what was computed is kept.
@@ -100,7 +100,7 @@ impl StudyFolder {
     ) -> Result<Claim, SweepError> {
         let outcome = self.outcome_of(case);
         if outcome.status.is_final() {
-            return Ok(Claim::Done(outcome));
+            return Ok(Claim::Done(outcome.into()));
         }
         let path = self.run(&case.name);
         let (outcome, file) = match follow(case, &path, monitor) {
@@ -115,7 +115,7 @@ impl StudyFolder {
         };
         let text = serde_json::to_vec_pretty(&outcome).unwrap_or_default();
         write(&file, &text)?;
-        Ok(Claim::Done(outcome))
+        Ok(Claim::Done(outcome.into()))
     }
 
     /// Removes the outcomes of points whose runs failed, so that they are computed again; returns their number.
