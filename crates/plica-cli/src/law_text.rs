@@ -138,7 +138,7 @@ fn composite(matrix: Matrix) -> Composite {
     Composite {
         matrix,
         fibres: vec![],
-        tone: None,
+        tones: vec![],
     }
 }
 

@@ -26,7 +26,7 @@ struct BlatzKo {
 
 impl Law for BlatzKo {
     // The default: the moduli themselves are stored at every quadrature point.
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = ModuliData;
 
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {
         let (I1, J) = (F.dot(*F), F.determinant());

@@ -65,8 +65,15 @@ pub fn check_law<L: Law>(law: &L) -> Result<(), LawError> {
             }
         }
 
-        let product = L::TangentData::linearise(law, F).tangent_product(law, &DIRECTION);
-        let error = norm(minus(product, dP));
+        let mut data = vec![];
+        L::TangentData::linearise(law, F, |pair| data.push(pair));
+        let product = L::TangentData::tangent_product(law, |n| data[n], &DIRECTION);
+        let counted = L::TangentData::count(law) == 2 * data.len();
+        let error = if counted {
+            norm(minus(product, dP))
+        } else {
+            f64::NAN
+        };
         within(error, norm(dP), 1e-12, LawError::TangentData)?;
 
         let rotated = law.energy(&rotation().times(*F));

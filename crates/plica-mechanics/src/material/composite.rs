@@ -1,8 +1,8 @@
-//! A matrix with fibres: the sum of another law, of any number of families of fibres, and of an active tension.
+//! A matrix with fibres: the sum of another law, of any number of families of fibres, and of active tensions.
 //!
 //! Evaluated eight numbers at a time through memory, like a custom law: the element kernels are not compiled for it again.
 
-use super::first_invariant::FirstInvariant;
+use super::first_invariant::{self, FirstInvariant};
 use super::{Demiray, Fibres, Fung, Gent, Law, Moduli, ModuliData, MooneyRivlin, NeoHookean};
 use super::{Tone, Volumetric, Yeoh};
 use crate::tensor::{Real, Tensor2};
@@ -14,8 +14,8 @@ pub struct Composite {
     pub matrix: Matrix,
     /// The families of fibres.
     pub fibres: Vec<Fibres>,
-    /// A constant active tension.
-    pub tone: Option<Tone>,
+    /// Constant active tensions; they add up.
+    pub tones: Vec<Tone>,
 }
 
 /// A law without fibres.
@@ -74,6 +74,33 @@ impl Matrix {
         }
     }
 
+    /// Returns whether the energy depends on I₁ other than linearly.
+    #[inline(always)]
+    pub(super) fn is_curved(&self) -> bool {
+        !matches!(self, Self::NeoHookean(_))
+    }
+
+    /// Returns whether the energy is zero.
+    #[inline(always)]
+    pub(super) fn is_nothing(&self) -> bool {
+        matches!(self, Self::NeoHookean(law) if law.mu == 0.0 && law.lambda == 0.0)
+    }
+
+    /// Returns the coefficients of F⁻ᵀ dFᵀ F⁻ᵀ, of (F⁻ᵀ : dF) F⁻ᵀ and of dF in A : dF, and that of (F : dF) F.
+    #[inline(always)]
+    pub(super) fn coefficients<S: Real>(&self, F: &Tensor2<S>) -> ([S; 3], S) {
+        let none = F.0[0][0].like(0.0);
+        match self {
+            Self::NeoHookean(law) => (law.coefficients(F), none),
+            Self::MooneyRivlin(law) => law.coefficients(F),
+            Self::Yeoh(law) => first_invariant::coefficients(law, F),
+            Self::Demiray(law) => first_invariant::coefficients(law, F),
+            Self::Gent(law) => first_invariant::coefficients(law, F),
+            // Its tangent has another form, see `invariant_tangent`.
+            Self::Fung(_) => ([none; 3], none),
+        }
+    }
+
     /// Returns the parts without and with the volumetric constant alone.
     fn parts(self) -> [Self; 2] {
         let volume = |bulk| {
@@ -98,6 +125,15 @@ impl Matrix {
 }
 
 impl Composite {
+    /// Returns a law without fibres and tensions.
+    pub fn of(matrix: Matrix) -> Self {
+        Self {
+            matrix,
+            fibres: vec![],
+            tones: vec![],
+        }
+    }
+
     /// Returns an active tension without a matrix.
     pub fn only(tone: Tone) -> Self {
         let nothing = NeoHookean {
@@ -108,7 +144,7 @@ impl Composite {
         Self {
             matrix: Matrix::NeoHookean(nothing),
             fibres: vec![],
-            tone: Some(tone),
+            tones: vec![tone],
         }
     }
 
@@ -119,12 +155,12 @@ impl Composite {
             Self {
                 matrix: shape,
                 fibres: self.fibres.clone(),
-                tone: self.tone.clone(),
+                tones: self.tones.clone(),
             },
             Self {
                 matrix: volume,
                 fibres: vec![],
-                tone: None,
+                tones: vec![],
             },
         ]
     }
@@ -139,16 +175,13 @@ impl Composite {
         };
         let count = |family: &Fibres| self.fibres.iter().filter(|f| same(f, family)).count();
         let pairs = |family: &Fibres| count(family) == count(&family.mirrored());
-        let tone = self
-            .tone
-            .as_ref()
-            .is_none_or(|tone| tone.is_mirror_symmetric());
-        tone && self.fibres.iter().all(pairs)
+        let tones = self.tones.iter().all(Tone::is_mirror_symmetric);
+        tones && self.fibres.iter().all(pairs)
     }
 }
 
 impl Law for Composite {
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = ModuliData;
 
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {
@@ -157,10 +190,7 @@ impl Law for Composite {
             .fibres
             .iter()
             .fold(matrix, |w, family| w + family.energy(F));
-        match &self.tone {
-            Some(tone) => w + tone.energy(F),
-            None => w,
-        }
+        self.tones.iter().fold(w, |w, tone| w + tone.energy(F))
     }
 
     #[inline(always)]
@@ -169,7 +199,7 @@ impl Law for Composite {
         for family in &self.fibres {
             family.add_stress(F, &mut P);
         }
-        if let Some(tone) = &self.tone {
+        for tone in &self.tones {
             tone.add_stress(F, &mut P);
         }
         P
@@ -181,7 +211,7 @@ impl Law for Composite {
         for family in &self.fibres {
             family.add_moduli(F, &mut A);
         }
-        if let Some(tone) = &self.tone {
+        for tone in &self.tones {
             tone.add_moduli(F, &mut A);
         }
         A

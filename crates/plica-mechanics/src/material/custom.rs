@@ -33,7 +33,7 @@ impl fmt::Debug for CustomLaw {
 }
 
 impl Law for CustomLaw {
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = ModuliData;
 
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {
         Law::energy(&ByLanes(&*self.0), F)
@@ -53,7 +53,7 @@ impl Law for CustomLaw {
 pub(super) struct ByLanes<'a, L: ?Sized>(pub &'a L);
 
 impl<L: LaneLaw + ?Sized> Law for ByLanes<'_, L> {
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = ModuliData;
 
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {
         F.0[0][0].like_lanes(self.0.energy(&lanes(F)))
@@ -96,11 +96,13 @@ impl<L: Law> LaneLaw for L {
     }
 }
 
-fn lanes<S: Real>(F: &Tensor2<S>) -> Tensor2<Lanes> {
+/// Stores the components of eight tensors.
+pub(super) fn lanes<S: Real>(F: &Tensor2<S>) -> Tensor2<Lanes> {
     Tensor2(F.0.map(|row| row.map(Real::to_lanes)))
 }
 
+/// Loads the components of eight tensors.
 #[inline(always)]
-fn vectors<S: Simd>(simd: S, F: &Tensor2<Lanes>) -> Tensor2<f64x8<S>> {
+pub(super) fn vectors<S: Simd>(simd: S, F: &Tensor2<Lanes>) -> Tensor2<f64x8<S>> {
     Tensor2(F.0.map(|row| row.map(|x| x.load(simd))))
 }

@@ -39,7 +39,7 @@ impl FirstInvariant for Demiray {
 }
 
 impl Law for Demiray {
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = ModuliData;
 
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {

@@ -10,6 +10,7 @@
 //! ellipticity of the matrix. κ = 0 has no dispersion, and κ = 1/3 is isotropic.
 
 use super::Moduli;
+use super::invariant_tangent::Structure;
 use crate::tensor::{Real, Tensor2};
 
 /// A family of fibres, a part of the energy of a [`Composite`](super::Composite).
@@ -55,6 +56,23 @@ impl Fibres {
             direction: [-along, around],
             ..*self
         }
+    }
+
+    /// Returns κ I + (1 − 3κ) a ⊗ a.
+    #[inline(always)]
+    pub(super) fn structure(&self) -> Structure {
+        Structure {
+            isotropic: self.dispersion,
+            directed: 1.0 - 3.0 * self.dispersion,
+            direction: self.direction,
+        }
+    }
+
+    /// Returns 4 ψ″ and 2 ψ′.
+    #[inline(always)]
+    pub(super) fn derivatives<S: Real>(&self, F: &Tensor2<S>) -> [S; 2] {
+        let [_, slope, curvature] = self.strained(F).psi;
+        [curvature.times(4.0), slope.times(2.0)]
     }
 
     #[inline(always)]

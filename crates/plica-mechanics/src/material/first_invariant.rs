@@ -34,6 +34,18 @@ fn strain<S: Real>(F: &Tensor2<S>) -> S {
     I1 - I1.like(3.0)
 }
 
+/// Returns μ − J U′, J (J U′)′ and 2 f′, and 4 f″.
+#[inline(always)]
+pub(super) fn coefficients<S: Real>(law: &impl FirstInvariant, F: &Tensor2<S>) -> ([S; 3], S) {
+    let [_, slope, curvature] = law.shape(strain(F));
+    let volume = NeoHookean {
+        mu: law.shear_modulus(),
+        ..volumetric(law)
+    };
+    let [m, bulk, _] = volume.coefficients(F);
+    ([m, bulk, slope.times(2.0)], curvature.times(4.0))
+}
+
 #[inline(always)]
 pub(super) fn energy<S: Real>(law: &impl FirstInvariant, F: &Tensor2<S>) -> S {
     let [f, ..] = law.shape(strain(F));

@@ -87,7 +87,7 @@ impl Fung {
 }
 
 impl Law for Fung {
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = ModuliData;
 
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {

@@ -39,7 +39,7 @@ impl FirstInvariant for Gent {
 }
 
 impl Law for Gent {
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = ModuliData;
 
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {

@@ -25,6 +25,7 @@ mod fibres;
 mod first_invariant;
 mod fung;
 mod gent;
+mod invariant_tangent;
 mod length_tension;
 mod mooney_rivlin;
 mod neo_hookean;
@@ -39,9 +40,10 @@ pub use demiray::Demiray;
 pub use fibres::Fibres;
 pub use fung::Fung;
 pub use gent::Gent;
+pub use invariant_tangent::MaterialData;
 pub use length_tension::LengthTension;
 pub use mooney_rivlin::MooneyRivlin;
-pub use neo_hookean::{NeoHookean, Volumetric};
+pub use neo_hookean::{NeoHookean, NeoHookeanData, Volumetric};
 pub use tangent_data::{ModuliData, TangentData};
 pub use tone::Tone;
 pub use yeoh::Yeoh;
@@ -58,7 +60,7 @@ pub type Moduli<S> = [[S; 9]; 9];
 pub trait Law: Sized + Send + Sync {
     /// Data that the matrix-free product stores at each quadrature point.
     /// [`ModuliData`] suits every law; a law may define smaller data for speed.
-    type TangentData<S: Real>: TangentData<S, Self>;
+    type TangentData: TangentData<Self>;
 
     /// The kernels of the law are compiled for processors with wide vectors only; others use those for any law.
     const WIDE_VECTORS_ONLY: bool = false;
@@ -120,7 +122,7 @@ impl Material {
 
     /// Returns whether the law has an active tension, so that it is not free of stress at rest.
     pub fn has_tone(&self) -> bool {
-        matches!(self, Self::Composite(law) if law.tone.is_some())
+        matches!(self, Self::Composite(law) if !law.tones.is_empty())
     }
 
     /// Splits the law into the part without and the part with its volumetric constant λ, to which
@@ -136,7 +138,7 @@ impl Material {
 }
 
 impl Law for Material {
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = MaterialData;
 
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {

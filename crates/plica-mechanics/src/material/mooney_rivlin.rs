@@ -42,10 +42,20 @@ impl MooneyRivlin {
         let (a, b, lambda) = (0.0, 0.0, 0.0);
         [Self { lambda, ..self }, Self { a, b, ..self }]
     }
+
+    /// Returns a + 2b − λ ln J, λ and a + b I₁, and 2b.
+    #[inline(always)]
+    pub(super) fn coefficients<S: Real>(&self, F: &Tensor2<S>) -> ([S; 3], S) {
+        let Self { a, b, lambda } = *self;
+        let (I1, J) = (F.dot(*F), F.determinant());
+        let m = J.like(a + 2.0 * b) - J.ln().times(lambda);
+        let e = I1.times(b) + J.like(a);
+        ([m, J.like(lambda), e], J.like(2.0 * b))
+    }
 }
 
 impl Law for MooneyRivlin {
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = ModuliData;
 
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {

@@ -56,6 +56,14 @@ impl NeoHookean {
         ]
     }
 
+    /// Returns μ − J U′, J (J U′)′ and μ.
+    #[inline(always)]
+    pub(super) fn coefficients<S: Real>(&self, F: &Tensor2<S>) -> [S; 3] {
+        let J = F.determinant();
+        let m = J.like(self.mu) - self.pressure(J);
+        [m, self.bulk(m), J.like(self.mu)]
+    }
+
     /// Returns J U′, a pressure times J.
     #[inline(always)]
     fn pressure<S: Real>(&self, J: S) -> S {
@@ -77,7 +85,7 @@ impl NeoHookean {
 }
 
 impl Law for NeoHookean {
-    type TangentData<S: Real> = [S; 10];
+    type TangentData = NeoHookeanData;
     const WIDE_VECTORS_ONLY: bool = true;
 
     #[inline(always)]
@@ -137,28 +145,37 @@ impl Law for NeoHookean {
     }
 }
 
-/// F⁻ᵀ row by row, then μ − J U′.
-impl<S: Real> TangentData<S, NeoHookean> for [S; 10] {
-    const LEN: usize = 10;
+/// Tangent data of the neo-Hookean law: F⁻ᵀ row by row, then μ − J U′.
+pub enum NeoHookeanData {}
 
+impl TangentData<NeoHookean> for NeoHookeanData {
     #[inline(always)]
-    fn zeros(like: S) -> Self {
-        [like.like(0.0); 10]
+    fn count(_: &NeoHookean) -> usize {
+        10
     }
 
     #[inline(always)]
-    fn linearise(law: &NeoHookean, F: &Tensor2<S>) -> Self {
+    fn linearise<S: Real>(law: &NeoHookean, F: &Tensor2<S>, mut store: impl FnMut([S; 2])) {
         let cofactor = F.cofactor();
         let J = F.determinant_with(cofactor);
         let m = J.like(law.mu) - law.pressure(J);
         let [a, b, c] = cofactor.scaled(J.like(1.0) / J).0;
-        [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], m]
+        store([a[0], a[1]]);
+        store([a[2], b[0]]);
+        store([b[1], b[2]]);
+        store([c[0], c[1]]);
+        store([c[2], m]);
     }
 
     // A : dF = μ dF + (μ − J U′) F⁻ᵀ dFᵀ F⁻ᵀ + J (J U′)′ (F⁻ᵀ : dF) F⁻ᵀ
     #[inline(always)]
-    fn tangent_product(&self, law: &NeoHookean, dF: &Tensor2<S>) -> Tensor2<S> {
-        let [a0, a1, a2, b0, b1, b2, c0, c1, c2, m] = *self;
+    fn tangent_product<S: Real>(
+        law: &NeoHookean,
+        pair: impl Fn(usize) -> [S; 2],
+        dF: &Tensor2<S>,
+    ) -> Tensor2<S> {
+        let ([a0, a1], [a2, b0], [b1, b2]) = (pair(0), pair(1), pair(2));
+        let ([c0, c1], [c2, m]) = (pair(3), pair(4));
         let G = Tensor2([[a0, a1, a2], [b0, b1, b2], [c0, c1, c2]]);
         let H = dF.transpose().times(G);
         let trace = G.dot(*dF) * law.bulk(m);

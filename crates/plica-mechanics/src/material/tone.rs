@@ -3,6 +3,7 @@
 //! With the stretch λ = |Fe a| of the fibres, w(1) = 0 and w′(λ) = T f(λ): the nominal stress along the fibres is the tension
 //! T times the fraction f of a [`LengthTension`]. Where f falls, w is not convex.
 
+use super::invariant_tangent::Structure;
 use super::{LengthTension, Moduli};
 use crate::tensor::{Real, Tensor2};
 
@@ -31,6 +32,23 @@ impl Tone {
     /// Returns whether reflection in a plane through the axis leaves the direction unchanged.
     pub fn is_mirror_symmetric(&self) -> bool {
         (self.direction[0] * self.direction[1]).abs() < 1e-9
+    }
+
+    /// Returns a ⊗ a.
+    #[inline(always)]
+    pub(super) fn structure(&self) -> Structure {
+        Structure {
+            isotropic: 0.0,
+            directed: 1.0,
+            direction: self.direction,
+        }
+    }
+
+    /// Returns (w″ − w′/λ)/λ² and w′/λ.
+    #[inline(always)]
+    pub(super) fn derivatives<S: Real>(&self, F: &Tensor2<S>) -> [S; 2] {
+        let [_, over, curvature] = self.stretched(F).1;
+        [curvature, over]
     }
 
     /// Returns Fe a, and w, w′/λ and (w″ − w′/λ)/λ².

@@ -37,7 +37,7 @@ impl FirstInvariant for Yeoh {
 }
 
 impl Law for Yeoh {
-    type TangentData<S: Real> = ModuliData<S>;
+    type TangentData = ModuliData;
 
     #[inline(always)]
     fn energy<S: Real>(&self, F: &Tensor2<S>) -> S {

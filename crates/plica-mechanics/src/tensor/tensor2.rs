@@ -76,6 +76,17 @@ impl<S: Real> Tensor2<S> {
         Self(c)
     }
 
+    /// Returns the tensor times a vector with the components `first` and `last` and none in the middle.
+    #[inline(always)]
+    pub fn across(self, first: f64, last: f64) -> [S; 3] {
+        let mut product = self.0[0];
+        for i in 0..3 {
+            let [x, _, y] = self.0[i];
+            product[i] = y.mul_add(y.like(last), x.times(first));
+        }
+        product
+    }
+
     /// Returns the tensor times a number.
     #[inline(always)]
     pub fn scaled(self, s: S) -> Self {

@@ -46,9 +46,13 @@ fn material(layer: &Layer) -> Material {
     Material::Composite(Composite {
         matrix,
         fibres: fibres.collect(),
-        tone: layer.tone.map(|[tension, best, least]| {
-            Tone::new(tension, LengthTension::Rachev { best, least }, 0.0)
-        }),
+        tones: layer
+            .tone
+            .map(|[tension, best, least]| {
+                Tone::new(tension, LengthTension::Rachev { best, least }, 0.0)
+            })
+            .into_iter()
+            .collect(),
     })
 }
 
@@ -80,7 +84,7 @@ pub(super) fn model(wall: &LayeredWall, elements: &[usize]) -> TubeModel {
 }
 
 /// Solves for the state of a tube that is stretched, and then inflated.
-fn inflated(
+pub(super) fn inflated(
     model: &TubeModel,
     wall: &LayeredWall,
     p: f64,

@@ -225,7 +225,7 @@ impl FittedLaw {
         Material::Composite(Composite {
             matrix,
             fibres,
-            tone: None,
+            tones: vec![],
         })
     }
 }

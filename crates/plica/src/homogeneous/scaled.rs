@@ -32,7 +32,7 @@ pub fn scaled(law: &Material, factor: f64) -> Material {
             for family in &mut law.fibres {
                 family.k1 *= factor;
             }
-            if let Some(tone) = &mut law.tone {
+            for tone in &mut law.tones {
                 tone.tension *= factor;
             }
         }

@@ -16,7 +16,7 @@ fn composite(matrix: Matrix, fibres: Vec<Fibres>) -> Material {
     Material::Composite(Composite {
         matrix,
         fibres,
-        tone: None,
+        tones: vec![],
     })
 }
 
@@ -151,7 +151,7 @@ fn an_active_tension_that_falls_costs_ellipticity() {
         Material::Composite(Composite {
             matrix: Matrix::NeoHookean(neo_hookean(30.0)),
             fibres: vec![],
-            tone: Some(Tone::new(tension, relation, 0.0)),
+            tones: vec![Tone::new(tension, relation, 0.0)],
         })
     };
     let lost = |tension| loses_ellipticity(&tone(tension), MechanicalTest::UniaxialAround, 1.6);

@@ -14,10 +14,9 @@ use fearless_simd::{Simd, SimdBase, SimdFrom, f32x16, f64x8};
 pub type PackedTangentData = Vec<[f32; 16]>;
 
 /// Returns the number of vectors of sixteen numbers per point.
-const fn vectors_per_point<L: Law>() -> usize {
-    let numbers = <L::TangentData<f64> as TangentData<f64, L>>::LEN;
-    assert!(numbers.is_multiple_of(2));
-    numbers / 2
+#[inline(always)]
+fn vectors_per_point<L: Law>(law: &L) -> usize {
+    L::TangentData::count(law) / 2
 }
 
 /// Linearises at a state: writes the tangent data, and to `averaged` the weighted moduli of
@@ -47,7 +46,7 @@ fn kernel_linearise<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     let (row, W) = (input.row(), input.rings.wide());
     let nil = f64x8::splat(simd, 0.0);
     let ring_values = ring_values::<N>(input.around);
-    let mut tangent_data = tangent_data.chunks_exact_mut(vectors_per_point::<L>());
+    let mut tangent_data = tangent_data.chunks_exact_mut(vectors_per_point(law));
     let mut averaged = averaged.chunks_exact_mut(AVERAGED);
     let mut along = vec![0.0; 2 * row];
     let mut through = vec![0.0; 9 * W];
@@ -66,12 +65,17 @@ fn kernel_linearise<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
                             input.gradient_map::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &ring_values[qs], &through, W, v);
                         let Fe = gradient_map.elastic_gradient(point, radius, g);
-                        let data = L::TangentData::linearise(law, &Fe);
-                        if let Some(to) = tangent_data.next() {
-                            for (to, pair) in to.iter_mut().zip(data.as_ref().chunks_exact(2)) {
-                                *to = simd.narrow_f64x8(pair[0], pair[1]).into();
-                            }
-                        }
+                        let mut to = tangent_data.next().unwrap_or_default().iter_mut();
+                        L::TangentData::linearise(
+                            law,
+                            &Fe,
+                            #[inline(always)]
+                            |[a, b]| {
+                                if let Some(to) = to.next() {
+                                    *to = simd.narrow_f64x8(a, b).into();
+                                }
+                            },
+                        );
                         let blocks = gradient_map.pull_back_moduli(&law.moduli(&Fe), grown);
                         let sums = &mut sums[qs * AVERAGED..][..AVERAGED];
                         for (sums, block) in sums.chunks_exact_mut(9).zip(&blocks) {
@@ -96,8 +100,8 @@ fn kernel_linearise<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
 }
 
 /// Returns the length of the tangent data of a circumferential batch.
-pub fn tangent_data_len<L: Law, const N: usize>(_: &L, layers: usize, vectors: usize) -> usize {
-    N.pow(3) * layers * vectors * vectors_per_point::<L>()
+pub fn tangent_data_len<L: Law, const N: usize>(law: &L, layers: usize, vectors: usize) -> usize {
+    N.pow(3) * layers * vectors * vectors_per_point(law)
 }
 
 /// Adds the tangent of a circumferential batch times `input.u` to `out`, p + 1 rows of (point,
@@ -131,7 +135,7 @@ fn kernel_product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
     );
     let nil = f64x8::splat(simd, 0.0);
     let ring_values = ring_values::<N>(input.around);
-    let mut tangent_data = tangent_data.chunks_exact(vectors_per_point::<L>());
+    let mut tangent_data = tangent_data.chunks_exact(vectors_per_point(law));
     let mut along = vec![0.0; 2 * row];
     let mut along_force = vec![0.0; 2 * row];
     let mut through = vec![0.0; 9 * W];
@@ -149,15 +153,15 @@ fn kernel_product<S: Simd, L: Law, const N: usize, const PERFECT: bool>(
                         let (gradient_map, [_, grown]) =
                             input.gradient_map::<_, PERFECT>(simd, qz, [t, qr], [v, qs]);
                         let g = gradients::<S, N>(simd, &ring_values[qs], &through, W, v);
-                        let mut data = L::TangentData::zeros(nil);
-                        if let Some(from) = tangent_data.next() {
-                            for (pair, from) in data.as_mut().chunks_exact_mut(2).zip(from) {
-                                let wide = simd.widen_f32x16(f32x16::simd_from(simd, *from));
-                                (pair[0], pair[1]) = wide;
-                            }
-                        }
-                        let dP =
-                            data.tangent_product(law, &gradient_map.elastic_gradient_change(g));
+                        let Some(from) = tangent_data.next() else {
+                            continue;
+                        };
+                        let dP = L::TangentData::tangent_product(
+                            law,
+                            #[inline(always)]
+                            |n| simd.widen_f32x16(f32x16::simd_from(simd, from[n])).into(),
+                            &gradient_map.elastic_gradient_change(g),
+                        );
                         pulled_back[qs] = gradient_map.pull_back(&dP.scaled(grown));
                     }
                     for r in 0..N {

@@ -36,14 +36,14 @@ fn layers() -> Vec<WallLayer> {
             ..WallLayer::of(Material::Composite(Composite {
                 matrix,
                 fibres,
-                tone: Some(Tone::new(
+                tones: vec![Tone::new(
                     0.2,
                     LengthTension::Rachev {
                         best: 1.5,
                         least: 0.5,
                     },
                     0.2,
-                )),
+                )],
             }))
         },
         WallLayer {

@@ -60,7 +60,7 @@ pub(super) fn with_fibres(matrix: Matrix, fibres: Vec<Fibres>, tone: Option<Tone
         _ => Material::Composite(Composite {
             matrix,
             fibres,
-            tone,
+            tones: tone.into_iter().collect(),
         }),
     }
 }

@@ -159,7 +159,7 @@ fn a_tone_has_one_relation_between_stretch_and_stress() {
     let tone =
         |keys: &str| format!("[[layers]]\nthickness = 0.03\ntone = {{ tension = 0.1{keys} }}\n");
     let relation = |keys: &str| match &layers(&tone(keys))[0].material {
-        Material::Composite(law) => law.tone.as_ref().map(|tone| tone.relation.clone()),
+        Material::Composite(law) => law.tones.first().map(|tone| tone.relation.clone()),
         _ => None,
     };
     let gaussian = LengthTension::Gaussian {
