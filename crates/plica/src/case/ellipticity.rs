@@ -3,8 +3,9 @@
 //! The elastic stretch that a stage may reach is estimated from its stress-free stretches: it is their inverse where the wall
 //! keeps its length, and less far from one where it follows.
 
+use super::tension_ellipticity::lost;
 use crate::homogeneous::{MechanicalTest, loses_ellipticity};
-use crate::study::Plan;
+use crate::study::{Plan, Scale};
 use crate::tube::Load;
 
 /// Points along the tube at which stress-free stretches are taken.
@@ -12,8 +13,31 @@ const POINTS: usize = 240;
 
 /// Returns a sentence for each layer whose law loses ellipticity within the stretches of a stage.
 pub(super) fn advice(plan: &Plan) -> Vec<String> {
-    let layers = 0..plan.tube.layers.len();
-    layers.filter_map(|layer| of_layer(plan, layer)).collect()
+    let of = |layer| of_layer(plan, layer).or_else(|| of_tensions(plan, layer));
+    (0..plan.tube.layers.len()).filter_map(of).collect()
+}
+
+/// Returns the name of a layer in a sentence.
+fn name(plan: &Plan, layer: usize) -> String {
+    match plan.tube.layers.len() {
+        1 => "the wall".into(),
+        _ => format!("the layer {}", plan.tube.layers[layer].name),
+    }
+}
+
+fn of_tensions(plan: &Plan, layer: usize) -> Option<String> {
+    let lost = lost(plan, layer)?;
+    let [along, around] = lost.stretches;
+    let scale = Scale::of(plan.units.as_ref());
+    Some(format!(
+        "with the tension of muscles.{}, {} loses ellipticity at stretches of {along:.3} along and {around:.3} around the tube, \
+         which stage {} may reach at a tension of {:.3} {}; bands would depend on the mesh",
+        lost.muscle,
+        name(plan, layer),
+        plan.stages[lost.stage].name,
+        lost.tension * scale.stress,
+        scale.stress_name,
+    ))
 }
 
 fn of_layer(plan: &Plan, layer: usize) -> Option<String> {
@@ -47,10 +71,7 @@ fn of_layer(plan: &Plan, layer: usize) -> Option<String> {
             let stage = ranges.iter().position(reaches).unwrap_or(0);
             let [low, high] = ranges[stage][direction];
             let way = ["along", "around"][direction];
-            let name = match plan.tube.layers.len() {
-                1 => "the wall".into(),
-                _ => format!("the layer {}", own.name),
-            };
+            let name = name(plan, layer);
             return Some(format!(
                 "the law of {name} loses ellipticity at a stretch of {stretch:.3} {way} the tube; stage {} may stretch it by \
                  {low:.3} to {high:.3} there, and creases or bands would depend on the mesh",
@@ -87,8 +108,12 @@ fn range(plan: &Plan, layer: usize, load: &Load) -> [[f64; 2]; 2] {
 }
 
 #[cfg(test)]
+#[allow(non_snake_case)] // F
 mod tests {
     use super::*;
+    use crate::homogeneous::{Prescribed, Volume, homogeneous, least_wave_stiffness};
+    use crate::material::{Composite, Material, Matrix, Tone};
+    use crate::tensor::Tensor2;
 
     fn advice_on(layer: &str, drive: &str) -> Vec<String> {
         let text = format!(
@@ -112,5 +137,73 @@ mod tests {
         assert!(advice_on(tone, "drive.ring.diameter_ratio = 0.9").is_empty());
         assert!(advice_on("", "drive.ring.diameter_ratio = 0.25").is_empty());
         assert!(advice_on("", "drive.ileum.displacement = 3.0").is_empty());
+    }
+
+    #[test]
+    fn a_driven_tension_is_advised_against_where_the_estimated_states_reach_its_fall() {
+        let text = |tension: f64, volume: f64| {
+            format!(
+                "tube.length = 2.0\nends = {{ colon = 'sliding', ileum = 'sliding' }}\n[muscles.ring]\n\
+                 direction = 'circular'\nzone = [0.5, 1.5]\n\
+                 active_stress = {{ best_stretch = 1.1, least_stretch = 0.8 }}\n\
+                 [[stages]]\nname = 'first'\ndrive.ring.tension = {tension}\n\
+                 [[stages]]\nname = 'second'\ndrive.lumen.volume_ratio = {volume}\n"
+            )
+        };
+        let on = |tension, volume| {
+            let plan = crate::case::read(&text(tension, volume), "case").unwrap();
+            (advice(&plan), plan)
+        };
+        // Independent of the estimate: the law with the tension, at the stretch of the middle of an incompressible wall.
+        let least = |plan: &Plan, volume: f64| {
+            let muscle = plan.tube.muscles[0].active_stress.clone().unwrap();
+            let Material::NeoHookean(law) = plan.tube.layers[0].material else {
+                panic!("the law of the paper");
+            };
+            let tones = vec![Tone::new(3.0, muscle.relation, 0.0)];
+            let law = Composite::of(Matrix::NeoHookean(law));
+            let law = Material::Composite(Composite { tones, ..law });
+            let (inner, middle) = (0.44_f64, 0.47_f64);
+            let around = (1.0 + (volume - 1.0) * (inner / middle).powi(2)).sqrt();
+            let prescribed = Prescribed {
+                along: Some(1.0),
+                around: Some(around),
+            };
+            let [along, outwards, _] = homogeneous(&law, prescribed, Volume::Free)
+                .unwrap()
+                .stretches;
+            let F = Tensor2([[along, 0.0, 0.0], [0.0, outwards, 0.0], [0.0, 0.0, around]]);
+            (around, least_wave_stiffness(&law, &F))
+        };
+        let (found, plan) = on(3.0, 2.6);
+        let start = "with the tension of muscles.ring, the wall loses ellipticity at stretches of 1.000 along and 1.";
+        assert!(found.len() == 1 && found[0].starts_with(start), "{found:?}");
+        let end = "around the tube, which stage second may reach at a tension of 3.000 E; bands would depend on the mesh";
+        assert!(found[0].ends_with(end), "{found:?}");
+        let stretch: f64 = found[0][start.len() - 2..][..5].parse().unwrap();
+        let states = (1..=16).map(|n| least(&plan, 1.0 + 1.6 * f64::from(n) / 16.0));
+        let first = states.into_iter().find(|(_, least)| *least <= 0.0).unwrap();
+        assert!(
+            (stretch - first.0).abs() < 6e-4 && stretch > 1.1,
+            "{stretch} {first:?}"
+        );
+        // Neither with a smaller volume, nor with a tension that the wall bears.
+        assert!(on(3.0, 1.1).0.is_empty());
+        assert!(on(0.05, 2.6).0.is_empty());
+    }
+
+    #[test]
+    fn pressure_and_tension_balance_in_the_estimate() {
+        // A wall that a pressure opens to where the tension falls, and a tension that closes it again.
+        let text = |pressure: f64| {
+            format!(
+                "ends = {{ colon = 'sliding', ileum = 'sliding' }}\n[muscles.ring]\ndirection = 'circular'\n\
+                 zone = [0.5, 1.0]\nactive_stress = {{ best_stretch = 1.1, least_stretch = 0.8 }}\n\
+                 [[stages]]\ndrive.inner-wall.pressure = {pressure}\n[[stages]]\ndrive.ring.tension = 1.0\n"
+            )
+        };
+        let on = |pressure| advice(&crate::case::read(&text(pressure), "case").unwrap());
+        assert_eq!(on(0.06).len(), 1);
+        assert!(on(0.01).is_empty());
     }
 }

@@ -45,6 +45,7 @@ mod reference;
 mod schema;
 mod spelling;
 mod syntax;
+mod tension_ellipticity;
 #[cfg(test)]
 mod tests;
 
