@@ -8,7 +8,10 @@ use super::tables::CircumferentialPoint;
 use crate::material::Law;
 use crate::spline::Values;
 use crate::tensor::{Tensor2, with_vectors};
-use crate::tube::Load;
+use crate::tube::{Load, Tube};
+
+/// Distance from the outer wall, in D, within which a point is on it.
+const ON_FACE: f64 = 1e-9;
 
 /// A material point, by its reference position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +47,11 @@ pub struct Sample {
     pub grown_through: f64,
     /// Sum of the tensions of muscles with active stress, in E.
     pub tension: f64,
+    /// Factor of patches on the energy of the law.
+    pub stiffness: f64,
+    /// Force of the foundations per area at rest, in E, (z, outwards, around) at the middle of the point's element; zero
+    /// inside the outer wall.
+    pub foundation: [f64; 3],
     /// Angle of the middle of the point's element, in radians.
     pub element_angle: f64,
 }
@@ -108,6 +116,9 @@ impl SplineTube {
         let parts = || self.all_parts().filter(holds);
         let own = parts().find(|part| !part.is_volumetric()).unwrap_or(self);
         let mut sample = own.sample_here(load, u, at);
+        if !self.tube.foundations.is_empty() && (at.radius - Tube::OUTER_RADIUS).abs() < ON_FACE {
+            sample.foundation = self.foundation_here(u, at);
+        }
         for part in parts() {
             if matches!(part.kind, PartKind::Muscle(_)) && !part.is_idle(load) {
                 let active = part.sample_here(load, u, at);
@@ -138,22 +149,9 @@ impl SplineTube {
     /// Evaluates the fields for `self.law` alone.
     #[inline(always)]
     fn sample_here(&self, load: &Load, u: &[f64], at: Point) -> Sample {
-        let (axial, wall) = (self.axial.evaluate(at.z), self.wall.evaluate(at.radius));
+        let near = self.near(at);
+        let (point, element) = (&near.point, near.element);
         let alpha = self.sector.angle();
-        // Element 0 is centred on angle zero.
-        let rotations = at.angle / alpha + 0.5;
-        let (element, s) = (rotations.floor(), rotations - rotations.floor());
-        let rings = self.sector.rings;
-        let first_ring = (element as i64).rem_euclid(rings as i64) as usize;
-        let point = CircumferentialPoint::at(&self.sector, &self.circle, s, 1.0);
-
-        let near = Near {
-            axial,
-            wall,
-            point,
-            first_ring,
-        };
-        let point = &near.point;
         let (value, gradients) = self.displaced(u, &near);
         let (theta_z, theta_t) = self
             .tube
@@ -189,6 +187,8 @@ impl SplineTube {
             grown: [theta_z, theta_t],
             grown_through: through,
             tension: 0.0,
+            stiffness,
+            foundation: [0.0; 3],
             element_angle: element * alpha,
             elastic: Fe,
         }
@@ -222,11 +222,39 @@ struct Near {
     axial: Values,
     wall: Values,
     point: CircumferentialPoint,
+    /// Number of the element around, in the whole tube.
+    element: f64,
     /// First ring of the element around.
     first_ring: usize,
 }
 
 impl SplineTube {
+    /// Returns the basis functions at a point.
+    #[inline(always)]
+    fn near(&self, at: Point) -> Near {
+        // Element 0 is centred on angle zero.
+        let rotations = at.angle / self.sector.angle() + 0.5;
+        let (element, s) = (rotations.floor(), rotations - rotations.floor());
+        Near {
+            axial: self.axial.evaluate(at.z),
+            wall: self.wall.evaluate(at.radius),
+            point: CircumferentialPoint::at(&self.sector, &self.circle, s, 1.0),
+            element,
+            first_ring: (element as i64).rem_euclid(self.sector.rings as i64) as usize,
+        }
+    }
+
+    /// Returns the force of the foundations per area at rest at a point of the outer wall, in the element's frame.
+    fn foundation_here(&self, u: &[f64], at: Point) -> Vector<f64> {
+        let near = self.near(at);
+        let shape = self.stress_free_shape.as_ref().map(|imperfect| {
+            let (value, [along, around, _]) = self.displaced(&imperfect.displacement, &near);
+            [along, around, value]
+        });
+        let (moved, _) = self.displaced(u, &near);
+        self.foundation_force((near.first_ring, &near.point), at.z, moved, shape)
+    }
+
     /// Returns a displacement and its gradients over ζ, s and R, in the element's frame.
     #[inline(always)]
     fn displaced(&self, u: &[f64], near: &Near) -> (Vector<f64>, [Vector<f64>; 3]) {

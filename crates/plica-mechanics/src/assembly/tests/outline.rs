@@ -1,8 +1,11 @@
 //! Tubes whose diameter and thickness vary along them.
 
-use super::{assert_close, mesh, tube_and_load, wavy};
+use super::{TubeAndLoad, assert_close, dot, mesh, moved, tube_and_load, unknowns, wavy};
 use crate::assembly::{Point, SplineTube};
-use crate::tube::{Imperfection, Outline, Part, Shape, Support, Tube};
+use crate::tube::{
+    Foundation, Imperfection, Outline, Part, Region, Shape, SpringDirection, Support, Tube,
+};
+use std::f64::consts::PI;
 
 fn with(tube: Tube, outline: Outline, elements: [usize; 3], rings: usize) -> SplineTube {
     let tube = Tube {
@@ -20,8 +23,20 @@ fn with(tube: Tube, outline: Outline, elements: [usize; 3], rings: usize) -> Spl
 fn a_tube_of_another_diameter_is_the_same_tube_scaled() {
     let elements = [9, 2, 12];
     for rings in [12, 6, 1] {
-        let of = tube_and_load(3, elements, rings);
-        let (small, load, scale) = (of.tube, of.load, 1.3);
+        let TubeAndLoad { tube, mut load } = tube_and_load(3, elements, rings);
+        let scale = 1.3;
+        let mut tube = tube.tube;
+        tube.foundations = vec![Foundation {
+            region: Region {
+                zone: [0.2, 1.2],
+                edge: 0.2,
+                sector: None,
+            },
+            stiffness: 0.7,
+            direction: SpringDirection::Normal,
+        }];
+        (load.pressures[0].dead, load.pressures[1].dead) = (0.02, 0.05);
+        let small = SplineTube::new(&tube, &mesh(3, elements), rings);
         let u = wavy(&small);
         let expected = small.forces(&load, &u).unwrap();
         let mut tube = small.tube.clone();
@@ -29,6 +44,11 @@ fn a_tube_of_another_diameter_is_the_same_tube_scaled() {
         for muscle in &mut tube.muscles {
             muscle.zone = muscle.zone.map(|z| scale * z);
         }
+        // Its force per displacement and area is a stress over a length.
+        let foundation = &mut tube.foundations[0];
+        foundation.stiffness /= scale;
+        foundation.region.edge *= scale;
+        foundation.region.zone = foundation.region.zone.map(|z| scale * z);
         let outline = Outline {
             diameter: vec![[0.0, scale]],
             thickness: vec![[0.0, scale * tube.thickness]],
@@ -44,8 +64,14 @@ fn a_tube_of_another_diameter_is_the_same_tube_scaled() {
             .map(|(rest, u)| rest + scale * u)
             .collect();
         let found = large.forces(&load, &moved).unwrap();
-        let energy = found.energy / expected.energy / scale.powi(3);
-        assert!((energy - 1.0).abs() < 1e-11, "{rings} rings: {energy}");
+        for (found, expected) in [
+            (found.energy, expected.energy),
+            (found.potential, expected.potential),
+            (found.foundation, expected.foundation),
+        ] {
+            let energy = found / expected / scale.powi(3);
+            assert!((energy - 1.0).abs() < 1e-11, "{rings} rings: {energy}");
+        }
         let residual = found.residual.iter().map(|r| r / scale.powi(2));
         assert_close("residual", residual, &expected.residual);
     }
@@ -128,5 +154,56 @@ fn a_corner_is_rounded_and_does_not_overshoot() {
             "{z}: {found}"
         );
         before = found;
+    }
+}
+
+#[test]
+fn dead_loads_and_springs_act_on_the_area_of_a_cone() {
+    let (elements, shift, k, p) = ([12, 1, 60], 0.01, 0.7, 0.03);
+    for (rings, direction) in [
+        (1, SpringDirection::All),
+        (1, SpringDirection::Normal),
+        (3, SpringDirection::Normal),
+    ] {
+        let mut tube = tube_and_load(3, elements, 1).tube.tube;
+        tube.foundations = vec![Foundation {
+            region: Region {
+                zone: [-1.0, 3.0],
+                edge: 0.1,
+                sector: None,
+            },
+            stiffness: k,
+            direction,
+        }];
+        let outline = Outline {
+            diameter: vec![[0.0, 1.2], [1.5, 0.6]],
+            thickness: vec![[0.0, 0.1]],
+        };
+        let cone = with(tube, outline, elements, rings);
+        let shape = cone.geometric_imperfection().unwrap();
+        let along = unknowns(&cone, |_, _, _| [shift, 0.0, 0.0]);
+        let u = moved(shape, &along, 1.0);
+        let mut load = cone.tube.rest();
+        load.pressures[1].dead = p;
+        let [at_rest, forces] = [shape, &u].map(|u| cone.forces(&load, u).unwrap());
+        assert!(at_rest.potential.abs() < 1e-15 && at_rest.foundation < 1e-25);
+        // The lateral area, and its projection along the axis.
+        let slant = 0.3_f64.hypot(1.5);
+        let (area, projected) = (PI * 0.9 * slant, PI * (0.36 - 0.09));
+        let part = match direction {
+            SpringDirection::All => 1.0,
+            _ => (0.3 / slant).powi(2),
+        };
+        let springs = 0.5 * k * shift * shift * area * part;
+        let close = |found: f64, expected: f64| {
+            assert!(
+                (found / expected - 1.0).abs() < 1e-5,
+                "{rings} {direction:?}: {found} {expected}"
+            );
+        };
+        close(forces.foundation, springs);
+        close(forces.potential - forces.foundation, p * shift * projected);
+        let work = dot(&forces.residual, &along) * cone.sector.repeats();
+        close(work, p * shift * projected + 2.0 * springs);
     }
 }

@@ -1,12 +1,14 @@
 //! Elastic foundations of the outer wall.
 //!
 //! Springs add ½ ∫ k(z, φ) |d|² dA₀ to the energy, with d the displacement from the stress-free shape, or its part along
-//! the normal of the wall at rest, and dA₀ the area at rest. See [`Foundation`](crate::tube::Foundation).
+//! the normal of the wall at rest, and dA₀ the area at rest. Where the diameter or the thickness varies along the tube, both
+//! are those of that shape; small imperfections of the shape do not change them. See [`Foundation`](crate::tube::Foundation).
 
 use super::super::SplineTube;
 use super::super::kinematics::{Vector, to_element_frame};
 use super::obstacles::PointContact;
-use super::{Along, LoadedWall, WallPoint};
+use super::volume::Surface;
+use super::{Along, CircumferentialPoint, LoadedWall, WallPoint};
 use crate::tube::SpringDirection;
 
 impl SplineTube {
@@ -23,9 +25,12 @@ impl SplineTube {
         }
         let phi = self.angle_at(point.element, point.around);
         let mut found: Option<PointContact> = None;
-        let d: Vector<f64> = std::array::from_fn(|i| u[i] - point.shape[i]);
+        let d: Vector<f64> = std::array::from_fn(|i| u[i] - point.shape[2][i]);
         let area = wall.area_at_rest(point);
-        let size = area[1].hypot(area[2]);
+        let size = match wall.is_outlined {
+            true => wall.foundation_area(point),
+            false => area[1].hypot(area[2]),
+        };
         let normal = area.map(|x| x / size);
         let along: f64 = (0..3).map(|i| normal[i] * d[i]).sum();
         for foundation in &self.tube.foundations {
@@ -53,6 +58,30 @@ impl SplineTube {
         found
     }
 
+    /// Returns the force of the foundations on the outer wall per area at rest, at a point of an element at the axial position
+    /// z that has moved by `u` from the cylinder, given the displacement of the stress-free shape and its slopes.
+    pub(in crate::assembly) fn foundation_force(
+        &self,
+        (element, around): (usize, &CircumferentialPoint),
+        z: f64,
+        u: Vector<f64>,
+        shape: Option<Surface>,
+    ) -> Vector<f64> {
+        let wall = LoadedWall {
+            has_foundations: true,
+            ..self.bare_wall(1)
+        };
+        let point = WallPoint {
+            element,
+            number: 0,
+            z,
+            around,
+            shape: shape.unwrap_or_default(),
+        };
+        let found = self.foundation_at(&wall, u, &point);
+        found.map_or([0.0; 3], |at| at.slope.map(|slope| -slope))
+    }
+
     /// Returns a quadrature point of a wall. Its number has a meaning only for the quadrature of the tube itself.
     pub(super) fn wall_point<'a>(
         &self,
@@ -60,7 +89,7 @@ impl SplineTube {
         along: Along<'_>,
         qz: usize,
         [element, number]: [usize; 2],
-        around: &'a super::CircumferentialPoint,
+        around: &'a CircumferentialPoint,
     ) -> WallPoint<'a> {
         let (batch, lane) = along;
         let mut point = WallPoint {
@@ -68,26 +97,28 @@ impl SplineTube {
             number: self.point_number(along, qz, [element, number]),
             z: batch.z[qz].0[lane],
             around,
-            shape: [0.0; 3],
+            shape: [[0.0; 3]; 3],
         };
-        let Some(shape) = self
-            .stress_free_shape
-            .as_ref()
-            .filter(|_| wall.has_foundations)
-        else {
+        let matters = wall.has_foundations || (wall.is_outlined && wall.dead != 0.0);
+        let Some(shape) = self.stress_free_shape.as_ref().filter(|_| matters) else {
             return point;
         };
         let (m, k) = (self.row_size(), self.sector.rings);
         for (r, ring) in around.ring_values.iter().enumerate() {
-            let mut value = [0.0; 3];
+            let (mut value, mut slope) = ([0.0; 3], [0.0; 3]);
             for a in 0..=self.degree() {
-                let (n, _) = self.along(along, qz, a);
+                let (n, dn) = self.along(along, qz, a);
                 let row = (batch.first + lane + a) * m + wall.point * 3 * k;
-                for (i, value) in value.iter_mut().enumerate() {
-                    *value += n * shape.displacement[row + i * k + self.sector.ring(element, r)];
+                for i in 0..3 {
+                    let u = shape.displacement[row + i * k + self.sector.ring(element, r)];
+                    value[i] += n * u;
+                    slope[i] += dn * u;
                 }
             }
-            point.shape = to_element_frame(ring, 0, value, point.shape);
+            let [along, around, at] = &mut point.shape;
+            *along = to_element_frame(ring, 0, slope, *along);
+            *around = to_element_frame(ring, 1, value, *around);
+            *at = to_element_frame(ring, 0, value, *at);
         }
         point
     }

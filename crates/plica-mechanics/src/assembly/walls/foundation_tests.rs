@@ -3,10 +3,11 @@
 use super::super::tests::{
     TubeAndLoad, direction, dot, largest, linearised, mesh, moved, tube_and_load, unknowns, wavy,
 };
-use super::super::{Forces, SplineTube};
+use super::super::{Forces, Point, SplineTube};
 use crate::activation::AngularSector;
 use crate::tube::{
-    Axial, Foundation, Imperfection, Part, Region, Shape, SpringDirection, Support, Tube, Wave,
+    Axial, Foundation, Imperfection, Outline, Part, Region, Shape, SpringDirection, Support, Tube,
+    Wave,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -59,19 +60,31 @@ fn alone(tube: &SplineTube, u: &[f64]) -> Forces {
 fn forces_and_tangent_of_foundations_are_derivatives() {
     for (rings, repeats) in [(1, 0), (3, 2), (6, 1)] {
         for direction_of_springs in DIRECTIONS {
-            for is_imperfect in [false, true] {
+            for shape in ["plain", "imperfect", "cone"] {
                 let tube = founded([4, 1, 6], rings, |tube| {
                     let sector = (repeats > 0).then(|| sector(repeats));
                     tube.foundations = vec![foundation(direction_of_springs, sector)];
-                    if is_imperfect {
-                        tube.imperfections = vec![Imperfection {
-                            of: Part::Geometry,
-                            amplitude: 0.02,
-                            shape: Shape::Wave(Wave::new(0, 0.0, Axial::Uniform)),
-                        }];
+                    let imperfection = |amplitude, shape| Imperfection {
+                        of: Part::Geometry,
+                        amplitude,
+                        shape,
+                    };
+                    if shape == "imperfect" {
+                        let wave = Wave::new(0, 0.0, Axial::Uniform);
+                        tube.imperfections = vec![imperfection(0.02, Shape::Wave(wave))];
+                    }
+                    if shape == "cone" {
+                        let outline = Outline {
+                            diameter: vec![[0.0, 1.1], [1.5, 0.8]],
+                            thickness: vec![],
+                        };
+                        tube.imperfections = vec![imperfection(1.0, Shape::Outline(outline))];
                     }
                 });
                 let mut u = wavy(&tube);
+                if let (Some(rest), "cone") = (tube.geometric_imperfection(), shape) {
+                    u = moved(&u, rest, 1.0);
+                }
                 // Stretched springs stay so.
                 if direction_of_springs == SpringDirection::Inward {
                     u = unknowns(&tube, |z, r, s| {
@@ -219,6 +232,66 @@ fn a_foundation_holds_a_free_tube() {
                 let free = [one, (whole - one) / 2];
                 assert_eq!(motions, free, "{direction:?}");
             }
+        }
+    }
+}
+
+#[test]
+fn sampled_forces_are_those_of_the_residual() {
+    // Their work on a displacement, summed over points of the outer wall, is that of the residual.
+    for (rings, repeats) in [(1, 0), (3, 2), (6, 1)] {
+        for direction_of_springs in DIRECTIONS {
+            let tube = founded([8, 1, 6], rings, |tube| {
+                let sector = (repeats > 0).then(|| sector(repeats));
+                tube.foundations = vec![foundation(direction_of_springs, sector)];
+            });
+            let u = unknowns(&tube, |z, r, s| {
+                [0.1 * z, -0.1 + 0.02 * (TAU * s).sin() * r, 0.05 * z * r]
+            });
+            let residual = alone(&tube, &u).residual;
+            // A shift along the axis, and one of all rings outwards.
+            for component in [0, 1] {
+                let v = unknowns(&tube, |_, _, _| match component {
+                    0 => [1.0, 0.0, 0.0],
+                    _ => [0.0, tube.circle.control_radius, 0.0],
+                });
+                let exact = -dot(&residual, &v) * tube.sector.repeats();
+                let [along, around] = [300, 48];
+                let mut sum = 0.0;
+                for i in 0..along {
+                    for j in 0..around {
+                        let angle = TAU * (f64::from(j) + 0.5) / f64::from(around);
+                        let at = Point {
+                            z: 1.5 * (f64::from(i) + 0.5) / f64::from(along),
+                            radius: 0.5,
+                            angle,
+                        };
+                        let sample = tube.sample(&tube.tube.rest(), &u, at);
+                        let [z, x, y] = sample.foundation;
+                        let own = angle - sample.element_angle;
+                        sum += match component {
+                            0 => z,
+                            _ => x * own.cos() + y * own.sin(),
+                        };
+                    }
+                }
+                let area = PI * 1.5 / f64::from(along * around);
+                let found = area * sum;
+                let scale = largest(&residual);
+                assert!(
+                    (found - exact).abs() < 5e-3 * exact.abs().max(scale),
+                    "{rings} {component}: {found} {exact}"
+                );
+            }
+            let inside = Point {
+                z: 0.7,
+                radius: 0.49,
+                angle: 0.4,
+            };
+            assert_eq!(
+                tube.sample(&tube.tube.rest(), &u, inside).foundation,
+                [0.0; 3]
+            );
         }
     }
 }

@@ -13,7 +13,8 @@
 //! (At an edge that moves along z, the force on a lid would be missing; the force then depends on
 //! the path, and has no potential.)
 //!
-//! A dead load acts on the wall at rest: its potential is ∓p ∫ N · u dA₀, for any ends.
+//! A dead load acts on the wall at rest: its potential is ∓p ∫ N · u dA₀, for any ends. Area and normal are those of the
+//! cylinder or, where the diameter or the thickness varies along the tube, of that shape.
 //!
 //! A wall is one surface, so plain loops are fast enough, compiled for processors with fused
 //! multiply-add. V is computed relative to its value at rest, which avoids rounding.
@@ -66,6 +67,9 @@ pub struct LoadedWall {
     dead: f64,
     /// True if the foundations of the tube act on it.
     has_foundations: bool,
+    /// True if its shape at rest varies along the tube by design. Areas and normals at rest are then those of that shape,
+    /// not those of the cylinder of constant diameter.
+    is_outlined: bool,
     obstacles: Vec<PlacedObstacle>,
     barrier: Barrier,
     friction: Option<PlacedFriction>,
@@ -101,8 +105,9 @@ struct WallPoint<'a> {
     /// Axial position at rest.
     z: f64,
     around: &'a CircumferentialPoint,
-    /// Displacement of the stress-free shape in the frame of the element, on a wall with foundations.
-    shape: Vector<f64>,
+    /// Displacement of the stress-free shape in the frame of the element, and its slopes; zero on a wall on which neither
+    /// foundations nor dead loads act.
+    shape: Surface,
 }
 
 /// An element along the tube: axial batch and lane.
@@ -150,7 +155,7 @@ impl SplineTube {
             }
             let mut foundation = 0.0;
             if let Some(at) = self.foundation_at(wall, moved[2], point) {
-                let area = wall.area(point);
+                let area = wall.foundation_area(point);
                 foundation = area * at.energy;
                 for i in 0..3 {
                     slopes[2][i] += area * at.slope[i];
@@ -319,6 +324,7 @@ impl SplineTube {
             follower: 0.0,
             dead: 0.0,
             has_foundations: false,
+            is_outlined: self.tube.outline().is_some(),
             obstacles: vec![],
             barrier: self.barrier,
             friction: None,
@@ -415,7 +421,7 @@ impl SplineTube {
             blocks[5] = contact.curvature.map(|row| row.map(|x| area * x));
         }
         if let Some(foundation) = foundation {
-            let area = factor * wall.area(point);
+            let area = factor * wall.foundation_area(point);
             for i in 0..3 {
                 for j in 0..3 {
                     blocks[5][i][j] += area * foundation.curvature[i][j];
@@ -627,18 +633,45 @@ impl LoadedWall {
     /// Returns the potential of the pressures at a point that has moved, per dζ ds.
     fn potential(&self, moved: &Surface, point: &WallPoint<'_>) -> f64 {
         let area = self.area_at_rest(point);
-        let dead = moved[2][1] * area[1] + moved[2][2] * area[2];
+        let mut dead = moved[2][1] * area[1] + moved[2][2] * area[2];
+        if self.is_outlined {
+            // From the shape at rest on.
+            let along = moved[2][0] * area[0];
+            let shape: f64 = (0..3).map(|i| point.shape[2][i] * area[i]).sum();
+            dead += along - shape;
+        }
         -self.follower * volume_change(&self.at_rest(point), moved) - self.dead * dead
     }
 
-    /// Returns the area at rest, per dζ ds.
+    /// Returns the area of the cylinder of constant diameter, per dζ ds.
     fn area(&self, point: &WallPoint<'_>) -> f64 {
         let (re, im) = point.around.circle_slope;
         self.radius * re.hypot(im)
     }
 
-    /// Returns the outward element of area at rest, per dζ ds.
+    /// Returns the area at rest on which foundations act, per dζ ds.
+    fn foundation_area(&self, point: &WallPoint<'_>) -> f64 {
+        match self.is_outlined {
+            true => self
+                .area_at_rest(point)
+                .iter()
+                .map(|x| x * x)
+                .sum::<f64>()
+                .sqrt(),
+            false => self.area(point),
+        }
+    }
+
+    /// Returns the outward element of area at rest, per dζ ds: that of the cylinder, or of the wall whose diameter or
+    /// thickness varies.
     fn area_at_rest(&self, point: &WallPoint<'_>) -> Vector<f64> {
+        if self.is_outlined {
+            let [along, around, _] = sum(&self.at_rest(point), &point.shape);
+            return [0, 1, 2].map(|i| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                around[j] * along[k] - around[k] * along[j]
+            });
+        }
         let (re, im) = point.around.circle_slope;
         [0.0, self.radius * im, -self.radius * re]
     }

@@ -85,17 +85,22 @@ pub(super) fn check_target(
     }
 }
 
-/// Reports a stage with lists of points that begins to drive the volume, or the pressure: only the run knows where the other
-/// begins.
+/// Reports a stage with lists of points that begins to drive the volume, or the pressure, elsewhere than at rest.
 pub(super) fn report_course(stage: &str, is_volume: bool, problems: &mut Problems) {
-    let (driven, before) = match is_volume {
-        true => ("lumen", "pressure"),
-        false => ("inner-wall", "volume"),
+    let (driven, before, unknown) = match is_volume {
+        true => ("lumen", "pressure", "volume"),
+        false => ("inner-wall", "volume", "pressure"),
     };
     let key = format!("{stage}.drive.{driven}");
     if problems.are_sound(&[stage]) {
-        let rule = format!("a stage that takes over from a driven {before} has no lists of points");
-        problems.key(&key, rule, "write a stage of its own before this one");
+        let rule = format!(
+            "a stage with lists of points cannot take over from a driven {before}: between the points its {unknown} would depend \
+             on the {unknown} at its start, which only the run finds"
+        );
+        let help = format!(
+            "take over in a stage of its own before this one, to a {unknown} that you choose"
+        );
+        problems.key(&key, rule, help);
     }
 }
 

@@ -57,7 +57,6 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
     imperfections::check_wall(case, &tube, run, problems);
     stages::check_end_planes(&tube, &stages, problems);
     lumen::check_ends(&stages, problems);
-    outline::check_loads(&tube, &stages, problems);
     sideways::check(symmetry, &stages, problems);
     contact::check(case, symmetry, &tube, &stages, problems);
     obstacles::check(case, &tube, run, (&begin, &stages), problems);

@@ -3,8 +3,7 @@
 use super::super::keys::Case;
 use super::super::problem::Problems;
 use super::zone::{ROUNDING, length};
-use crate::study::Stage;
-use crate::tube::{Imperfection, Load, Outline, Part, Shape, Tube};
+use crate::tube::{Imperfection, Outline, Part, Shape, Tube};
 
 const DIAMETER: &str = "tube.diameter_along";
 const THICKNESS: &str = "tube.thickness_along";
@@ -63,10 +62,6 @@ pub(super) fn outline(case: &Case, tube: &Tube, problems: &mut Problems) -> Opti
         problems.value(key, rule, "");
         sound = false;
     }
-    if !case.foundations.is_empty() && problems.are_sound(&["foundations"]) {
-        let rule = "a foundation needs a tube of constant diameter and thickness";
-        problems.key("foundations[1]", rule, "leave the tables of the tube out");
-    }
     sound.then_some(Imperfection {
         of: Part::Geometry,
         amplitude: 1.0,
@@ -113,28 +108,4 @@ fn closed(outline: &Outline, tube: &Tube) -> Option<f64> {
         .positions()
         .chain([0.0, tube.length])
         .find(|z| bad(*z))
-}
-
-/// Checks that no stage has dead loads, which act per area of a wall of constant diameter.
-pub(super) fn check_loads(tube: &Tube, stages: &[Stage], problems: &mut Problems) {
-    let varies = |one: &Imperfection| matches!(one.shape, Shape::Outline(_));
-    if !tube.imperfections.iter().any(varies) {
-        return;
-    }
-    for (i, stage) in stages.iter().enumerate() {
-        let pressed = |load: &Load| load.pressures.iter().position(|wall| wall.dead != 0.0);
-        if let Some(wall) = stage.loads().find_map(pressed) {
-            let key = format!(
-                "stages[{}].drive.{}.dead_load",
-                i + 1,
-                super::muscles::WALLS[wall]
-            );
-            let rule = "a dead load needs a tube of constant diameter and thickness";
-            return problems.value(
-                &key,
-                rule,
-                "use pressure, or leave the tables of the tube out",
-            );
-        }
-    }
 }
