@@ -298,6 +298,24 @@ impl LayeredWall {
 }
 
 impl LayeredWall {
+    /// Returns the radius now of the point at R, of a state under the internal pressure p.
+    ///
+    /// # Errors
+    /// [`NoEquilibrium`] if an iteration does not converge.
+    pub fn radius_at(&self, state: &Inflated, p: f64, R: f64) -> Result<f64, NoEquilibrium> {
+        // Only the wall inside the point matters, as the integration begins at the inner face.
+        let inside = self
+            .layers
+            .iter()
+            .take_while(|layer| layer.outer < R)
+            .count();
+        let mut within = self.clone();
+        within.layers.truncate(inside + 1);
+        within.layers[inside].outer = R;
+        let (state, _) = within.integrate(state.radii[0], state.twist, p)?;
+        Ok(state.radii[inside + 1])
+    }
+
     /// Returns the internal pressure at which the inner radius now has a value, of a tube that does not twist.
     ///
     /// # Errors

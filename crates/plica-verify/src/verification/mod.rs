@@ -6,7 +6,7 @@
 //! | [`layered_wall`] | independent reference solution of tubes of layers with fibres |
 //! | `tube_model` | the tubes that Plica solves for the comparisons |
 //! | `exact` | identities that hold to rounding |
-//! | `layers` | layers, laws, fibres and residual stretches |
+//! | `layers`, `layer_orders` | layers, laws, fibres and residual stretches; orders of convergence through layers |
 //! | `rings`, `columns` | pressure, growth, buckling; limits of thin walls and long tubes |
 //! | `volume` | tubes inflated by the volume of their lumen |
 //! | `locking` | nearly incompressible thick walls |
@@ -27,6 +27,7 @@ mod cross_checks;
 mod error;
 mod exact;
 mod friction;
+mod layer_orders;
 pub mod layered_wall;
 mod layers;
 mod locking;
@@ -99,6 +100,11 @@ pub const CHECKS: &[Check] = &[
         rings::mooney_rivlin,
     ),
     quick("laws", "inflation of rings of other laws", layers::laws),
+    quick(
+        "layer-orders",
+        "orders of convergence through a wall of layers",
+        layer_orders::orders,
+    ),
     quick("artery", "inflation of a carotid artery", layers::artery),
     quick(
         "active-stress",
