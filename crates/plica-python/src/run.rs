@@ -263,7 +263,7 @@ impl Run {
     /// Names of the fields that colour pictures.
     #[getter]
     fn picture_fields(&self) -> Vec<&'static str> {
-        let fields = Field::of_plan(&self.tube.plan).iter();
+        let fields = Field::of_plan(&self.tube.plan).into_iter();
         fields.map(|field| field.name()).collect()
     }
 

@@ -51,7 +51,7 @@ pub struct State {
 }
 
 /// Names of the fields, with the number of components.
-const FIELDS: [(&str, usize); 15] = [
+const FIELDS: [(&str, usize); 17] = [
     ("position", 3),
     ("displacement", 3),
     ("cauchy_stress", 9),
@@ -66,6 +66,8 @@ const FIELDS: [(&str, usize); 15] = [
     ("theta_eta", 1),
     ("theta_xi", 1),
     ("tension", 1),
+    ("stiffness_factor", 1),
+    ("foundation_force", 3),
     ("contact_pressure", 1),
 ];
 
@@ -112,7 +114,8 @@ impl State {
         let scale = &self.tube.scale;
         let unit = |name: &str| match name {
             "position" | "displacement" => Some(scale.length_name.clone()),
-            "det_Fe" | "elastic_stretch" | "theta_zeta" | "theta_eta" | "theta_xi" => None,
+            "det_Fe" | "elastic_stretch" | "theta_zeta" | "theta_eta" | "theta_xi"
+            | "stiffness_factor" => None,
             _ => Some(scale.stress_name.clone()),
         };
         FIELDS.iter().map(|&(name, _)| (name, unit(name))).collect()
@@ -165,6 +168,12 @@ impl State {
                     "theta_eta" => vec![wall.grown[1]],
                     "theta_xi" => vec![wall.grown_through],
                     "tension" => vec![scale.stress * wall.tension],
+                    "stiffness_factor" => vec![wall.stiffness],
+                    "foundation_force" => {
+                        let [z, x, y] = wall.foundation.map(|f| scale.stress * f);
+                        let (sin, cos) = wall.element_angle.sin_cos();
+                        vec![x * cos - y * sin, x * sin + y * cos, z]
+                    }
                     _ => vec![scale.stress * sample.contact_pressure],
                 };
                 names.iter().map(of).collect()

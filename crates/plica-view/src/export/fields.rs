@@ -35,8 +35,21 @@ pub(super) const OF_CONTACT: &[Field] = &[field("contact_pressure", &[], |points
 })];
 
 /// The fields of runs with patches.
-pub(super) const OF_PATCHES: &[Field] = &[field("theta_xi", &[], |points, _| {
-    scalar(points, |point| point.grown_through)
+pub(super) const OF_PATCHES: &[Field] = &[
+    field("theta_xi", &[], |points, _| {
+        scalar(points, |point| point.grown_through)
+    }),
+    field("stiffness_factor", &[], |points, _| {
+        scalar(points, |point| point.stiffness)
+    }),
+];
+
+/// The fields of runs with foundations.
+pub(super) const OF_FOUNDATIONS: &[Field] = &[field("foundation_force", XYZ, |points, scale| {
+    let stress = scale.stress as f32;
+    components(points, |point, rotation| {
+        rotation.vector_f32(point.foundation).map(|x| stress * x)
+    })
 })];
 
 /// The fields of runs with active stresses.

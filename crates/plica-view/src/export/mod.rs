@@ -9,7 +9,8 @@
 //! | `displacement` | position relative to the stress-free tube without imperfections |
 //! | `det_Fe` | elastic volume ratio |
 //! | `theta_zeta`, `theta_eta` | longitudinal and circumferential growth stretch |
-//! | `theta_xi` | growth stretch through the wall, in runs with patches |
+//! | `theta_xi`, `stiffness_factor` | growth stretch through the wall and factor on the energy, in runs with patches |
+//! | `foundation_force` | force of foundations on the outer wall, per area at rest; zero inside; in runs with foundations |
 //! | `tension` | sum of the tensions of the muscles with active stress, in runs with them |
 //! | `strain_energy_density` | w, per volume after growth |
 //! | `cauchy_stress` | σ in (x, y, z): xx, yy, zz, xy, yz, xz |
@@ -26,7 +27,7 @@ mod points;
 
 use crate::sampled_tube::SampledTube;
 use crate::vtk::{Cells, Column, Document, Lattice, Series};
-use fields::{FIELDS, OF_CONTACT, OF_PATCHES, OF_TENSIONS};
+use fields::{FIELDS, OF_CONTACT, OF_FOUNDATIONS, OF_PATCHES, OF_TENSIONS};
 use plica::activation::Muscle;
 use plica::saved_state::SavedState;
 use plica::study::{Plan, Row, Scale};
@@ -39,6 +40,7 @@ pub struct Exporter {
     scale: Scale,
     has_patches: bool,
     has_tensions: bool,
+    has_foundations: bool,
 }
 
 /// Geometry written to a VTK file.
@@ -116,17 +118,20 @@ impl Exporter {
             scale: Scale::of(plan.units.as_ref()),
             has_patches: !plan.tube.patches.is_empty(),
             has_tensions: !plan.tube.muscles.iter().all(Muscle::grows),
+            has_foundations: !plan.tube.foundations.is_empty(),
         }
     }
 
-    /// Returns the fields, those of contact, patches and tensions only if the run has them.
+    /// Returns the fields, those of contact, patches, tensions and foundations only if the run has them.
     fn fields(&self) -> impl Iterator<Item = &'static fields::Field> {
         let contact = self.tube.has_contact();
         let of_contact: &[fields::Field] = if contact { OF_CONTACT } else { &[] };
         let of_patches: &[fields::Field] = if self.has_patches { OF_PATCHES } else { &[] };
         let of_tensions: &[fields::Field] = if self.has_tensions { OF_TENSIONS } else { &[] };
+        let foundations = self.has_foundations;
+        let of_foundations: &[fields::Field] = if foundations { OF_FOUNDATIONS } else { &[] };
         let fields = FIELDS.iter().chain(of_contact).chain(of_patches);
-        fields.chain(of_tensions)
+        fields.chain(of_tensions).chain(of_foundations)
     }
 
     /// Returns the bytes of the file of a state.

@@ -19,6 +19,10 @@ pub(super) struct PointData {
     pub grown_through: f32,
     /// Tension of the muscles with active stress in units of E.
     pub tension: f32,
+    /// Factor of patches on the energy.
+    pub stiffness: f32,
+    /// Force of the foundations per area at rest in units of E.
+    pub foundation: [f32; 3],
     /// Strain energy density w in units of E.
     pub energy_density: f32,
     /// Cauchy stress σ in units of E: xx, yy, zz, xy, yz, xz.
@@ -115,6 +119,8 @@ impl PointData {
             grown: sample.grown.map(|x| x as f32),
             grown_through: sample.grown_through as f32,
             tension: sample.tension as f32,
+            stiffness: sample.stiffness as f32,
+            foundation: vector(sample.foundation).map(|x| x as f32),
             energy_density: existing(sample.energy_density) as f32,
             stress: tensor(&Tensor2(sample.stress.0.map(|row| row.map(existing)))),
             wall_stresses: sample.wall_stresses().map(|x| existing(x) as f32),

@@ -158,8 +158,8 @@ impl Scene {
     ) -> Self {
         let tube = SampledTube::of(plan);
         let (points, sectors) = resolution(&tube, numbers(plan), states.len(), max_bytes);
-        let fields = Field::of_plan(plan).iter();
-        let labels: Vec<(Field, (String, f64))> = fields.map(|f| (*f, f.label(plan))).collect();
+        let fields = Field::of_plan(plan).into_iter();
+        let labels: Vec<(Field, (String, f64))> = fields.map(|f| (f, f.label(plan))).collect();
         let length = Field::Displacement.label(plan).1;
         let walls: Vec<Wall> = states
             .par_iter()

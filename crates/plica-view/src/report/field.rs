@@ -32,6 +32,12 @@ pub enum Field {
     GrownAround,
     /// Magnitude of the displacement from the stress-free state.
     Displacement,
+    /// Factor of patches on the energy of the law.
+    StiffnessFactor,
+    /// Sum of the tensions of muscles with active stress.
+    Tension,
+    /// Magnitude of the force of foundations on the outer wall, per area at rest; zero inside it.
+    FoundationForce,
     /// Pressure of contact on the faces of the wall; zero inside it.
     ContactPressure,
 }
@@ -42,8 +48,8 @@ const ENERGY_ROUNDING: f64 = 1e-12;
 const ROUNDING: f64 = 1e-12;
 
 impl Field {
-    /// All fields; the last one exists only in runs with contact.
-    pub const ALL: [Self; 13] = [
+    /// All fields.
+    pub const ALL: [Self; 16] = [
         Self::EnergyDensity,
         Self::VonMises,
         Self::Pressure,
@@ -56,15 +62,27 @@ impl Field {
         Self::GrownAlong,
         Self::GrownAround,
         Self::Displacement,
+        Self::StiffnessFactor,
+        Self::Tension,
+        Self::FoundationForce,
         Self::ContactPressure,
     ];
 
-    /// Returns the fields of a plan.
-    pub fn of_plan(plan: &Plan) -> &'static [Self] {
-        match plan.contact {
-            true => &Self::ALL,
-            false => &Self::ALL[..Self::ALL.len() - 1],
-        }
+    /// Returns the fields of a plan: all, without those of what the plan does not have.
+    pub fn of_plan(plan: &Plan) -> Vec<Self> {
+        let exists = |field: &Self| match field {
+            Self::StiffnessFactor => {
+                let patches = plan.tube.patches.iter();
+                patches
+                    .map(|patch| patch.stiffness)
+                    .any(|factor| factor != 1.0)
+            }
+            Self::Tension => plan.tube.muscles.iter().any(|muscle| !muscle.grows()),
+            Self::FoundationForce => !plan.tube.foundations.is_empty(),
+            Self::ContactPressure => plan.contact,
+            _ => true,
+        };
+        Self::ALL.into_iter().filter(exists).collect()
     }
 
     /// Returns the name on the command line.
@@ -82,6 +100,9 @@ impl Field {
             Self::GrownAlong => "theta-zeta",
             Self::GrownAround => "theta-eta",
             Self::Displacement => "displacement",
+            Self::StiffnessFactor => "stiffness-factor",
+            Self::Tension => "tension",
+            Self::FoundationForce => "foundation-force",
             Self::ContactPressure => "contact-pressure",
         }
     }
@@ -124,6 +145,12 @@ impl Field {
                 let moved = [0, 1, 2].map(|i| sample.position[i] - sample.reference[i]);
                 above_rounding(moved.iter().map(|x| x * x).sum::<f64>().sqrt())
             }
+            Self::StiffnessFactor => sample.stiffness,
+            Self::Tension => sample.tension,
+            Self::FoundationForce => {
+                let square: f64 = sample.foundation.iter().map(|x| x * x).sum();
+                above_rounding(square.sqrt())
+            }
             Self::ContactPressure => sample.contact_pressure,
         }
     }
@@ -151,6 +178,9 @@ impl Field {
             Self::AxialStress => stress("axial stress", "*σ*_{ζ}"),
             Self::RadialStress => stress("radial stress", "*σ*_{ξ}"),
             Self::ContactPressure => stress("pressure of contact", "*p*_{c}"),
+            Self::StiffnessFactor => plain("stiffness factor of patches"),
+            Self::Tension => stress("tension of muscles", "*T*"),
+            Self::FoundationForce => stress("force of foundations per area", "*f*"),
             Self::VolumeChange => plain("elastic volume ratio det *F*_{e}"),
             Self::LargestStretch => plain("largest elastic stretch *λ*_{1}"),
             Self::SmallestStretch => plain("smallest elastic stretch *λ*_{3}"),
@@ -270,6 +300,8 @@ mod tests {
                 | Field::HoopStress
                 | Field::AxialStress
                 | Field::RadialStress
+                | Field::Tension
+                | Field::FoundationForce
                 | Field::ContactPressure => ("(kPa)", 20.0),
                 _ => ("", 1.0),
             };
