@@ -14,6 +14,9 @@ pub enum Role {
     Other,
 }
 
+/// Words for W where it includes the potential of tensions, and is not the strain energy.
+pub(super) const WITH_TENSIONS: &str = "energy *W* with tensions";
+
 /// A quantity with one value per state.
 #[derive(Clone, Debug)]
 pub struct Column {
@@ -139,11 +142,17 @@ impl Column {
         let Some(first) = cells.first() else {
             return vec![];
         };
+        let of_muscles = rows.iter().flat_map(|row| &row.muscles);
+        let has_tension = of_muscles.map(|muscle| muscle.stretch).any(|s| s.is_none());
         let numbers = first.iter().zip(0..);
         let numbers = numbers.filter(|(cell, _)| cell.quantity != Quantity::Text);
         let mut columns: Vec<(usize, Self)> = numbers
             .map(|(cell, i)| {
-                let (rank, words, role) = meaning(&cell.name);
+                let (rank, mut words, role) = meaning(&cell.name);
+                if has_tension && ["energy", "potential"].contains(&cell.name.as_str()) {
+                    words = words.replace("strain energy *W*", WITH_TENSIONS);
+                    words = words.replace("strain energy", WITH_TENSIONS);
+                }
                 let label = match scale.unit(cell.quantity) {
                     Some(name) => format!("{words} ({})", unit(name)),
                     None => words,

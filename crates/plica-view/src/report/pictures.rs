@@ -1,5 +1,6 @@
 //! Standard pictures of a run.
 
+use super::columns::WITH_TENSIONS;
 use super::labels::{scale_bar, unit};
 use super::manometry::Manometry;
 use super::orientation::upward_angle;
@@ -80,7 +81,11 @@ pub fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>
 /// Returns the label of the energy axis.
 pub(super) fn energy_label(plan: &Plan) -> String {
     let scale = Scale::of(plan.units.as_ref());
-    format!("strain energy *W* ({})", unit(&scale.energy_name))
+    let name = match plan.tube.muscles.iter().all(|muscle| muscle.grows()) {
+        true => "strain energy *W*",
+        false => WITH_TENSIONS,
+    };
+    format!("{name} ({})", unit(&scale.energy_name))
 }
 
 /// Plots the strain energy along the path.

@@ -33,8 +33,11 @@ use std::collections::BTreeSet;
 pub struct Findings {
     /// The stages, in order. State 0, which belongs to none, is left out.
     pub stages: Vec<StageEnd>,
-    /// Minima and maxima of the strain energy inside the stages.
+    /// Minima and maxima of W inside the stages.
     pub extremes: Vec<Extreme>,
+    /// True if a muscle has an active stress: W then includes the potential of its tension.
+    #[serde(skip)]
+    pub has_tension: bool,
     /// Maxima and minima of the pressure inside the stages, in a run that drives the volume of the lumen.
     pub pressure_extremes: Vec<PressureExtreme>,
     /// Steps made by relaxation after Newton's method had failed; the tube may have jumped to another branch.
@@ -210,6 +213,10 @@ impl Findings {
         Self {
             stages: stages.map(stage).collect(),
             extremes: extremes::extremes(&path),
+            has_tension: rows
+                .iter()
+                .flat_map(|row| &row.muscles)
+                .any(|m| m.stretch.is_none()),
             pressure_extremes: pressure::extremes(&path),
             jumps: extremes::jumps(&path),
             square: path.intervals(|row| row.shape == Shape::Square),

@@ -37,7 +37,11 @@ impl Findings {
     }
 
     fn energy(&self, energy: f64) -> String {
-        format!("W = {} {}", number(energy, 6), self.energy_unit)
+        let name = match self.has_tension {
+            true => "W with tensions",
+            false => "W",
+        };
+        format!("{name} = {} {}", number(energy, 6), self.energy_unit)
     }
 
     fn length(&self, length: f64) -> String {
@@ -73,14 +77,15 @@ impl Findings {
         (format!("stage {}", stage.name), line)
     }
 
-    /// Describes extremes of the strain energy.
+    /// Describes extremes of W.
     fn energy_lines(&self) -> Vec<Line> {
+        // With tensions W is not the energy that is stored.
+        let names = match self.has_tension {
+            true => ["minimum of W", "maximum of W"],
+            false => ["energy minimum", "energy maximum"],
+        };
         let line = |extreme: &super::Extreme| {
-            let name = if extreme.is_minimum {
-                "energy minimum"
-            } else {
-                "energy maximum"
-            };
+            let name = names[usize::from(!extreme.is_minimum)];
             let jump = match (extreme.is_at_jump, extreme.is_minimum) {
                 (false, _) => "",
                 (true, true) => ", after a jump",
@@ -101,7 +106,7 @@ impl Findings {
         }
         if !self.energy_minima().any(|_| true) {
             let none = "none inside a stage".to_owned();
-            lines.insert(0, ("energy minimum".into(), none));
+            lines.insert(0, (names[0].into(), none));
         }
         lines
     }
