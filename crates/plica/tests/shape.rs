@@ -15,11 +15,18 @@ fn run(text: &str) -> (Study, Vec<State>) {
 
 #[test]
 fn a_cone_under_pressure_has_the_hoop_stress_of_a_membrane() {
+    // A dead load of this size is nearly a pressure.
+    for load in ["pressure", "dead_load"] {
+        cone_under(load);
+    }
+}
+
+fn cone_under(inner_wall: &str) {
     let text = "[tube]\nlength = 1.5\nthickness = 0.02\ndiameter_along = [[0.0, 1.0], [1.5, 0.7]]\n\
                 [material.neo-hookean]\npoisson_ratio = 0.3\n\
                 [mesh]\ncontrol_points = { axial = 40, around = 60, thickness = 5 }\n\
-                [[stages]]\nsteps = 1\ndrive.inner-wall.pressure = 1e-5";
-    let (study, states) = run(text);
+                [[stages]]\nsteps = 1\ndrive.inner-wall.";
+    let (study, states) = run(&format!("{text}{inner_wall} = 1e-5"));
     let [first, last] = [0, 1].map(|i| &states[i]);
     assert!(
         first.energy == 0.0 && first.relative_residual < 1e-6,
@@ -200,4 +207,22 @@ fn tables_offsets_and_volumes_are_in_the_unit_of_the_case() {
         (wider * (23.5_f64 / 11.0).powi(2) - 1.0).abs() < 1e-3,
         "{wider}"
     );
+}
+
+#[test]
+fn springs_hold_a_cone_that_its_ends_push_along() {
+    // Its ends move together by d, and the springs pull back with k A d, A the area of the outer face.
+    let (k, d) = (1e-4, 1e-4);
+    let text = format!(
+        "[tube]\nlength = 1.5\nthickness = 0.06\ndiameter_along = [[0.0, 1.0], [1.5, 0.7]]\n\
+         [mesh]\ncontrol_points = {{ axial = 20, around = 60, thickness = 4 }}\n\
+         [[foundations]]\nstiffness = {k:e}\n\
+         [[stages]]\nsteps = 1\ndrive.colon.displacement = {d:e}\ndrive.ileum.displacement = {d:e}\n"
+    );
+    let (_, states) = run(&text);
+    let area = PI * (0.5 + 0.35) * 0.15_f64.hypot(1.5);
+    // Positive if they pull the end outwards, so that the colon end pushes.
+    let [colon, ileum] = [0, 1].map(|end| states[1].reactions[end].axial_force());
+    let found = ileum - colon;
+    assert!((found / (k * area * d) - 1.0).abs() < 1e-3, "{found}");
 }
