@@ -13,6 +13,32 @@ use plica_view::vtk::collection;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// Content of a kind of files.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Content {
+    /// A geometry of the wall with its fields.
+    Wall(Geometry),
+    /// The surfaces of the obstacles.
+    Obstacles,
+}
+
+impl Content {
+    /// Returns the name of its folder and its collection.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Wall(geometry) => geometry.name(),
+            Self::Obstacles => "obstacles",
+        }
+    }
+
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Wall(geometry) => geometry.extension(),
+            Self::Obstacles => "vtp",
+        }
+    }
+}
+
 /// Exports states of a run to VTK files.
 pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let run = ExistingRun::open(&arguments.run)?;
@@ -24,18 +50,18 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
         (_, []) => state == last,
         (_, states) => states.contains(&state),
     };
-    let mut files: Vec<(Geometry, usize)> = run
-        .saved
-        .keys()
-        .map(|&state| (Geometry::Walls, state))
-        .collect();
+    let all = |what: Content| run.saved.keys().map(move |&state| (what, state));
+    let mut files: Vec<(Content, usize)> = all(Content::Wall(Geometry::Walls)).collect();
     if run.plan.symmetry == Symmetry::Axisymmetric {
-        files.extend(run.saved.keys().map(|&state| (Geometry::Meridian, state)));
+        files.extend(all(Content::Wall(Geometry::Meridian)));
+    }
+    if !run.plan.tube.obstacles.is_empty() {
+        files.extend(all(Content::Obstacles));
     }
     for state in run.saved.keys().copied().filter(|&state| selected(state)) {
-        files.push((Geometry::Volume, state));
+        files.push((Content::Wall(Geometry::Volume), state));
         if arguments.linear {
-            files.push((Geometry::Linear, state));
+            files.push((Content::Wall(Geometry::Linear), state));
         }
     }
     let interrupt = Interrupt::listen()?;
@@ -149,14 +175,17 @@ struct Work<'a> {
     exporter: Exporter,
     run: &'a ExistingRun,
     /// Numbers of files and bytes of each kind.
-    written: BTreeMap<Geometry, (usize, usize)>,
+    written: BTreeMap<Content, (usize, usize)>,
 }
 
 impl Work<'_> {
     /// Writes one file.
-    fn write(&mut self, what: Geometry, number: usize) -> Result<(), Failure> {
+    fn write(&mut self, what: Content, number: usize) -> Result<(), Failure> {
         let (state, row) = self.run.state(number)?;
-        let bytes = self.exporter.file(what, &state, &row);
+        let bytes = match what {
+            Content::Wall(geometry) => self.exporter.file(geometry, &state, &row),
+            Content::Obstacles => self.exporter.obstacles_file(&state, &row),
+        };
         let name = format!("{}/state-{number:04}.{}", folder(what), what.extension());
         let written = self.run.directory.write(&name, &bytes);
         written?;
@@ -167,17 +196,17 @@ impl Work<'_> {
 }
 
 /// Returns the directory of the files of a kind, relative to the run.
-fn folder(what: Geometry) -> String {
+fn folder(what: Content) -> String {
     format!("vtk/{}", what.name())
 }
 
 /// Returns the collection of the files of a kind, relative to the run.
-fn collection_of(what: Geometry) -> String {
+fn collection_of(what: Content) -> String {
     format!("vtk/{}.pvd", what.name())
 }
 
 /// Writes the collection of all existing files of a kind.
-fn collect(directory: &RunDirectory, what: Geometry) -> Result<(), Failure> {
+fn collect(directory: &RunDirectory, what: Content) -> Result<(), Failure> {
     let list = || directory.numbered(&folder(what), what.extension());
     let mut files = list()?;
     loop {

@@ -318,6 +318,7 @@ fn the_columns_of_the_history_are_documented() {
     row.muscles[1].stretch = None;
     let mut row = row.with_pressures().with_contact().with_obstacles(&["O"]);
     row = row.with_patches(&["P"]).with_foundations();
+    row = row.with_contact_angles();
     row = row.with_sideways_ends().with_lumen_pressure();
     for wall in &mut row.contact.walls {
         (wall.friction_force, wall.friction_work) = (Some(0.0), Some(0.0));

@@ -6,6 +6,7 @@
 //! | [`report`] | pictures, plots and animations of a run |
 //! | [`page`] | one or several runs as an HTML page |
 //! | [`export`] | states as VTK files for ParaView and PyVista |
+//! | [`obstacle_shapes`] | surfaces and sections of rigid obstacles |
 //! | [`vtk`] | writers for VTK files |
 //! | [`law_chart`] | curves of mechanical tests of laws |
 //!
@@ -33,6 +34,7 @@
 pub mod draw;
 pub mod export;
 pub mod law_chart;
+pub mod obstacle_shapes;
 pub mod page;
 pub mod report;
 pub mod sampled_tube;

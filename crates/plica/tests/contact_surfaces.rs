@@ -5,7 +5,7 @@ use plica::assembly::{Barrier, Point, SplineTube};
 use plica::contact::Face;
 use plica::equilibrium::{TubeProblem, test_stability};
 use plica::solve::{Method, Path};
-use plica::study::{Plan, Study};
+use plica::study::{Plan, RangeChanges, Study, half_range};
 use std::f64::consts::PI;
 
 /// Range of contact, in D: wide, so that a coarse mesh resolves it.
@@ -113,6 +113,7 @@ fn a_ring_that_flattens_closes_its_lumen_and_goes_no_further() {
     let tube = SplineTube::new(&plan.tube, &plan.mesh, 48);
     let inner = plan.tube.inner_radius();
     let mut touching = 0;
+    let mut last = None;
     let mut effort = [(0, 0); 2];
     for state in study {
         let state = state.unwrap();
@@ -135,8 +136,17 @@ fn a_ring_that_flattens_closes_its_lumen_and_goes_no_further() {
                 state.number
             );
         }
-        let contact = state.contact.unwrap();
+        let contact = state.contact.as_ref().unwrap();
         let touches = contact.faces[1].is_some();
+        let [from, to] = contact.angles.unwrap()[1].map(f64::to_degrees);
+        if touches {
+            // Opposite walls touch, at 90° and 270°.
+            assert!((180.0..220.0).contains(&(to - from)), "{from} {to}");
+            let off = (0.5 * (from + to)).rem_euclid(180.0);
+            assert!(off.min(180.0 - off) < 1.0, "{from} {to}");
+        } else {
+            assert_eq!([from, to], [0.0; 2]);
+        }
         touching += usize::from(touches);
         if state.energy < 1e-5 {
             // Nearly round.
@@ -145,8 +155,15 @@ fn a_ring_that_flattens_closes_its_lumen_and_goes_no_further() {
         let (solves, iterations) = &mut effort[usize::from(touches)];
         *solves += state.linear_solves;
         *iterations += state.inner_iterations;
+        last = Some(state);
     }
     assert!(touching >= 3, "{touching}");
+    let last = last.unwrap();
+    let half = half_range(&plan, &last.load, &last.unknowns, &mut ()).unwrap();
+    let RangeChanges { energy, force } = half.changes.unwrap();
+    // Walls that come closer are bent more.
+    assert!(energy > 1e-4 && energy < 0.05, "{energy}");
+    assert!(force.abs() < 0.2 && half.linear_solves < 60, "{half:?}");
     // Iterations for a solve of a flat ring.
     let [apart, together] = effort.map(|(solves, iterations)| iterations as f64 / solves as f64);
     assert!(apart > 0.0 && together < 3.0 * apart, "{apart} {together}");

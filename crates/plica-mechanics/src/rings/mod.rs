@@ -21,11 +21,13 @@
 //! | g, g' | Σ N_b over the functions of a ring, and its slope | [`RingValues::axial`] |
 //! | t, t' | Σ N_b exp(i φ_b), and its slope | [`RingValues::rotated`] |
 
+mod arc;
 mod circulant;
 mod harmonic_solver;
 mod low_harmonic_correction;
 mod transform;
 
+pub use arc::shortest_arc;
 pub use circulant::Circulant;
 pub use harmonic_solver::HarmonicSolver;
 pub use low_harmonic_correction::LowHarmonicCorrection;

@@ -23,7 +23,9 @@ mod active_stress;
 mod columns;
 mod contact;
 mod contact_pressure;
+mod creases;
 mod cross_checks;
+mod elastica;
 mod error;
 mod exact;
 mod friction;
@@ -252,6 +254,12 @@ pub const CHECKS: &[Check] = &[
         "main-case",
         "the main case of the paper",
         main_case::main_case,
+    ),
+    quick("biot", "instability of a compressed surface", creases::biot),
+    slow(
+        "creases",
+        "creases of a compressed surface",
+        creases::creases,
     ),
     slow(
         "main-case-radii",

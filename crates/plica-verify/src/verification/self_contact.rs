@@ -1,6 +1,7 @@
 //! Contact of the wall with itself: a ring that flattens under pressure, and a fold of one ring and of many.
 
 use super::VerificationError;
+use super::elastica::{flat_load, touching_load};
 use super::report::Recorder;
 use super::tube_model::{TubeModel, tight_settings};
 use plica::assembly::{Barrier, Point, SplineTube};
@@ -8,10 +9,7 @@ use plica::contact::FaceContact;
 use plica::equilibrium::TubeProblem;
 use plica::solve::Path;
 use plica::tube::{Axial, Imperfection, Load, Part, Shape, Wave};
-
-/// Pressure p R³/EI at which opposite walls of an inextensible ring touch (Flaherty, Keller and Rubinow 1972; the elastica
-/// solved independently).
-const TOUCH: f64 = 5.24689;
+use std::f64::consts::PI;
 
 /// Returns the problem with contact of a range, in D.
 fn touching(problem: &TubeProblem, range: f64) -> TubeProblem {
@@ -22,62 +20,136 @@ fn touching(problem: &TubeProblem, range: f64) -> TubeProblem {
     TubeProblem::new((*problem.tube).clone().with_barrier(barrier)).with_contact()
 }
 
-/// Returns p R³/EI at which opposite walls of a ring with a thickness, in D, come within the range of contact.
-fn touching_pressure(thickness: f64) -> Result<f64, VerificationError> {
-    let middle = 0.5 - 0.5 * thickness;
-    let (poisson_ratio, range) = (0.3, 1e-4);
-    let mut model = TubeModel::new(0.05, thickness, poisson_ratio, [1, 96, 1]);
-    model.tube.imperfections.push(Imperfection {
-        of: Part::Geometry,
-        amplitude: 2e-4,
-        shape: Shape::Wave(Wave::new(2, 0.0, Axial::Uniform)),
-    });
-    // A sector of half the ring.
-    let problem = touching(&model.problem(48), range);
-    let bending = thickness.powi(3) / 12.0 / (1.0 - poisson_ratio * poisson_ratio);
-    // The pressure acts on the outer circle.
-    let unit = bending / (0.5 * middle * middle);
-    let start = problem.tube.initial_guess();
-    let mut path = Path::begin(&problem, model.tube.rest(), start, tight_settings())?;
-    let mut advance = |pressure: f64, steps: usize| -> Result<f64, VerificationError> {
-        path.begin_segment(model.under_pressure([0.0, pressure * unit]));
-        for n in 1..=steps {
-            path.advance(n as f64 / steps as f64, &mut ())?;
-        }
-        let state = path.state();
-        let at = Point {
-            z: 0.5 * model.tube.length,
-            radius: model.tube.inner_radius(),
-            angle: 0.5 * std::f64::consts::PI,
-        };
-        let sample = problem.tube.sample(&state.load, &state.u, at);
-        Ok(2.0 * sample.position[2] - range)
-    };
-    for (pressure, steps) in [(2.8, 2), (3.2, 8)] {
-        advance(pressure, steps)?;
-    }
-    let mut p = [4.6, 4.9];
-    let mut gap = [advance(p[0], 7)?, advance(p[1], 1)?];
-    for _ in 0..8 {
-        let next = p[1] - gap[1] * (p[1] - p[0]) / (gap[1] - gap[0]);
-        (p, gap) = ([p[1], next], [gap[1], advance(next, 1)?]);
-        if gap[1].abs() < 1e-7 {
-            break;
-        }
-    }
-    Ok(p[1])
+/// A thin ring under outer pressure, flattened to an oval.
+struct FlatRing {
+    model: TubeModel,
+    problem: TubeProblem,
+    path: Path<TubeProblem>,
+    /// Pressure of p R³/EI = 1.
+    unit: f64,
+    /// Radius of the middle surface at rest.
+    middle: f64,
 }
 
-/// Records the pressure at which opposite walls of a thin ring touch.
+impl FlatRing {
+    /// Range of contact, in D.
+    const RANGE: f64 = 1e-4;
+
+    /// Makes a ring with a thickness, in D, and flattens it.
+    fn new(thickness: f64) -> Result<Self, VerificationError> {
+        let (poisson_ratio, middle) = (0.3, 0.5 - 0.5 * thickness);
+        let mut model = TubeModel::new(0.05, thickness, poisson_ratio, [1, 96, 1]);
+        model.tube.imperfections.push(Imperfection {
+            of: Part::Geometry,
+            amplitude: 2e-4,
+            shape: Shape::Wave(Wave::new(2, 0.0, Axial::Uniform)),
+        });
+        // A sector of half the ring.
+        let problem = touching(&model.problem(48), Self::RANGE);
+        let bending = thickness.powi(3) / 12.0 / (1.0 - poisson_ratio * poisson_ratio);
+        let start = problem.tube.initial_guess();
+        let rest = model.tube.rest();
+        let mut ring = Self {
+            path: Path::begin(problem.clone(), rest, start, tight_settings())?,
+            model,
+            problem,
+            // The pressure acts on the outer circle.
+            unit: bending / (0.5 * middle * middle),
+            middle,
+        };
+        ring.advance(2.8, 2)?;
+        ring.advance(3.2, 8)?;
+        Ok(ring)
+    }
+
+    /// Follows the ring to a pressure p R³/EI.
+    fn advance(&mut self, pressure: f64, steps: usize) -> Result<(), VerificationError> {
+        let load = self.model.under_pressure([0.0, pressure * self.unit]);
+        self.path.begin_segment(load);
+        for n in 1..=steps {
+            self.path.advance(n as f64 / steps as f64, &mut ())?;
+        }
+        Ok(())
+    }
+
+    /// Returns the position across the axis of a point of a circle, at an angle from the place of contact.
+    fn position(&self, radius: f64, angle: f64) -> [f64; 2] {
+        let state = self.path.state();
+        let at = Point {
+            z: 0.5 * self.model.tube.length,
+            radius,
+            angle: 0.5 * PI + angle,
+        };
+        let [_, x, y] = self.problem.tube.sample(&state.load, &state.u, at).position;
+        [x, y]
+    }
+
+    /// Returns the distance of the opposite walls beyond the range of contact.
+    fn gap(&self) -> f64 {
+        2.0 * self.position(self.model.tube.inner_radius(), 0.0)[1] - Self::RANGE
+    }
+
+    /// Returns the curvature of the middle surface times its radius at rest; positive for a circle.
+    fn curvature(&self, angle: f64) -> f64 {
+        let h = 0.01;
+        let [a, b, c] = [-h, 0.0, h].map(|d| self.position(self.middle, angle + d));
+        let slope = [0, 1].map(|i| (c[i] - a[i]) / (2.0 * h));
+        let second = [0, 1].map(|i| (c[i] - 2.0 * b[i] + a[i]) / (h * h));
+        let size = slope[0].hypot(slope[1]);
+        self.middle * (slope[0] * second[1] - slope[1] * second[0]) / size.powi(3)
+    }
+
+    /// Returns the curvature at the place of contact, extrapolated by a parabola from beside it: contact at a distance
+    /// spreads the force over a small length, which rounds off the kink that a force at one point gives the curvature.
+    fn curvature_at_contact(&self) -> f64 {
+        let [near, middle, far] = [1.0, 2.0, 3.0].map(|n| self.curvature(0.15 * n));
+        3.0 * (near - middle) + far
+    }
+
+    /// Follows the ring until a quantity is zero, by the secant method from two pressures. Returns p R³/EI there.
+    fn zero(
+        &mut self,
+        mut p: [f64; 2],
+        of: impl Fn(&Self) -> f64,
+    ) -> Result<f64, VerificationError> {
+        self.advance(p[0], 7)?;
+        let first = of(self);
+        self.advance(p[1], 2)?;
+        let mut values = [first, of(self)];
+        for _ in 0..8 {
+            let next = p[1] - values[1] * (p[1] - p[0]) / (values[1] - values[0]);
+            self.advance(next, 1)?;
+            (p, values) = ([p[1], next], [values[1], of(self)]);
+            if (p[1] - p[0]).abs() < 1e-6 {
+                break;
+            }
+        }
+        Ok(p[1])
+    }
+}
+
+/// Records the pressures at which opposite walls of a thin ring touch, and at which they become flat where they touch.
 pub fn flat_ring(recorder: &mut Recorder<'_>) -> Result<(), VerificationError> {
     recorder.case("ring that flattens under outer pressure")?;
-    let [thick, thin] = [0.01, 0.005].map(touching_pressure);
-    let (thick, thin) = (thick?, thin?);
+    let loads = |thickness: f64| -> Result<[f64; 2], VerificationError> {
+        let mut ring = FlatRing::new(thickness)?;
+        let touch = ring.zero([4.6, 4.9], FlatRing::gap)?;
+        let flat = ring.zero([9.4, 9.9], FlatRing::curvature_at_contact)?;
+        Ok([touch, flat])
+    };
+    let (thick, thin) = (loads(0.01)?, loads(0.005)?);
+    let [touch, flat] = [0, 1].map(|i| 2.0 * thin[i] - thick[i]);
     recorder.relative(
         2e-3,
         "p R³/EI at which opposite walls touch, extrapolated to no thickness from H = 0.01 and 0.005 D",
-        2.0 * thin - thick,
-        (TOUCH, "elastica"),
+        touch,
+        (touching_load()?, "elastica"),
+    );
+    recorder.relative(
+        5e-3,
+        "p R³/EI at which they are flat where they touch, likewise",
+        flat,
+        (flat_load()?, "elastica"),
     );
     Ok(())
 }

@@ -25,6 +25,7 @@ mod fields;
 mod point;
 mod points;
 
+use crate::obstacle_shapes::bodies;
 use crate::sampled_tube::SampledTube;
 use crate::vtk::{Cells, Column, Document, Lattice, Series};
 use fields::{FIELDS, OF_CONTACT, OF_FOUNDATIONS, OF_PATCHES, OF_TENSIONS};
@@ -33,6 +34,7 @@ use plica::saved_state::SavedState;
 use plica::study::{Plan, Row, Scale};
 use plica::tube::Load;
 use points::{Points, boundary_lattice, meridian_lattice, volume_lattice};
+use std::f64::consts::TAU;
 
 /// Converts states of a run to VTK files.
 pub struct Exporter {
@@ -106,6 +108,9 @@ const FACETS: [usize; 2] = [96, 240];
 
 /// Largest number of intervals of a meridian, through the wall and along.
 const INTERVALS: [usize; 2] = [3, 180];
+
+/// Name of the field with the number of the obstacle, from 0 in the order of the case, that a cell belongs to.
+const OBSTACLE: &str = "obstacle";
 
 /// Name of the field with the face of the wall that a cell of the surface belongs to.
 const FACE: &str = "face";
@@ -187,6 +192,28 @@ impl Exporter {
             cells,
             faces,
         }
+    }
+
+    /// Returns the bytes of a file (`.vtp`) with the surfaces of the obstacles in a state, endless ones cut off near the ends of
+    /// the tube.
+    pub fn obstacles_file(&self, state: &SavedState, row: &Row) -> Vec<u8> {
+        let (mut points, mut corners, mut numbers) = (vec![], vec![], vec![]);
+        let length = self.scale.length;
+        for body in bodies(&self.tube, &state.load) {
+            let grid = body.surface.grid([0.0, TAU]);
+            for triangle in grid.triangles() {
+                corners.extend(triangle.map(|corner| (points.len() + corner) as i64));
+                numbers.push(body.obstacle as i64);
+            }
+            let in_order = |&[z, x, y]: &[f64; 3]| [x, y, z].map(|x| length * x);
+            points.extend(grid.points.iter().map(in_order));
+        }
+        let mut file = Document::surface(&points, &Cells::triangles(corners));
+        file.cell_data(OBSTACLE, numbers.into_iter());
+        for (name, value) in values(row) {
+            file.field_data(name, value);
+        }
+        file.bytes()
     }
 
     /// Returns the names of the fields of a state.

@@ -3,6 +3,7 @@
 use crate::draw::ColourMap;
 #[cfg(test)]
 use crate::draw::ResolvedRange;
+use crate::obstacle_shapes::{Body, BodySurface, bodies};
 use crate::report::{Field, FieldScales};
 use crate::sampled_tube::{FieldSample, SampledTube};
 use base64::Engine;
@@ -12,6 +13,7 @@ use flate2::write::ZlibEncoder;
 use plica::assembly::{Point, SplineTube};
 use plica::saved_state::SavedState;
 use plica::study::Plan;
+use plica::tube::ObstacleShape;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -56,12 +58,63 @@ pub struct Scene {
     pub radius: f64,
     /// Fields.
     pub fields: Vec<Colouring>,
+    /// Obstacles in each state; empty without obstacles.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub obstacles: Vec<Vec<Obstacle>>,
     /// Rows of the history of the states.
     pub rows: Vec<usize>,
     /// Number of points with a missing value.
     pub missing: usize,
     /// All states, compressed with zlib and encoded as base64.
     pub data: String,
+}
+
+/// An obstacle near the tube: a profile turned about an axis, or a quadrilateral.
+#[derive(Clone, Debug, Serialize)]
+pub struct Obstacle {
+    /// Points (along, distance from the axis of the body); empty for a quadrilateral.
+    profile: Vec<[f64; 2]>,
+    /// Position (up, towards the viewer) of the axis.
+    axis: [f64; 2],
+    /// Corners (along, up, towards the viewer), two rows of two; none of a body with an axis.
+    corners: Option<[[f64; 3]; 4]>,
+    /// True for a body that would hide the tube.
+    translucent: bool,
+}
+
+impl Obstacle {
+    /// Returns the obstacles in a state, in a unit of length of which D has `length`; the angle `upwards` points up.
+    fn all(tube: &SplineTube, state: &SavedState, upwards: f64, length: f64) -> Vec<Self> {
+        let (sin, cos) = upwards.sin_cos();
+        // A ten thousandth of the diameter is invisible.
+        let rounded = |x: f64| length * (1e4 * x).round() / 1e4;
+        let turned = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin].map(rounded);
+        let of_body = |body: Body| {
+            let translucent = matches!(
+                body.shape,
+                ObstacleShape::Sheath | ObstacleShape::Plate { .. }
+            );
+            match body.surface {
+                BodySurface::Revolved { profile, axis } => Self {
+                    profile: profile.into_iter().map(|p| p.map(rounded)).collect(),
+                    axis: turned(axis),
+                    corners: None,
+                    translucent,
+                },
+                BodySurface::Flat(corners) => Self {
+                    profile: vec![],
+                    axis: [0.0; 2],
+                    corners: Some(corners.map(|[z, x, y]| {
+                        let [up, front] = turned([x, y]);
+                        [rounded(z), up, front]
+                    })),
+                    translucent,
+                },
+            }
+        };
+        let all = bodies(tube, &state.load).into_iter();
+        all.map(of_body).collect()
+    }
 }
 
 /// A field and its colours.
@@ -141,6 +194,7 @@ impl Scene {
             diameter: Field::Displacement.label(plan).1,
             radius: 0.0,
             fields: vec![],
+            obstacles: vec![],
             rows,
             missing: 0,
             data: String::new(),
@@ -214,6 +268,13 @@ impl Scene {
             diameter: length,
             radius: walls.iter().map(Wall::radius).fold(0.0, f64::max),
             fields: colouring.collect(),
+            obstacles: match plan.tube.obstacles.is_empty() {
+                true => vec![],
+                false => states
+                    .iter()
+                    .map(|state| Obstacle::all(&tube, state, upwards, length))
+                    .collect(),
+            },
             rows: states.iter().map(|state| state.row).collect(),
             missing: walls.iter().map(Wall::missing).sum(),
             data: packed(&data),

@@ -6,6 +6,7 @@ mod field_scale;
 mod labels;
 mod manometry;
 mod modes;
+mod obstacles;
 mod orientation;
 mod pictures;
 mod plots;

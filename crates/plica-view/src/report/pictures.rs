@@ -3,6 +3,7 @@
 use super::columns::WITH_TENSIONS;
 use super::labels::{scale_bar, unit};
 use super::manometry::Manometry;
+use super::obstacles::obstacles;
 use super::orientation::upward_angle;
 use super::selection::{Abscissa, Selection};
 use super::surfaces::{SurfaceOptions, tube_surfaces};
@@ -183,10 +184,15 @@ fn cutaway(
         factor,
         ..SurfaceOptions::half(tube)
     };
-    let panel = |look: &SurfaceOptions, state: &Wall<'_>| Panel {
-        label: state.label.clone(),
-        surfaces: tube_surfaces(&tube.state(state.load, state.u), upwards, look),
-        ..Panel::default()
+    let panel = |look: &SurfaceOptions, state: &Wall<'_>| {
+        let obstacles = obstacles(tube, state.load, upwards, Cutaway::default().toward);
+        let mut surfaces = tube_surfaces(&tube.state(state.load, state.u), upwards, look);
+        surfaces.extend(obstacles.solid);
+        Panel {
+            label: state.label.clone(),
+            surfaces,
+            translucent: obstacles.translucent,
+        }
     };
     let picture = Cutaway {
         title: plan.title.clone(),

@@ -1,6 +1,7 @@
 //! Pictures of single states, and animations of a path.
 
 use super::labels::{scale_bar, state_label};
+use super::obstacles::obstacles;
 use super::orientation::upward_angle;
 use super::pictures::energy_label;
 use super::surfaces::{SurfaceOptions, tube_surfaces};
@@ -191,10 +192,12 @@ fn panel(
     let sampled = tube.state(&state.load, &state.u);
     let surfaces = |look: &SurfaceOptions| tube_surfaces(&sampled, upwards, look);
     let removed = look.removed().filter(|_| shown.see_through);
+    let removed = removed.map(|look| surfaces(&look)).unwrap_or_default();
+    let obstacles = obstacles(tube, &state.load, upwards, shown.toward);
     Panel {
         label: state_label(row),
-        surfaces: surfaces(look),
-        translucent: removed.map(|look| surfaces(&look)).unwrap_or_default(),
+        surfaces: [surfaces(look), obstacles.solid].concat(),
+        translucent: [removed, obstacles.translucent].concat(),
     }
 }
 

@@ -3,6 +3,7 @@
 use super::VISIBLE_ASYMMETRY;
 use super::labels::unit;
 use crate::draw::{Chart, Curve, Stroke};
+use crate::obstacle_shapes::sections;
 use plica::assembly::SplineTube;
 use plica::measure::{Asymmetry, Face, Meridians};
 use plica::study::{Plan, Scale};
@@ -69,6 +70,7 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
             });
         }
     }
+    curves.extend(obstacles(tube, states, angles, length));
     curves.push(Curve {
         label: "inner wall".into(),
         stroke: Stroke::Thin,
@@ -109,4 +111,50 @@ pub(super) fn walls(plan: &Plan, tube: &SplineTube, states: &[Wall<'_>]) -> Char
         curves,
         ..Chart::default()
     }
+}
+
+/// Returns the sections of obstacles by the half-planes at angles, the second below the axis: in the colour of their state, or
+/// black if they are the same in all states.
+fn obstacles(tube: &SplineTube, states: &[Wall<'_>], angles: &[f64], length: f64) -> Vec<Curve> {
+    let first = states.first().map(|state| &state.load.obstacles);
+    let mut curves = vec![];
+    for (number, obstacle) in tube.tube.obstacles.iter().enumerate() {
+        let is_placed_as_first = |state: &Wall<'_>| {
+            first.is_some_and(|first| first[number] == state.load.obstacles[number])
+        };
+        let moves = !states.iter().all(is_placed_as_first);
+        let shown = match moves {
+            true => states,
+            false => &states[..states.len().min(1)],
+        };
+        let before = curves.len();
+        for (colour, state) in shown.iter().enumerate() {
+            let mut points = vec![];
+            for (&angle, side) in angles.iter().zip([1.0, -1.0]) {
+                let sections = sections(tube, state.load, angle).into_iter();
+                let own = sections.filter(|section| section.obstacle == number);
+                for line in own.flat_map(|section| section.lines) {
+                    points.extend(line.iter().map(|[z, r]| (length * z, length * side * r)));
+                    points.push((f64::NAN, f64::NAN));
+                }
+            }
+            if !points.is_empty() {
+                curves.push(Curve {
+                    label: String::new(),
+                    points,
+                    colour: if moves { colour + 1 } else { 0 },
+                    stroke: Stroke::Dashed,
+                    ..Curve::default()
+                });
+            }
+        }
+        if curves.len() > before {
+            curves.push(Curve {
+                label: obstacle.name.clone(),
+                stroke: Stroke::Dashed,
+                ..Curve::default()
+            });
+        }
+    }
+    curves
 }

@@ -22,6 +22,19 @@ pub struct Cells {
     pub cell_type: u8,
 }
 
+impl Cells {
+    /// Makes triangles of the indices of their points, three each.
+    pub fn triangles(points: Vec<i64>) -> Self {
+        Self {
+            points,
+            points_per_cell: 3,
+            cell_type: TRIANGLE,
+        }
+    }
+}
+
+/// VTK_TRIANGLE.
+const TRIANGLE: u8 = 5;
 /// VTK_QUAD.
 const QUADRILATERAL: u8 = 9;
 /// VTK_HEXAHEDRON.

@@ -9,6 +9,10 @@ pub struct ContactReport {
     pub energy: f64,
     /// Contact of the outer face and of the inner face; none where a face touches itself nowhere.
     pub faces: [Option<FaceContact>; 2],
+    /// First and last angle at rest, in radians, of the shortest arc with all points of the outer and of the inner face in
+    /// contact, modulo the angle of the sector, see [`shortest_arc`](crate::rings::shortest_arc); zero where a face touches
+    /// itself nowhere. None of an axisymmetric tube.
+    pub angles: Option<[[f64; 2]; 2]>,
     /// Stretch and turning of the outer and the inner face.
     pub surfaces: [FaceSurface; 2],
     /// Friction of the outer face and of the inner face with itself; none without friction.

@@ -36,6 +36,7 @@ pub(super) fn clear(path: &Path) -> Result<(), RunError> {
         ("vtk/meridian", "vtp"),
         ("vtk/volume", "vtu"),
         ("vtk/linear", "vtu"),
+        ("vtk/obstacles", "vtp"),
     ];
     for (folder, ending) in OF_STATES.into_iter().chain(exported) {
         let mine = |file: &Path, ending| number_of_state(file, ending).is_some();
@@ -45,7 +46,7 @@ pub(super) fn clear(path: &Path) -> Result<(), RunError> {
     old.extend(parts(path, &["report.html."]));
     old.extend(parts(
         &path.join("vtk"),
-        &["walls.", "meridian.", "volume.", "linear."],
+        &["walls.", "meridian.", "volume.", "linear.", "obstacles."],
     ));
     old.extend(files(&path.join("pictures")).filter(|file| {
         let name = file
@@ -59,7 +60,8 @@ pub(super) fn clear(path: &Path) -> Result<(), RunError> {
             || is_part
     }));
     old.extend(
-        ["walls", "meridian", "volume", "linear"].map(|what| path.join(format!("vtk/{what}.pvd"))),
+        ["walls", "meridian", "volume", "linear", "obstacles"]
+            .map(|what| path.join(format!("vtk/{what}.pvd"))),
     );
     old.push(path.join("vtk/walls.vtkhdf"));
     remove(old)

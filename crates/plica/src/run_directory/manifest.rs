@@ -2,7 +2,7 @@
 
 use super::{PROGRAM, RunDirectory, RunError, STABILITY, Verdict};
 use crate::equilibrium::Stability;
-use crate::study::{Ending, Plan, Row, Scale};
+use crate::study::{Ending, HalfRange, Plan, Row, Scale};
 use serde::Serialize;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -70,6 +70,9 @@ pub(super) struct Manifest {
     /// True in a run with friction, which the stability test leaves out; none without friction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stability_without_friction: Option<bool>,
+    /// Changes of the last state with half the range of contact; none if it touches nothing or was not reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub half_contact_range: Option<HalfRange>,
     /// Profiles and saved states that are missing or damaged at the end of the run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_files: Vec<String>,
@@ -112,6 +115,7 @@ impl Manifest {
             states_closed: 0,
             states_touching: plan.contact.then_some(0),
             states_unresolved: plan.contact.then_some(0),
+            half_contact_range: None,
             stability_without_friction: plan.has_friction().then_some(true),
             missing_files: vec![],
             stability: None,

@@ -8,9 +8,9 @@ use super::{
 };
 use crate::contact::{self, PressureField};
 use crate::measure::{Face, Meridians};
-use crate::monitor::Monitor;
+use crate::monitor::{Monitor, Part};
 use crate::saved_state::{Array, FRICTION, SavedState};
-use crate::study::{Condition, Ending, Plan, Row, Scale, State, Study, StudyError};
+use crate::study::{Condition, Ending, Plan, Row, Scale, State, Study, StudyError, half_range};
 use std::collections::BTreeSet;
 
 /// A study and the run directory that its states are written to.
@@ -217,7 +217,10 @@ impl<'a> Run<'a> {
     pub fn next_row(&mut self, monitor: &mut dyn Monitor) -> Result<Option<&Row>, RunError> {
         let state = match self.study.next_state(monitor) {
             Some(Ok(state)) => state,
-            Some(Err(StudyError::Lost(_))) | None => return Ok(None),
+            Some(Err(StudyError::Lost(_))) | None => {
+                self.halve_contact_range(monitor);
+                return Ok(None);
+            }
             Some(Err(error)) => return Err(error.into()),
         };
         // A file may not be found because the directory has just been moved.
@@ -231,6 +234,19 @@ impl<'a> Run<'a> {
         }
         written?;
         Ok(self.rows.last())
+    }
+
+    /// Compares the last state of a complete run, if it touches something, with that of half the range of contact.
+    fn halve_contact_range(&mut self, monitor: &mut dyn Monitor) {
+        let touches = self.rows.last().is_some_and(|row| {
+            row.contact.touches() || row.obstacles.iter().any(|obstacle| obstacle.area > 0.0)
+        });
+        let is_complete = self.study.ending() == Some(&Ending::Complete);
+        if let Some(at) = self.study.continuation().filter(|_| touches && is_complete) {
+            let monitor = &mut Part::new(monitor, "halving the range of contact", 1.0, 0.0);
+            self.manifest.half_contact_range =
+                half_range(self.plan, &at.load, &at.unknowns, monitor);
+        }
     }
 
     /// Ends the run after the last state, which fulfils the condition at which it was to stop. The run is complete, and can be
@@ -273,7 +289,8 @@ impl<'a> Run<'a> {
             self.snapshots,
             ending,
             self.directory.path(),
-        ))
+        )
+        .with_half_range(self.manifest.half_contact_range))
     }
 
     /// Writes files again that another program has removed or changed; returns the error that stops the run.

@@ -1,6 +1,6 @@
 //! The result of a run, and its closing table.
 
-use crate::study::{Ending, Findings, Plan, Row, Scale};
+use crate::study::{Ending, Findings, HalfRange, Plan, RangeChanges, Row, Scale};
 use crate::tube::Load;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -21,6 +21,7 @@ pub struct Summary {
     snapshots: Vec<Option<Snapshot>>,
     ending: Ending,
     findings: Findings,
+    half_range: Option<HalfRange>,
     directory: PathBuf,
 }
 
@@ -39,8 +40,21 @@ impl Summary {
             rows,
             snapshots,
             ending,
+            half_range: None,
             directory: directory.to_owned(),
         }
+    }
+
+    /// Adds what half the range of contact changes in the last state.
+    #[must_use]
+    pub(super) fn with_half_range(mut self, found: Option<HalfRange>) -> Self {
+        self.half_range = found;
+        self
+    }
+
+    /// Returns what half the range of contact changes in the last state; none if that touches nothing, or with friction.
+    pub fn half_range(&self) -> Option<HalfRange> {
+        self.half_range
     }
 
     /// Returns whether every stage was completed.
@@ -78,6 +92,16 @@ impl fmt::Display for Summary {
         }
         for (name, value) in lines {
             writeln!(f, "  {name:<22} {value}")?;
+        }
+        if let Some(HalfRange { changes, .. }) = self.half_range {
+            let line = match changes {
+                Some(RangeChanges { energy, force }) => format!(
+                    "half of it changes W of the last state by {:+.1e} and the contact force by {force:+.1e} (relative)",
+                    energy
+                ),
+                None => "no equilibrium was found for the last state with half of it".to_owned(),
+            };
+            writeln!(f, "  {:<22} {line}", "range of contact")?;
         }
         writeln!(f, "  {:<22} {}", "written to", self.directory.display())
     }

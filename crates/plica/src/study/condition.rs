@@ -2,6 +2,7 @@
 
 use super::{Plan, Quantity, Row};
 use crate::measure::Shape;
+use crate::tube::Symmetry;
 use std::fmt;
 
 /// A condition on an accepted state.
@@ -120,6 +121,9 @@ fn zero(plan: &Plan) -> Row {
     let patches = plan.tube.patches.iter();
     let patches: Vec<&str> = patches.map(|patch| patch.name.as_str()).collect();
     row = row.with_obstacles(&obstacles).with_patches(&patches);
+    if plan.symmetry != Symmetry::Axisymmetric {
+        row = row.with_contact_angles();
+    }
     if !plan.tube.foundations.is_empty() {
         row = row.with_foundations();
     }

@@ -35,6 +35,9 @@ pub struct WallContactRow {
     pub from: Option<f64>,
     /// Axial position at rest of the last point in contact.
     pub to: Option<f64>,
+    /// First and last angle at rest of the shortest arc with all points in contact, from 0 to 360°; the last may lie beyond.
+    /// Of one of the sectors into which the symmetry divides the tube. None of an axisymmetric tube.
+    pub angles_deg: [Option<f64>; 2],
     /// Smallest surface stretch s = λ₁² λ₂: [`FaceSurface::stretch`](crate::contact::FaceSurface::stretch).
     pub surface_stretch: Option<f64>,
     /// Largest angle by which the wall turns within one element: [`FaceSurface::turn`](crate::contact::FaceSurface::turn).
@@ -59,6 +62,10 @@ impl ContactRow {
                 gap: of(|face| face.gap).map(|gap| length * gap),
                 from: of(|face| face.from_to[0]).map(|z| length * z),
                 to: of(|face| face.from_to[1]).map(|z| length * z),
+                angles_deg: match contact.angles {
+                    None => [None; 2],
+                    Some(angles) => angles[i].map(|angle| Some(angle.to_degrees())),
+                },
                 surface_stretch: Some(surface.stretch),
                 element_turn_deg: Some(surface.turn.to_degrees()),
                 friction_force: friction.map(|on| scale.force * on.force),
@@ -108,6 +115,9 @@ impl ContactRow {
             v.optional(&format!("contact_gap_{name}"), Length, &mut wall.gap);
             v.optional(&format!("contact_from_{name}"), Length, &mut wall.from);
             v.optional(&format!("contact_to_{name}"), Length, &mut wall.to);
+            for (end, angle) in ["from", "to"].iter().zip(&mut wall.angles_deg) {
+                v.optional(&format!("contact_angle_{end}_deg_{name}"), Degrees, angle);
+            }
             let [stretch, turn] =
                 ["surface_stretch", "element_turn_deg"].map(|of| format!("{of}_{name}"));
             v.optional(&stretch, Ratio, &mut wall.surface_stretch);
@@ -140,5 +150,12 @@ impl WallContactRow {
     /// Returns whether the wall touches itself.
     pub fn touches(&self) -> bool {
         self.area.is_some_and(|area| area > 0.0)
+    }
+
+    /// Returns the first and last axial position in contact, and the angles if the tube is not axisymmetric.
+    pub fn place(&self) -> ([f64; 2], Option<[f64; 2]>) {
+        let ends = [self.from, self.to].map(Option::unwrap_or_default);
+        let [from, to] = self.angles_deg;
+        (ends, from.zip(to).map(|(from, to)| [from, to]))
     }
 }

@@ -13,6 +13,7 @@
 
 mod changes;
 mod condition;
+mod contact_range;
 mod contact_row;
 mod error;
 pub mod findings;
@@ -35,6 +36,7 @@ mod work;
 
 pub use changes::forbidden_changes;
 pub use condition::Condition;
+pub use contact_range::{HalfRange, RangeChanges, half_range};
 use contact_row::WALLS;
 pub use contact_row::{ContactRow, RESOLVED_TURN_DEG, WallContactRow};
 pub use error::StudyError;

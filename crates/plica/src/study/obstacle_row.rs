@@ -27,6 +27,9 @@ pub struct ObstacleRow {
     pub from: f64,
     /// Axial position at rest of the last point in contact.
     pub to: f64,
+    /// First and last angle at rest of the shortest arc with all points in contact, as
+    /// [`WallContactRow::angles_deg`](super::WallContactRow::angles_deg); none of an axisymmetric tube.
+    pub angles_deg: [Option<f64>; 2],
     /// Work that has been done on it so far to move it or to change its radius.
     pub work: f64,
     /// Sum of the sizes of the friction forces; this and the next column exist only for an obstacle with friction.
@@ -58,6 +61,10 @@ impl ObstacleRow {
             gap: length * contact.gap,
             from: length * from,
             to: length * to,
+            angles_deg: match contact.angles {
+                None => [None; 2],
+                Some(angles) => angles.map(|angle| Some(angle.to_degrees())),
+            },
             work: 0.0,
             friction_force: contact.friction.map(|on| scale.force * on.force),
             friction_work: contact.friction.map(|on| scale.energy * on.dissipated),
@@ -66,7 +73,7 @@ impl ObstacleRow {
 
     /// Visits the columns other than that of the work.
     pub(super) fn visit(&mut self, v: &mut impl Visitor) {
-        use Quantity::{Area, Energy, Force, Length};
+        use Quantity::{Area, Degrees, Energy, Force, Length};
         let name = &self.name;
         v.cell(&format!("radius_{name}"), Length, &mut self.radius);
         for (axis, x) in ["x", "y", "z"].iter().zip(&mut self.position) {
@@ -81,6 +88,9 @@ impl ObstacleRow {
         v.cell(&format!("contact_gap_{name}"), Length, &mut self.gap);
         v.cell(&format!("contact_from_{name}"), Length, &mut self.from);
         v.cell(&format!("contact_to_{name}"), Length, &mut self.to);
+        for (end, angle) in ["from", "to"].iter().zip(&mut self.angles_deg) {
+            v.optional(&format!("contact_angle_{end}_deg_{name}"), Degrees, angle);
+        }
         let force = &mut self.friction_force;
         v.optional(&format!("friction_force_{name}"), Force, force);
         let work = &mut self.friction_work;

@@ -362,6 +362,20 @@ impl Row {
         self
     }
 
+    /// Adds the angles of contact, with zeros, to the columns of walls that may touch themselves and of obstacles.
+    #[must_use]
+    pub fn with_contact_angles(mut self) -> Self {
+        let has_contact = self.has_contact();
+        let walls = self.contact.walls.iter_mut().filter(|_| has_contact);
+        let obstacles = self.obstacles.iter_mut();
+        for angles in (walls.map(|wall| &mut wall.angles_deg))
+            .chain(obstacles.map(|obstacle| &mut obstacle.angles_deg))
+        {
+            *angles = angles.map(|angle| Some(angle.unwrap_or_default()));
+        }
+        self
+    }
+
     /// Returns whether the outer wall runs back along the axis: it has an angle of 90° or more and an overhang.
     pub fn overhangs(&self) -> bool {
         self.max_wall_angle_deg >= 90.0 && self.overhang > 0.0

@@ -6,9 +6,9 @@ use crate::equilibrium::{TubeProblem, prolong};
 use crate::monitor::Monitor;
 use crate::saved_state::Layout;
 use crate::solve::{
-    Effort, Equilibrium, Failure, Method, PathError, Solution, Step, newton, relaxation,
+    Effort, Equilibrium, Failure, Method, PathError, Settings, Solution, Step, newton, relaxation,
 };
-use crate::tube::{Mesh, Symmetry, Tube};
+use crate::tube::{Load, Mesh, Symmetry, Tube};
 
 /// Transfers a saved state to the mesh of a problem and brings it to equilibrium.
 pub(super) fn equilibrate(
@@ -18,11 +18,21 @@ pub(super) fn equilibrate(
     monitor: &mut dyn Monitor,
 ) -> Result<(Vec<f64>, Step), PathError<Inverted>> {
     let u = transferred(plan, problem, start);
-    let (load, settings) = (&start.load, &plan.solver);
+    find(problem, &start.load, &u, &plan.solver, monitor)
+}
+
+/// Finds an equilibrium from a displacement near it, by Newton's method or by relaxation.
+pub(super) fn find(
+    problem: &TubeProblem,
+    load: &Load,
+    u: &[f64],
+    settings: &Settings,
+    monitor: &mut dyn Monitor,
+) -> Result<(Vec<f64>, Step), PathError<Inverted>> {
     let mut effort = Effort::default();
     let mut attempts = vec![];
     for method in [Method::Newton, Method::Relaxation] {
-        let (u, effort) = (u.clone(), &mut effort);
+        let (u, effort) = (u.to_vec(), &mut effort);
         let found = match method {
             Method::Newton => newton(problem, load, u, settings, effort, monitor),
             _ => relaxation(problem, load, u, settings, effort, monitor),

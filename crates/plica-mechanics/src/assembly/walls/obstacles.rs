@@ -8,6 +8,7 @@ use super::super::blocks::Block;
 use super::super::kinematics::Vector;
 use super::LoadedWall;
 use super::friction::ObstacleFriction;
+use crate::rings::shortest_arc;
 use crate::tube::{Distance, Load, Obstacle, ObstacleShape, Placement, turned};
 
 /// An obstacle in the places where the cyclic sectors of the tube repeat it.
@@ -50,6 +51,9 @@ pub struct ObstacleContact {
     pub gap: f64,
     /// Axial positions at rest of the first and the last point in contact, in D; none without contact.
     pub from_to: Option<[f64; 2]>,
+    /// First and last angle at rest of the shortest arc with all points in contact, in radians, modulo the angle of the sector:
+    /// see [`shortest_arc`]. Zero without contact; none of an axisymmetric tube.
+    pub angles: Option<[f64; 2]>,
     /// Friction, where the history of the state is known; see [`SplineTube::friction_on_obstacles`].
     pub friction: Option<ObstacleFriction>,
 }
@@ -104,19 +108,31 @@ impl SplineTube {
             area: 0.0,
             gap: f64::INFINITY,
             from_to: None,
+            angles: None,
             friction: None,
         };
         let mut contacts = vec![nothing; self.tube.obstacles.len()];
         if contacts.is_empty() {
             return contacts;
         }
+        let mut angles: Vec<Vec<f64>> = vec![vec![]; contacts.len()];
         for wall in self.loaded_walls(load) {
             self.visit_wall(&wall, [u], |point, [position], area| {
                 for obstacle in &wall.obstacles {
                     let sum = &mut contacts[obstacle.number];
-                    obstacle.add_to(sum, position, (point.z, area), &wall);
+                    if obstacle.add_to(sum, position, (point.z, area), &wall) {
+                        let turns = point.element as f64 + point.around.s - 0.5;
+                        angles[obstacle.number].push(turns * self.sector.angle());
+                    }
                 }
             });
+        }
+        if self.sector.rings > 1 {
+            let (element, rings) = (self.sector.angle(), self.sector.rings as f64);
+            for (contact, angles) in contacts.iter_mut().zip(angles) {
+                let arc = shortest_arc(angles, rings * element, element);
+                contact.angles = Some(arc.unwrap_or_default());
+            }
         }
         contacts
     }
@@ -205,14 +221,15 @@ impl PlacedObstacle {
         [along, across * x, across * y].map(|x| share * x)
     }
 
-    /// Adds the contact of a point with area `area` and the axial position `z` at rest.
+    /// Adds the contact of a point with area `area` and the axial position `z` at rest. Returns whether there is one.
     fn add_to(
         &self,
         sum: &mut ObstacleContact,
         position: [f64; 3],
         (z, area): (f64, f64),
         wall: &LoadedWall,
-    ) {
+    ) -> bool {
+        let mut touches = false;
         sum.copies = self.copies.len();
         for copy in &self.copies {
             let Distance { gap, normal, .. } = copy.shape.distance(&copy.placement, position);
@@ -220,6 +237,7 @@ impl PlacedObstacle {
             if gap >= wall.barrier.range {
                 continue;
             }
+            touches = true;
             let jet = wall.barrier.continued(gap);
             sum.energy += area * jet.value;
             sum.force -= area * jet.slope;
@@ -239,6 +257,7 @@ impl PlacedObstacle {
             let [from, to] = sum.from_to.unwrap_or([z, z]);
             sum.from_to = Some([from.min(z), to.max(z)]);
         }
+        touches
     }
 }
 

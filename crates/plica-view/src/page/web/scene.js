@@ -85,6 +85,53 @@ class Grid {
   }
 }
 
+/** The obstacles of a state. */
+class Obstacles {
+  constructor(scene) {
+    this.states = scene.obstacles ?? [];
+    this.middle = 0.5 * (scene.low[0] + scene.high[0]);
+    this.group = new THREE.Group();
+    const material = { color: 0x969696, side: THREE.DoubleSide };
+    this.solid = new THREE.MeshLambertMaterial(material);
+    this.ghost = new THREE.MeshLambertMaterial({ ...material, transparent: true, opacity: 0.14, depthWrite: false });
+  }
+
+  /** Shows those of a state. */
+  show(state) {
+    this.group.children.forEach((mesh) => mesh.geometry.dispose());
+    this.group.clear();
+    for (const body of this.states[state] ?? []) {
+      const mesh = new THREE.Mesh(this.surface(body), body.translucent ? this.ghost : this.solid);
+      mesh.frustumCulled = false;
+      this.group.add(mesh);
+    }
+  }
+
+  /** Returns the surface of a body: its profile turned about its axis, or its four corners. */
+  surface({ profile, axis, corners }) {
+    const around = 64;
+    const grid = corners ? new Grid(0, 2, 2, false) : new Grid(0, profile.length, around + 1, true);
+    const point = (c, r) => {
+      if (corners) return corners[2 * r + c];
+      const [z, radius] = profile[c];
+      const angle = (2 * Math.PI * r) / around;
+      return [z, axis[0] + radius * Math.cos(angle), axis[1] + radius * Math.sin(angle)];
+    };
+    const made = geometry(grid.vertices);
+    const triangles = [];
+    for (let r = 0; r < grid.rows; r++) {
+      for (let c = 0; c < grid.columns; c++) {
+        const [z, x, y] = point(c, r);
+        made.attributes.position.array.set([z - this.middle, x, y], 3 * grid.at(c, r));
+      }
+      if (r > 0) grid.strip(r - 1, triangles);
+    }
+    made.setIndex(triangles);
+    refresh(made, [grid]);
+    return made;
+  }
+}
+
 /** A tube as two meshes: the faces and ends, and the two cut faces. */
 class Tube {
   constructor(walls, colours) {
@@ -119,11 +166,14 @@ class Tube {
     this.cutMesh = new THREE.Mesh(this.cuts, this.solid);
     this.group.add(new THREE.Mesh(this.shell, [this.solid, this.ghost]), this.cutMesh);
     this.group.children.forEach((mesh) => (mesh.frustumCulled = false));
+    this.obstacles = new Obstacles(walls.scene);
+    this.group.add(this.obstacles.group);
   }
 
   /** Shows a state coloured by a field from `low` to `high`, with `degrees` of the wall removed. */
   show(state, field, [low, high], degrees, ghost) {
     const { walls } = this;
+    this.obstacles.show(state);
     const { along, through, around, meridians } = walls;
     const [z, x, y] = walls.coordinates(state);
     const values = walls.values(state, field);

@@ -1,4 +1,4 @@
-//! A tree of boxes around the elements of a curve.
+//! Trees of boxes around the elements of a curve, and around their derivatives.
 
 use super::bezier::{Bezier, Point};
 
@@ -24,11 +24,33 @@ impl Box2 {
         })
     }
 
-    fn and(self, other: Self) -> Self {
+    /// Returns the smallest box around two.
+    pub fn and(self, other: Self) -> Self {
         Self {
             low: [0, 1].map(|i| self.low[i].min(other.low[i])),
             high: [0, 1].map(|i| self.high[i].max(other.high[i])),
         }
+    }
+
+    /// Returns the smallest product of a vector of one box with one of the other; infinite if one is empty.
+    pub fn least_product(&self, other: &Self) -> f64 {
+        (0..2)
+            .map(|i| {
+                let [a, b] = [[self.low[i], self.high[i]], [other.low[i], other.high[i]]];
+                let products = a.into_iter().flat_map(|a| b.map(|b| a * b));
+                products.fold(f64::INFINITY, f64::min)
+            })
+            .sum()
+    }
+
+    /// Returns whether all vectors of two boxes have a positive product with the sum of their middles.
+    pub fn run_forward(&self, other: &Self) -> bool {
+        let middle = |of: &Self| [0, 1].map(|i| 0.5 * (of.low[i] + of.high[i]));
+        let [a, b] = [middle(self), middle(other)];
+        let direction = Self::around([[a[0] + b[0], a[1] + b[1]]]);
+        [self, other]
+            .iter()
+            .all(|of| of.least_product(&direction) > 0.0)
     }
 
     /// Returns whether two boxes are at most `distance` apart along each axis.
@@ -94,6 +116,11 @@ impl BoxTree {
         })
     }
 
+    /// Makes the tree of the differences of the control points of curves, in which their derivatives lie.
+    pub fn of_slopes(curves: &[Bezier]) -> Self {
+        Self::new(curves.len(), |e| Box2::around(curves[e].differences()))
+    }
+
     fn fill(&mut self, node: Node, of: &impl Fn(usize) -> Box2) -> Box2 {
         self.nodes[node.index] = if node.is_element() {
             of(node.first)
@@ -139,6 +166,68 @@ impl BoxTree {
     }
 }
 
+/// Returns the elements of curves, each with another or itself, whose boxes are at most `distance` apart and whose normals may be
+/// 90° apart or more, in order.
+pub fn near_and_turned(curves: &[Bezier], distance: f64) -> Vec<(usize, usize)> {
+    let search = Search {
+        points: BoxTree::of_curves(curves),
+        slopes: BoxTree::of_slopes(curves),
+        distance,
+    };
+    let mut found = vec![];
+    if !curves.is_empty() {
+        search.within(search.points.root(), &mut found);
+    }
+    found.sort_unstable();
+    found
+}
+
+/// A search for pairs of elements.
+struct Search {
+    points: BoxTree,
+    slopes: BoxTree,
+    distance: f64,
+}
+
+impl Search {
+    fn are_turned(&self, a: Node, b: Node) -> bool {
+        let [a, b] = [a, b].map(|node| self.slopes.around(node));
+        a.least_product(b) <= 0.0
+    }
+
+    fn within(&self, node: Node, found: &mut Vec<(usize, usize)>) {
+        if !self.are_turned(node, node) {
+            return;
+        }
+        if node.is_element() {
+            found.push((node.first, node.first));
+            return;
+        }
+        let [left, right] = node.halves();
+        self.within(left, found);
+        self.within(right, found);
+        self.between(left, right, found);
+    }
+
+    fn between(&self, a: Node, b: Node, found: &mut Vec<(usize, usize)>) {
+        let [near, other] = [a, b].map(|node| self.points.around(node));
+        if !near.is_within(self.distance, other) || !self.are_turned(a, b) {
+            return;
+        }
+        if a.is_element() && b.is_element() {
+            found.extend([(a.first, b.first), (b.first, a.first)]);
+            return;
+        }
+        let (whole, other) = match a.end - a.first >= b.end - b.first {
+            true => (a, b),
+            false => (b, a),
+        };
+        for half in whole.halves() {
+            self.between(half, other, found);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,6 +249,32 @@ mod tests {
                     .filter(|&e| of(e).is_within(distance, &at))
                     .collect();
                 assert_eq!(found, expected, "{count}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_search_finds_the_pairs_that_a_loop_finds() {
+        for (waves, height) in [(0.0, 0.0), (1.0, 0.2), (5.0, 0.4), (9.0, 2.0)] {
+            let point = |x: f64| [x, height * (waves * x).sin()];
+            let curve = |e: usize| {
+                let at = |i: usize| point(0.1 * (e as f64 + i as f64 / 3.0));
+                Bezier::new((0..4).map(at))
+            };
+            let curves: Vec<Bezier> = (0..61).map(curve).collect();
+            let around = |e: usize| Box2::around(curves[e].points().iter().copied());
+            let slopes = |e: usize| Box2::around(curves[e].differences());
+            for distance in [0.0, 0.05, 0.5] {
+                let of = |e: usize| {
+                    let (around, slopes) = (&around, &slopes);
+                    (0..61).filter_map(move |f| {
+                        let is_near = around(e).is_within(distance, &around(f));
+                        (is_near && slopes(e).least_product(&slopes(f)) <= 0.0).then_some((e, f))
+                    })
+                };
+                let expected: Vec<(usize, usize)> = (0..61).flat_map(of).collect();
+                assert_eq!(near_and_turned(&curves, distance), expected);
+                assert_eq!(expected.is_empty(), height * waves < 0.5, "{waves}");
             }
         }
     }

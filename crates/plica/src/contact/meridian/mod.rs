@@ -145,6 +145,7 @@ impl MeridianContact {
         let mut report = ContactReport {
             energy: 0.0,
             faces: [None; 2],
+            angles: None,
             surfaces: self.surfaces(tube, load, u),
             friction: None,
         };

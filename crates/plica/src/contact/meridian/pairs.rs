@@ -1,7 +1,7 @@
 //! Pairs of points of a meridian that are in contact.
 
 use super::bezier::{Bezier, Point, dot, length, minus};
-use super::boxes::{Box2, BoxTree};
+use super::boxes::near_and_turned;
 use super::curve::FaceCurve;
 use super::nearest::local_minima;
 use crate::assembly::{Barrier, BarrierJet};
@@ -75,26 +75,22 @@ pub fn pairs(
     u: &[f64],
 ) -> Vec<Pair> {
     let curves = face.curves(u);
-    let tree = BoxTree::of_curves(&curves);
-    let of_element = |e: usize| {
+    let mut near = near_and_turned(&curves, barrier.range);
+    near.retain(|&(e, other)| !all_face_the_same_side(&curves[e], &curves[other]));
+    let of_element = |near: &[(usize, usize)]| {
         let mut pairs = vec![];
-        let own = Box2::around(curves[e].points().iter().copied());
-        let mut others = vec![];
-        tree.near(&own, barrier.range, &mut |other| {
-            if !all_face_the_same_side(&curves[e], &curves[other]) {
-                others.push(other);
-            }
-        });
+        let e = near[0].0;
         for &(xi, weight) in &quadrature.points {
             let area = weight * quadrature.areas[e];
-            for &other in &others {
+            for &(_, other) in near {
                 let (x, y) = ((e, &curves[e], xi), (other, &curves[other]));
                 pairs_of_point(face, x, y, barrier, area, &mut pairs);
             }
         }
         pairs
     };
-    let by_element: Vec<Vec<Pair>> = (0..curves.len()).into_par_iter().map(of_element).collect();
+    let elements: Vec<&[(usize, usize)]> = near.chunk_by(|a, b| a.0 == b.0).collect();
+    let by_element: Vec<Vec<Pair>> = elements.into_par_iter().map(of_element).collect();
     by_element.concat()
 }
 

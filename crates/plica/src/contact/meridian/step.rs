@@ -57,6 +57,8 @@ impl Moving {
 struct Walk<'a> {
     curves: &'a [Moving],
     tree: BoxTree,
+    /// Derivatives at the start, and at the end of the whole step.
+    slopes: [BoxTree; 2],
     step: f64,
 }
 
@@ -71,14 +73,16 @@ pub fn longest_step(curves: &[Bezier], motions: &[Bezier]) -> f64 {
             motion: *motion,
         })
         .collect();
+    let at_end: Vec<Bezier> = moving.iter().map(|curve| curve.at(1.0)).collect();
     let tree = BoxTree::new(moving.len(), |e| {
-        let ends = [moving[e].curve, moving[e].at(1.0)];
+        let ends = [moving[e].curve, at_end[e]];
         Box2::around(ends.iter().flat_map(|curve| curve.points().to_vec()))
     });
     let mut walk = Walk {
         step: 1.0,
         curves: &moving,
         tree,
+        slopes: [BoxTree::of_slopes(curves), BoxTree::of_slopes(&at_end)],
     };
     if !moving.is_empty() {
         walk.within(walk.tree.root());
@@ -96,7 +100,20 @@ pub fn crosses_itself(curves: &[Bezier]) -> bool {
 }
 
 impl Walk<'_> {
+    /// Returns whether a direction exists along which all curves of a run of neighbours run forward at the start and at the end
+    /// of the whole step, so that they do so in between.
+    fn runs_forward(&self, nodes: &[Node]) -> bool {
+        let [start, end] = [0, 1].map(|i| {
+            let boxes = nodes.iter().map(|node| *self.slopes[i].around(*node));
+            boxes.fold(Box2::around([]), Box2::and)
+        });
+        start.run_forward(&end)
+    }
+
     fn within(&mut self, node: Node) {
+        if self.runs_forward(&[node]) {
+            return;
+        }
         if node.is_element() {
             let curves = self.curves;
             self.alone(&curves[node.first]);
@@ -109,7 +126,9 @@ impl Walk<'_> {
     }
 
     fn between(&mut self, a: Node, b: Node) {
-        if !self.tree.around(a).is_within(0.0, self.tree.around(b)) {
+        if !self.tree.around(a).is_within(0.0, self.tree.around(b))
+            || (a.end == b.first && self.runs_forward(&[a, b]))
+        {
             return;
         }
         if a.is_element() && b.is_element() {

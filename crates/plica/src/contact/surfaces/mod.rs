@@ -24,6 +24,7 @@ use super::report::FaceContact;
 use super::{ContactForces, ContactReport, Face};
 use crate::assembly::{Barrier, LowHarmonics, SplineTube};
 use crate::matrix::CoupledBanded;
+use crate::rings::shortest_arc;
 use crate::tube::Load;
 use average::AverageContact;
 use net::FaceNet;
@@ -178,11 +179,22 @@ impl SurfaceContact {
         let mut report = ContactReport {
             energy: 0.0,
             faces: [None; 2],
+            angles: None,
             surfaces: self.surfaces(tube, load, u),
             friction: None,
         };
+        let mut arcs = [[0.0; 2]; 2];
         for ((net, _), pairs) in self.faces.iter().zip(&*self.at(u).0) {
-            let face = &mut report.faces[usize::from(net.face == Face::Inner)];
+            let index = usize::from(net.face == Face::Inner);
+            let face = &mut report.faces[index];
+            let element = net.element_angle();
+            let angles = pairs.iter().map(|pair| {
+                // Element 0 is centred on angle zero.
+                let around = net.elements_of(pair.patches[0])[1];
+                (around as f64 + pair.places[0][1] - 0.5) * element
+            });
+            let arc = shortest_arc(angles, net.rings as f64 * element, element);
+            arcs[index] = arc.unwrap_or_default();
             // A point may belong to several pairs; its area counts once.
             let mut last = None;
             for pair in pairs {
@@ -197,6 +209,7 @@ impl SurfaceContact {
                 report.energy += self.repeats * pair.energy;
             }
         }
+        report.angles = Some(arcs);
         report
     }
 }

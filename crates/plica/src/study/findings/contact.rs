@@ -34,6 +34,13 @@ pub struct FirstTouch {
     pub wall: String,
     /// The state.
     pub at: Place,
+    /// Axial positions at rest of the first and the last point in contact there.
+    pub from_to: [f64; 2],
+    /// First and last angle at rest of the contact there, in degrees; none in an axisymmetric run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angles_deg: Option<[f64; 2]>,
+    /// All states in which the wall touches itself.
+    pub states: Vec<Interval>,
 }
 
 /// The smallest surface stretch of a path.
@@ -56,9 +63,13 @@ pub(super) fn contact(path: &Path<'_>) -> Option<Contact> {
         let at = rows
             .iter()
             .position(|row| row.contact.walls[wall].touches())?;
+        let (from_to, angles_deg) = rows[at].contact.walls[wall].place();
         Some(FirstTouch {
             wall: name(wall),
             at: path.place(at),
+            from_to,
+            angles_deg,
+            states: path.intervals(|row| row.contact.walls[wall].touches()),
         })
     };
     let stretches = rows.iter().enumerate().flat_map(|(i, row)| {

@@ -186,7 +186,10 @@ impl Findings {
     fn contact_lines(&self, found: &Contact) -> Vec<Line> {
         let first = found.first.iter();
         let first: Vec<String> = first
-            .map(|first| format!("the {} first at {}", first.wall, first.at))
+            .map(|first| {
+                let place = self.place(first.from_to, first.angles_deg);
+                format!("the {} first at {}, {place}", first.wall, first.at)
+            })
             .collect();
         let touches = match first.is_empty() {
             true => "in no state".to_owned(),
@@ -215,6 +218,21 @@ impl Findings {
             lines.push(("surface creases".into(), line));
         }
         lines
+    }
+
+    /// Describes a place of contact.
+    fn place(&self, ends: [f64; 2], angles: Option<[f64; 2]>) -> String {
+        let [from, to] = ends.map(|z| format!("{z:.3}"));
+        let along = match from == to {
+            true => format!("at z = {from}"),
+            false => format!("from z = {from} to {to}"),
+        };
+        let unit = &self.length_unit;
+        match angles {
+            None => format!("{along} {unit}"),
+            Some([0.0, 360.0]) => format!("{along} {unit} all around"),
+            Some([from, to]) => format!("{along} {unit}, around from {from:.0}° to {to:.0}°"),
+        }
     }
 
     /// Describes the work of friction.
