@@ -257,6 +257,11 @@ pub const CHECKS: &[Check] = &[
     ),
     quick("biot", "instability of a compressed surface", creases::biot),
     slow(
+        "flat-contact",
+        "a ring whose opposite walls touch along a line",
+        self_contact::flat_contact,
+    ),
+    slow(
         "creases",
         "creases of a compressed surface",
         creases::creases,
