@@ -30,6 +30,9 @@ pub enum Command {
     /// Compute a study of many tubes: a case with axes over its keys
     #[command(after_long_help = SWEEP_EPILOGUE)]
     Sweep(SweepArguments),
+    /// Follow branches of equilibria, stable or not, through folds and branch points
+    #[command(after_long_help = FOLLOW_EPILOGUE)]
+    Follow(FollowArguments),
     /// Compare Plica with closed forms and independent solutions
     #[command(after_long_help = VERIFY_EPILOGUE)]
     Verify(VerifyArguments),
@@ -116,6 +119,26 @@ pub struct RunArguments {
     /// equilibrium or was not tested for stability
     #[arg(long)]
     pub strict: bool,
+    /// The case file and the directories that it may read from
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// The number of threads
+    #[command(flatten)]
+    pub threads: Threads,
+}
+
+/// Arguments of `plica follow`.
+#[derive(Args, Debug)]
+pub struct FollowArguments {
+    /// Directory to write to [default: runs/NAME-branches for a case NAME.toml]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the branches in that directory
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Change a key of the case, for example continuation.between=[1.0,1.2]; may be repeated
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<Setting>,
     /// The case file and the directories that it may read from
     #[command(flatten)]
     pub case: CaseArguments,
@@ -414,6 +437,21 @@ fn tolerance(text: &str) -> Result<f64, String> {
         _ => Err("must be a number from 1e-9 to 1".into()),
     }
 }
+
+const FOLLOW_EPILOGUE: &str = "\
+The table [continuation] of the case names the parameter, its range, the events to locate and the modes to switch to. The
+stages up to `after` are run first; the branch begins at their last state.
+
+Files:
+  branches/NN.csv            states of a branch: arc length, parameter, unstable modes, measures
+  points.csv                 folds, branch points, losses of stability and other events
+  points/LABEL.safetensors   the states there, from which a case can start
+  modes/LABEL.safetensors    the critical modes
+  diagram-COLUMN.png, .svg   bifurcation diagrams: stable solid, unstable dashed
+
+Examples:
+  plica follow tube.toml
+  plica follow tube.toml --set continuation.of=inner-wall.pressure --set continuation.between=[0.0,0.05]";
 
 const EPILOGUE: &str = "\
 Examples:

@@ -8,6 +8,7 @@ mod diagnostics;
 mod existing_run;
 mod export;
 mod failure;
+mod follow;
 mod interrupt;
 mod law_text;
 mod materials;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Command::Resume(arguments) => run::resume(&arguments),
         Command::Stability(arguments) => stability::stability(&arguments),
         Command::Sweep(arguments) => sweep::sweep(&arguments),
+        Command::Follow(arguments) => follow::follow(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Command::Export(arguments) => export::export(&arguments),

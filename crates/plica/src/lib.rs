@@ -40,6 +40,7 @@
 //! - [`saved_state`]: the file format of a state;
 //! - [`stability`]: critical loads and modes of a run;
 //! - [`sweep`]: studies of many tubes;
+//! - [`branches`]: branches of equilibria, stable or not, with their folds and branch points;
 //! - [`measure`]: radii, angles, overhang and shape of deformed walls;
 //! - [`tube`], [`activation`], [`material`]: geometry, muscles and laws of a tube;
 //! - [`homogeneous`], [`fit`]: curves of mechanical tests of a law, its ellipticity, and fits to such tests;
@@ -53,6 +54,7 @@
 //! - [`solve`]: Newton's method, relaxation, and the path of equilibria, for any [`solve::Equilibrium`];
 //! - [`equilibrium`]: the tube as such a problem, and the stability test.
 
+pub mod branches;
 pub mod case;
 pub mod contact;
 pub mod equilibrium;

@@ -1,5 +1,6 @@
 //! Pictures, plots and animations of a run and of its stability analysis.
 
+mod branches;
 mod columns;
 mod field;
 mod field_scale;
@@ -17,6 +18,7 @@ mod stability;
 mod surfaces;
 mod walls;
 
+pub use branches::branch_diagrams;
 pub use columns::{Column, Role};
 pub use field::Field;
 pub use field_scale::FieldScales;

@@ -20,6 +20,8 @@ pub(super) struct Key {
 pub(super) enum Kind {
     /// One line of text.
     Text,
+    /// `["a", "b", …]`
+    Texts,
     /// `true` or `false`.
     Boolean,
     /// A whole number.

@@ -55,6 +55,9 @@ table! {
         /// The load stages, one after the other. Each begins where the one before ends, the first at rest
         /// or at `start`. Targets that a stage does not name stay as they are.
         stages: Vec<Stage> = required("[{ drive.circular.diameter_ratio = 0.5 }]");
+        /// The branch of equilibria that `plica follow` computes, stable or not. A run does not use it.
+        continuation: Option<Continuation> =
+            described("none", "{ of = \"longitudinal.length_ratio\", between = [1.0, 1.25] }");
         /// Small deviations from the perfect tube, which select the branch that it follows at a
         /// bifurcation. They are present from rest on, and add up. A shape lies between −1 and 1; the
         /// amplitude multiplies it.
@@ -174,6 +177,43 @@ table! {
         /// The number of times that it repeats around the tube, at equal angles. In a tube with an m-fold symmetry it repeats
         /// with the tube, too.
         repeat: usize = default("1").from(1.0).to(360.0);
+    }
+}
+
+table! {
+    Continuation {
+        /// The target that is the parameter of the branch, as a stage would drive it: `longitudinal.length_ratio`,
+        /// `inner-wall.pressure`, `ileum.displacement`. Several targets, separated by commas, have the same value. All
+        /// others stay as they are where the branch begins.
+        of: String = required("longitudinal.length_ratio");
+        /// The range of the parameter, in its unit. The branch begins at the value of the state where it begins, leads toward
+        /// the second number (and, in another part, toward the first), turns at folds, and ends where it leaves the range.
+        between: [f64; 2] = required("[1.0, 1.25]");
+        /// The name of the stage at whose end the branch begins.
+        after: Option<String> = described("the last one", "contract");
+        /// The events whose places are computed: `fold`, an extreme value of the parameter; `modes`, the loss and the recovery
+        /// of stability to each circumferential mode up to `output.stability_modes`, with branch points of mode 0;
+        /// `contact`, the first touch of the wall with itself; `energy`, an extreme value of the energy; or a column of the
+        /// history with a value, such as `max_wall_angle_deg = 90`.
+        locate: Vec<String> = described("[\"fold\", \"modes\"]", "[\"fold\", \"modes\", \"energy\", \"max_wall_angle_deg = 90\"]");
+        /// The modes to whose branches `plica follow` switches at the points where it finds them.
+        switch: Vec<Switch> = default("[]");
+        /// The longest step, as a fraction of the range.
+        longest_step: f64 = default("0.04").from(1e-4).to(0.5);
+        /// The largest number of points of a branch.
+        points: usize = default("300").from(2.0).to(100_000.0);
+        /// The columns of the history against which the diagram is drawn.
+        plot: Vec<String> = described("[\"energy\", \"max_wall_angle_deg\"]", "[\"energy\", \"overhang\"]");
+    }
+}
+
+table! {
+    Switch {
+        /// The circumferential mode: 0 follows both sides of the branch that crosses the first one. Of a mode m from 1 on, a
+        /// state with the mode added is written, from which a run with `symmetry = { fold = m }` (for 1: `"none"`) begins.
+        mode: usize = default("0").from(0.0).to(100.0);
+        /// The amplitude of the mode at the first point of the new branch: its largest displacement.
+        amplitude: f64 = default("0.01").unit("D").above(0.0).to(0.2);
     }
 }
 

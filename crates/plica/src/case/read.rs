@@ -420,6 +420,25 @@ impl Read for String {
     }
 }
 
+impl Read for Vec<String> {
+    const KIND: Kind = Kind::Texts;
+
+    fn read(problems: &mut Problems, key: &Key, path: &str, value: &Value) -> Option<Self> {
+        let texts = value.get_ref().as_array().and_then(|list| {
+            let text = |member: &Value| {
+                let text = member.get_ref().as_str()?;
+                let is_line = text.chars().count() <= 200 && !text.chars().any(char::is_control);
+                is_line.then(|| text.to_owned())
+            };
+            list.iter().map(text).collect::<Option<Self>>()
+        });
+        match texts {
+            Some(texts) => Some(texts),
+            None => wrong_type(problems, key, path, value),
+        }
+    }
+}
+
 impl Read for bool {
     const KIND: Kind = Kind::Boolean;
 
@@ -567,6 +586,7 @@ pub(super) fn wrong_type<T>(
 ) -> Option<T> {
     let rule = match key.kind {
         Kind::Text => "must be text, in quotes",
+        Kind::Texts => "must be a list of texts, each in quotes",
         Kind::Boolean => "must be true or false",
         Kind::Integer => "must be a whole number",
         Kind::Number => "must be a number",

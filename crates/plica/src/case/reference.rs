@@ -87,6 +87,7 @@ const HEAD: &str = "| key | value | default | meaning |\n|---|---|---|---|\n";
 fn row(path: &str, key: &Key) -> String {
     let kind = match key.kind {
         Kind::Text => "text".to_owned(),
+        Kind::Texts => "`[\"text\", …]`".to_owned(),
         Kind::Boolean => "`true` or `false`".to_owned(),
         Kind::Integer => "whole number".to_owned(),
         Kind::Number => "number".to_owned(),

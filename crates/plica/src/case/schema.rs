@@ -72,6 +72,7 @@ fn value(key: &Key) -> Map<String, Value> {
     let pair = numbers(2);
     let value = match key.kind {
         Kind::Text => json!({ "type": "string" }),
+        Kind::Texts => json!({ "type": "array", "items": { "type": "string" } }),
         Kind::Boolean => json!({ "type": "boolean" }),
         Kind::Integer => json!({ "type": "integer" }),
         Kind::Number => json!({ "type": "number" }),

@@ -16,6 +16,8 @@
 //! - [`conjugate_gradients`] and [`lowest`] solve linear systems and eigenvalue problems with an
 //!   [`Operator`] that is never assembled.
 //!
+//! [`arc`] follows branches of equilibria, stable or not, through folds and branch points.
+//!
 //! A [`Monitor`](crate::monitor::Monitor) may cancel each of them. The solvers of equilibrium states count their work in
 //! [`Effort`].
 //!
@@ -30,6 +32,7 @@
 
 #![allow(non_snake_case)] // the formulas keep the letters of their sources
 
+pub mod arc;
 #[cfg(test)]
 mod barrier_tests;
 mod conjugate_gradients;

@@ -57,7 +57,12 @@ impl Harmonics {
 
     /// Returns the number of negative eigenvalues of every mode at a state without twist.
     pub fn negative(&self, load: &Load, u: &[f64]) -> Vec<usize> {
-        let harmonics = self.harmonics.par_iter().enumerate();
+        self.negative_from(0, load, u)
+    }
+
+    /// Returns the number of negative eigenvalues of every mode from the mode `first` on.
+    pub fn negative_from(&self, first: usize, load: &Load, u: &[f64]) -> Vec<usize> {
+        let harmonics = self.harmonics.par_iter().enumerate().skip(first);
         harmonics
             .map(|(n, harmonic)| harmonic.negative(self.block(n, load, u)))
             .collect()

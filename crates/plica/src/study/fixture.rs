@@ -51,6 +51,7 @@ pub fn plan(symmetry: Symmetry) -> Plan {
         modes: vec![],
         materials: vec![],
         stages: vec![],
+        following: None,
         solver: Default::default(),
         output: Output::default(),
         units: None,

@@ -19,6 +19,7 @@ mod error;
 pub mod findings;
 #[cfg(test)]
 pub(crate) mod fixture;
+mod following;
 mod forecast;
 mod iterator;
 mod limit_point;
@@ -42,6 +43,7 @@ pub use contact_row::{ContactRow, RESOLVED_TURN_DEG, WallContactRow};
 pub use error::StudyError;
 pub use findings::Findings;
 pub use forecast::{Forecast, available_memory, check_memory, forecast, memory_bytes};
+pub use following::{Event, Following, Switch};
 pub use iterator::{Continuation, Ending, Study};
 pub use limit_point::LimitPoint;
 pub use lost::{Location, Lost, Phase};

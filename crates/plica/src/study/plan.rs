@@ -1,6 +1,6 @@
 //! The plan of a study: the checked, dimensionless content of a case.
 
-use super::Stage;
+use super::{Following, Stage};
 use crate::assembly::SplineTube;
 use crate::equilibrium::TubeProblem;
 use crate::saved_state::{Layout, SavedState, SavedStateError};
@@ -31,6 +31,8 @@ pub struct Plan {
     pub materials: Vec<MaterialFile>,
     /// The stages of load, in order.
     pub stages: Vec<Stage>,
+    /// The branch that `plica follow` computes; none if the case has no table for it.
+    pub following: Option<Following>,
     /// Settings of the solver.
     pub solver: Settings,
     /// Settings of the output.

@@ -142,6 +142,28 @@ impl State {
         self.sectors * self.sector_damping_work
     }
 
+    /// Evaluates an equilibrium of a branch, which belongs to no stage.
+    pub fn of_branch(
+        (plan, problem): (&Plan, &TubeProblem),
+        number: usize,
+        accepted: &crate::solve::State<Load>,
+        stability: Stability,
+    ) -> Self {
+        let at = Milestone {
+            number,
+            stage: "branch",
+            ends_stage: false,
+            stage_fraction: 0.0,
+            time: None,
+        };
+        let step = Step {
+            method: Method::Newton,
+            effort: Default::default(),
+            damping_work: 0.0,
+        };
+        Self::evaluate((plan, problem), None, &at, accepted, &step, stability, 0.0).0
+    }
+
     /// Evaluates an equilibrium that the solver has accepted. Returns what the work to the next state is computed from, too.
     pub(super) fn evaluate(
         (plan, problem): (&Plan, &TubeProblem),

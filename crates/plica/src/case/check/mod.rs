@@ -5,6 +5,7 @@
 //! mistake gives one message.
 
 mod contact;
+mod continuation;
 mod imperfections;
 pub(super) mod law;
 mod layers;
@@ -60,9 +61,10 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
     sideways::check(symmetry, &stages, problems);
     contact::check(case, symmetry, &tube, &stages, problems);
     obstacles::check(case, &tube, run, (&begin, &stages), problems);
+    let following = continuation::following(case, &tube, symmetry, (&begin, &stages), problems);
     let title = case.title.clone().unwrap_or_else(|| name.to_owned());
     let output = &case.output;
-    Plan {
+    let plan = Plan {
         title: title.replace(char::is_control, " "),
         tube,
         mesh,
@@ -73,6 +75,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
         modes,
         materials,
         stages,
+        following,
         solver: solver::settings(&case.solver, problems),
         output: Output {
             pictures: output.pictures,
@@ -88,5 +91,7 @@ pub(super) fn plan(case: &Case, name: &str, open: &OpenInput<'_>, problems: &mut
             diameter: case.tube.diameter,
             youngs_modulus: material::youngs_modulus(case),
         }),
-    }
+    };
+    continuation::check_columns(&plan, problems);
+    plan
 }
