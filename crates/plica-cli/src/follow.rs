@@ -117,7 +117,10 @@ impl Directory {
         for folder in ["branches", "points", "modes"] {
             std::fs::create_dir_all(path.join(folder)).map_err(files)?;
         }
-        Ok(Self { path })
+        let directory = Self { path };
+        // The mark by which the directory is recognised if the program is ended.
+        directory.write(POINTS, b"")?;
+        Ok(directory)
     }
 
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {

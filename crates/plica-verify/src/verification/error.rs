@@ -4,6 +4,7 @@ use super::one_dimension::NoEquilibrium;
 use plica::assembly::Inverted;
 use plica::matrix::NoEigenpairs;
 use plica::solve::PathError;
+use plica::solve::arc::ArcFailure;
 
 /// An error that ends a check.
 #[derive(Debug, thiserror::Error)]
@@ -26,4 +27,10 @@ pub enum VerificationError {
     /// The reference solution has no equilibrium.
     #[error("{0}")]
     Reference(#[from] NoEquilibrium),
+}
+
+impl<E: std::error::Error> From<ArcFailure<E>> for VerificationError {
+    fn from(failure: ArcFailure<E>) -> Self {
+        Self::Solve(failure.to_string())
+    }
 }

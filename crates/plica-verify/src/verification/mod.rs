@@ -9,6 +9,7 @@
 //! | `layers`, `layer_orders` | layers, laws, fibres and residual stretches; orders of convergence through layers |
 //! | `rings`, `columns` | pressure, growth, buckling; limits of thin walls and long tubes |
 //! | `volume` | tubes inflated by the volume of their lumen |
+//! | `branches`, `chains` | folds and branch points with closed forms; a tube followed past its pressure maximum |
 //! | `locking` | nearly incompressible thick walls |
 //! | `manufactured` | orders of convergence on manufactured solutions |
 //! | `contact`, `contact_pressure` | contact with obstacles, and its pressure along the tube |
@@ -20,6 +21,8 @@
 #![allow(non_snake_case)] // formulas keep the letters of their sources
 
 mod active_stress;
+mod branches;
+mod chains;
 mod columns;
 mod contact;
 mod contact_pressure;
@@ -142,6 +145,16 @@ pub const CHECKS: &[Check] = &[
         "lumen-symmetries",
         "inflation by volume in all symmetries",
         volume::symmetries,
+    ),
+    quick(
+        "branches",
+        "folds and branch points of structures",
+        branches::structures,
+    ),
+    quick(
+        "balloon-branch",
+        "a ring followed in the pressure past its maximum",
+        branches::balloon,
     ),
     quick(
         "ring-buckling",

@@ -14,7 +14,7 @@ use plica::tube::Load;
 const VOLUMES: [f64; 4] = [1.3, 1.6, 2.4, 3.2];
 
 /// Returns a wall whose active tension vanishes as it widens, so that the pressure in it has a maximum.
-fn wall() -> LayeredWall {
+pub(super) fn wall() -> LayeredWall {
     let mut layer = Layer::new(0.5, 0.4, 20.0);
     layer.tone = Some([0.5, 1.3, 0.6]);
     LayeredWall {

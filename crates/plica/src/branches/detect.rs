@@ -2,7 +2,9 @@
 
 use super::follow::Follow;
 use super::sample::Sample;
-use crate::study::Event;
+use crate::solve::Equilibrium;
+use crate::solve::arc::Point;
+use crate::study::{Event, Row};
 
 /// A function that changes its sign, or a number that changes, between two points.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,13 +48,13 @@ impl Follow {
             match event {
                 Event::Contact if a.touches != b.touches => all.push(Change::Contact),
                 Event::Energy => {
-                    let [p, q] = [a, b].map(|sample| self.slope_of_energy(sample));
+                    let [p, q] = [a, b].map(|sample| self.slope_of_energy(&sample.point));
                     if p * q < 0.0 {
                         all.push(Change::Energy);
                     }
                 }
                 Event::Column(name, value) => {
-                    let [p, q] = [a, b].map(|sample| above(sample, name, *value));
+                    let [p, q] = [a, b].map(|sample| above(&sample.state.row, name, *value));
                     if p * q < 0.0 {
                         all.push(Change::Column(name.clone(), *value));
                     }
@@ -63,25 +65,26 @@ impl Follow {
         Changes { all, inseparable }
     }
 
-    /// Returns the derivative of the energy of the problem along the branch, of which it is a multiple; NaN if it is not
-    /// defined.
-    pub(super) fn slope_of_energy(&self, sample: &Sample) -> f64 {
+    /// Returns the derivative of the energy of the problem with the parameter along the branch, ∂W/∂λ since R = 0; NaN if it is
+    /// not defined.
+    pub(super) fn slope_of_energy(&self, point: &Point) -> f64 {
         let [a, b] = self.following.range;
         let step = 1e-5 * (b - a).abs();
         let energy = |parameter: f64| {
             let load = self.load(parameter);
-            let mut u = sample.point.u.clone();
-            use crate::solve::Equilibrium;
+            let mut u = point.u.clone();
             self.problem.apply_prescribed(&load, &mut u);
             let forces = self.problem.forces(&load, &u);
             forces.map_or(f64::NAN, |forces| forces.energy)
         };
-        let at = sample.point.parameter;
-        (energy(at + step) - energy(at - step)) / (2.0 * step) * sample.point.tangent.1
+        let at = point.parameter;
+        (energy(at + step) - energy(at - step)) / (2.0 * step)
     }
 }
 
 /// Returns the number in a column less a value; NaN if there is none.
-pub(super) fn above(sample: &Sample, name: &str, value: f64) -> f64 {
-    sample.state.column(name).map_or(f64::NAN, |x| x - value)
+pub(super) fn above(row: &Row, name: &str, value: f64) -> f64 {
+    let cell = row.cells().into_iter().find(|cell| cell.name == name);
+    let number = cell.and_then(|cell| cell.number());
+    number.map_or(f64::NAN, |x| x - value)
 }

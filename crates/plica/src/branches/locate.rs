@@ -7,12 +7,24 @@ use super::special::PointKind;
 use crate::assembly::Inverted;
 use crate::equilibrium::TubeProblem;
 use crate::monitor::Monitor;
-use crate::solve::arc::{ArcFailure, BranchPoint, Curve, LoadFamily, Point, Reduced};
+use crate::solve::arc::{Accuracy, ArcFailure, BranchPoint, Curve, LoadFamily, Point, Reduced};
 
-/// Largest length of a bracket that is left, as a fraction of the range of the parameter.
-const WIDTH: f64 = 1e-7;
-/// The same of a change without a function that has a zero there.
-const OF_JUMP: f64 = 1e-5;
+/// Accuracy of events that are located by their function alone; the length is a fraction of the range of the parameter.
+const EVENT: Accuracy = Accuracy {
+    width: 1e-8,
+    zero: 1e-9,
+};
+/// The same of a number that jumps.
+const JUMP: Accuracy = Accuracy {
+    width: 1e-5,
+    zero: 0.0,
+};
+/// The same of folds and branch points, which Newton's method for the special point computes from there. On a branch that
+/// another one crosses, points next to the crossing are known badly.
+const SPECIAL: Accuracy = Accuracy {
+    width: 1e-4,
+    zero: 1e-2,
+};
 
 /// The curve of a tube.
 pub(super) type TubeCurve<'f> = Curve<'f, LoadFamily<TubeProblem>>;
@@ -39,22 +51,19 @@ impl Follow {
         monitor: &mut dyn Monitor,
     ) -> Result<Located, Failed> {
         let [from, to] = self.following.range;
-        let width = (to - from).abs()
-            * match change {
-                Change::Contact => OF_JUMP,
-                _ => WIDTH,
-            };
-        let value = |sample: &Sample| self.value(curve, change, [a, b], sample);
-        let ends = [value(a)?, value(b)?];
+        let accuracy = match change {
+            Change::Contact => JUMP,
+            Change::Fold | Change::Mode(0) => SPECIAL,
+            _ => EVENT,
+        };
+        let accuracy = Accuracy {
+            width: accuracy.width * (to - from).abs(),
+            ..accuracy
+        };
+        let value = |point: &Point| self.value(curve, change, [a, b], point);
         let points = [&a.point, &b.point];
-        let found = curve.locate::<Failed>(
-            points,
-            ends,
-            width,
-            |point| value(&self.sample(point.clone())),
-            monitor,
-        )?;
-        let [low, high] = found;
+        let ends = [value(points[0])?, value(points[1])?];
+        let [low, high] = curve.locate::<Failed>(points, ends, accuracy, value, monitor)?;
         let bracket = [low.0.parameter, high.0.parameter];
         let near = if low.1.abs() <= high.1.abs() {
             low.0
@@ -88,7 +97,10 @@ impl Follow {
                 located.kind = PointKind::Mode(*mode, rate);
             }
             Change::Contact => located.kind = PointKind::Contact(b.touches),
-            Change::Energy => located.kind = PointKind::Energy(ends[0] < 0.0),
+            Change::Energy => {
+                let rises = b.point.parameter > a.point.parameter;
+                located.kind = PointKind::Energy((ends[0] < 0.0) == rises);
+            }
             Change::Column(name, value) => {
                 located.kind = PointKind::Column(name.clone(), *value);
             }
@@ -102,39 +114,38 @@ impl Follow {
         curve: &TubeCurve<'_>,
         change: &Change,
         [a, b]: [&Sample; 2],
-        at: &Sample,
+        at: &Point,
     ) -> Result<f64, Failed> {
+        let counts = |mode: usize| [a, b].map(|sample| sample.state.negative[mode]);
         Ok(match change {
-            Change::Fold => at.point.tangent.1,
-            Change::Mode(mode) => {
-                let [before, behind] = [a, b].map(|sample| sample.state.negative[*mode]);
-                let count = at.state.negative.get(*mode).copied();
-                let is_behind = count.is_some_and(|count| {
-                    if behind > before {
-                        count > before
-                    } else {
-                        count <= behind
-                    }
-                });
-                let size = match mode {
-                    0 => curve.critical(&at.point, None)?.value.abs(),
-                    mode => self.lowest_of(*mode, before.min(behind), at),
-                };
-                if is_behind { size } else { -size }
+            Change::Fold => at.tangent.1,
+            // The eigenvalue nearest to zero is the one that passes it, next to that point.
+            Change::Mode(0) => {
+                let size = curve.critical(at, None)?.value.abs();
+                let [before, behind] = counts(0);
+                if at.negative > before.min(behind) {
+                    -size
+                } else {
+                    size
+                }
             }
-            Change::Contact if at.touches == b.touches => 1.0,
+            Change::Mode(mode) => {
+                let [before, behind] = counts(*mode);
+                let index = before.min(behind);
+                let load = self.load(at.parameter);
+                let pairs = self.harmonics.lowest(*mode, &load, &at.u, index + 1);
+                let pair = pairs.ok().and_then(|mut pairs| pairs.pop());
+                pair.ok_or(ArcFailure::NoPoint)?.value
+            }
+            Change::Contact if self.touches(at) => 1.0,
             Change::Contact => -1.0,
             Change::Energy => self.slope_of_energy(at),
-            Change::Column(name, value) => above(at, name, *value),
+            Change::Column(name, value) => {
+                let load = self.load(at.parameter);
+                let row = self.row(&load, at, &[at.negative]);
+                above(&row, name, *value)
+            }
         })
-    }
-
-    /// Returns the size of the eigenvalue of a mode, counted from 0; 1 if it is not found.
-    fn lowest_of(&self, mode: usize, index: usize, at: &Sample) -> f64 {
-        let load = self.load(at.point.parameter);
-        let pairs = self.harmonics.lowest(mode, &load, &at.point.u, index + 1);
-        let pair = pairs.ok().and_then(|mut pairs| pairs.pop());
-        pair.map_or(1.0, |pair| pair.value.abs())
     }
 
     fn refine_fold(

@@ -52,9 +52,8 @@ impl Follow {
         let load = self.load(point.parameter);
         let negative = self.counts(&load, &point.u, point.negative);
         let row = self.row(&load, &point, &negative);
-        let contact = self.problem.contact_report(&load, &point.u);
         Sample {
-            touches: contact.is_some_and(|report| report.faces.iter().any(Option::is_some)),
+            touches: self.touches(&point),
             state: BranchState {
                 s: point.s,
                 parameter: point.parameter,
@@ -64,6 +63,13 @@ impl Follow {
             },
             point,
         }
+    }
+
+    /// Returns whether the wall touches itself.
+    pub(super) fn touches(&self, point: &Point) -> bool {
+        let load = self.load(point.parameter);
+        let report = self.problem.contact_report(&load, &point.u);
+        report.is_some_and(|report| report.faces.iter().any(Option::is_some))
     }
 
     /// Returns the load with a value of the parameter.
@@ -84,7 +90,8 @@ impl Follow {
         counts
     }
 
-    fn row(&self, load: &Load, point: &Point, negative: &[usize]) -> Row {
+    /// Returns the measures of a point, in the units of the case.
+    pub(super) fn row(&self, load: &Load, point: &Point, negative: &[usize]) -> Row {
         let accepted = crate::solve::State {
             load: load.clone(),
             u: point.u.clone(),

@@ -116,6 +116,12 @@ fn load_at(
             target.quantity.set(&mut load, value);
         }
     }
+    if load.lumen_volume.is_some() {
+        let rule = "the volume of the lumen is driven where the branch begins, and it would change its pressure";
+        let help = "follow inner-wall.pressure, or let a stage drive the pressure first";
+        problems.key(OF, rule, help);
+        return None;
+    }
     Some(load)
 }
 

@@ -148,6 +148,19 @@ fn base(pattern: &str) -> String {
         text = format!("symmetry = 'none'\n{text}");
         text += &format!("[[imperfections]]\nof = {of}\namplitude = 1e-4\nshape = {{ {shape} }}\n");
     }
+    if pattern.starts_with("continuation") {
+        text = text.replace(
+            "[[stages]]\n[[stages]]",
+            "[[stages]]\nname = 'contract'\n[[stages]]",
+        );
+        text += "[muscles.longitudinal]\ndirection = 'longitudinal'\nzone = [0.5, 1.0]\n";
+        if pattern.contains('.') {
+            text += "[continuation]\nof = 'longitudinal.length_ratio'\nbetween = [1.0, 1.25]\n";
+        }
+        if pattern.contains("switch[]") {
+            text += "[[continuation.switch]]\n";
+        }
+    }
     if pattern.ends_with(".offset") || pattern.ends_with(".tilt_degrees") {
         text = format!("symmetry = 'none'\n{text}");
     }

@@ -1,37 +1,46 @@
 //! Points of a branch at which a function is zero.
 
 use super::curve::{Curve, Failure, Point};
+use super::error::ArcFailure;
 use super::family::Family;
 use crate::monitor::Monitor;
 
 /// Largest number of points that are computed.
 const POINTS: usize = 60;
-/// Value that counts as zero, relative to those at the ends.
-const ZERO: f64 = 1e-11;
+
+/// The accuracy of a location.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Length of a bracket that is short enough.
+    pub width: f64,
+    /// Value of the function that counts as zero, relative to the larger one at the ends.
+    pub zero: f64,
+}
 
 impl<F: Family> Curve<'_, F> {
     /// Solves for points between two others, where a function has different signs, until they bracket a zero of the function
-    /// within a length `width`, or one of them is a zero. Returns the last bracket, with the values of the function. The
-    /// method is that of Illinois (Dowell and Jarratt 1971) with a bisection after every second step.
+    /// within a length, or the function is zero at one of them. Returns the last bracket, with the values of the function; a
+    /// wider one if no further point between is found. The method is that of Illinois (Dowell and Jarratt 1971) with a
+    /// bisection after every second step.
     ///
     /// # Errors
-    /// [`super::ArcFailure`] if a point is not found.
+    /// That of the function, or [`super::ArcFailure::Cancelled`].
     pub fn locate<E: From<Failure<F>>>(
         &self,
         [a, b]: [&Point; 2],
         [at_a, at_b]: [f64; 2],
-        width: f64,
+        accuracy: Accuracy,
         mut function: impl FnMut(&Point) -> Result<f64, E>,
         monitor: &mut dyn Monitor,
     ) -> Result<[(Point, f64); 2], E> {
         let (mut low, mut high) = ((a.clone(), at_a), (b.clone(), at_b));
         // Values with which the next secant is drawn.
         let [mut f, mut g] = [at_a, at_b];
-        let zero = ZERO * at_a.abs().max(at_b.abs());
+        let zero = accuracy.zero * at_a.abs().max(at_b.abs());
         let mut side = 0;
         for number in 0..POINTS {
             let length = high.0.s - low.0.s;
-            if length <= width || low.1.abs() <= zero || high.1.abs() <= zero {
+            if length <= accuracy.width || low.1.abs() <= zero || high.1.abs() <= zero {
                 break;
             }
             // Every third point halves the bracket.
@@ -39,7 +48,11 @@ impl<F: Family> Curve<'_, F> {
                 2 => 0.5,
                 _ => (f / (f - g)).clamp(0.01, 0.99),
             };
-            let point = self.between([&low.0, &high.0], fraction, monitor)?;
+            let point = match self.between([&low.0, &high.0], fraction, monitor) {
+                Ok(point) => point,
+                Err(ArcFailure::Cancelled) => return Err(ArcFailure::Cancelled.into()),
+                Err(_) => break,
+            };
             let value = function(&point)?;
             if value * low.1 > 0.0 {
                 (low, f) = ((point, value), value);

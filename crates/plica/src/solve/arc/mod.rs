@@ -39,5 +39,6 @@ pub use critical::CriticalPair;
 pub use curve::{ArcSettings, Curve, Point};
 pub use error::ArcFailure;
 pub use family::{Family, LoadFamily};
+pub use locate::Accuracy;
 pub use reduced::{Reduced, ReducedPoint};
 pub use special::{BranchPoint, Fold, NormalForm};

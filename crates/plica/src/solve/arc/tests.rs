@@ -95,6 +95,12 @@ fn family(chain: &Chain) -> LoadFamily<&Chain> {
     }
 }
 
+/// From there Newton's method finds the special point.
+const ROUGH: Accuracy = Accuracy {
+    width: 1e-3,
+    zero: 1e-2,
+};
+
 /// Follows a branch to its end and returns its points.
 fn follow<F: Family>(curve: &Curve<'_, F>, from: Point, range: [f64; 2]) -> Vec<Point> {
     follow_until(curve, from, range, |_| false)
@@ -128,7 +134,7 @@ fn first_fold<F: Family>(curve: &Curve<'_, F>, points: &[Point]) -> Fold {
     let found = curve.locate::<super::curve::Failure<F>>(
         [&pair[0], &pair[1]],
         slopes,
-        1e-3,
+        ROUGH,
         |point| Ok(point.tangent.1),
         &mut (),
     );
@@ -272,7 +278,7 @@ fn the_elastica_leaves_its_straight_branch_at_a_supercritical_pitchfork() {
     let [a, b] = pair.unwrap() else { panic!() };
     let mut lowest = |point: &Point| Ok(curve.critical(point, None)?.value);
     let ends = [lowest(a).unwrap(), lowest(b).unwrap()];
-    let located = curve.locate::<ArcFailure<Never>>([a, b], ends, 1e-6, &mut lowest, &mut ());
+    let located = curve.locate::<ArcFailure<Never>>([a, b], ends, ROUGH, &mut lowest, &mut ());
     let [(near, _), _] = located.unwrap();
     let mode = curve.critical(&near, None).unwrap().vector;
     let reduced = Reduced::new(&curve, &near, &mode);
