@@ -38,7 +38,6 @@ pub struct BranchPoint {
     pub mode: Vec<f64>,
     /// Force on the mode.
     pub form: NormalForm,
-    pub(super) at: ReducedPoint,
     pub(super) second: Second,
 }
 
@@ -132,9 +131,8 @@ impl<F: Family> Reduced<'_, '_, F> {
                 gamma: -0.5 * second.epsilon,
                 beta: -self.third(&found)? / 6.0,
             },
-            mode: found.by_epsilon.0.clone(),
-            u: found.u.clone(),
-            at: found,
+            mode: found.by_epsilon.0,
+            u: found.u,
             second,
         })
     }
@@ -167,8 +165,8 @@ impl<F: Family> Reduced<'_, '_, F> {
         Err(ArcFailure::NoPoint)
     }
 
-    /// Returns the points of the other branch at a branch point, at the amplitudes ε and −ε of its mode, with tangents that
-    /// lead away from it.
+    /// Returns the points of the other branch at a branch point of this mode, at the amplitudes ε and −ε from this point, with
+    /// tangents that lead away from it.
     ///
     /// # Errors
     /// [`ArcFailure`] if one is not found.
@@ -178,24 +176,25 @@ impl<F: Family> Reduced<'_, '_, F> {
         amplitude: f64,
         monitor: &mut dyn Monitor,
     ) -> Result<[Point; 2], Failure<F>> {
-        let [plus, minus] = [amplitude, -amplitude].map(|step| self.other(from, step, monitor));
+        let at = self.solve(0.0, from.parameter, from.u.clone(), monitor)?;
+        let [plus, minus] =
+            [amplitude, -amplitude].map(|step| self.other((from, &at), step, monitor));
         Ok([plus?, minus?])
     }
 
     fn other(
         &self,
-        from: &BranchPoint,
+        (from, near): (&BranchPoint, &ReducedPoint),
         step: f64,
         monitor: &mut dyn Monitor,
     ) -> Result<Point, Failure<F>> {
         let form = &from.form;
-        let epsilon = from.at.epsilon + step;
         let mut parameter = from.parameter
             + match form.is_pitchfork() {
                 true => form.curvature() * step * step,
                 false => from.slope() * step,
             };
-        let mut at = self.from(&from.at, epsilon, parameter, monitor)?;
+        let mut at = self.from(near, step, parameter, monitor)?;
         let close = self.curve.settings.difference * 1e-6;
         for _ in 0..ITERATIONS {
             let change = -at.eta / at.by_parameter.1;
@@ -203,7 +202,7 @@ impl<F: Family> Reduced<'_, '_, F> {
             if (parameter - from.parameter).abs() > self.curve.settings.longest_step * 10.0 {
                 return Err(ArcFailure::NoPoint);
             }
-            at = self.from(&at, epsilon, parameter, monitor)?;
+            at = self.from(&at, step, parameter, monitor)?;
             if change.abs() <= close {
                 break;
             }
