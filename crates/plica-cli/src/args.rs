@@ -136,9 +136,6 @@ pub struct FollowArguments {
     /// Replace the branches in that directory
     #[arg(long)]
     pub overwrite: bool,
-    /// Change a key of the case, for example continuation.between=[1.0,1.2]; may be repeated
-    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
-    pub set: Vec<Setting>,
     /// The case file and the directories that it may read from
     #[command(flatten)]
     pub case: CaseArguments,

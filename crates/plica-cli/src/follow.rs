@@ -23,7 +23,7 @@ const WIDTH: usize = 1800;
 /// Follows the branches of a case and writes them to a directory.
 pub fn follow(arguments: &FollowArguments) -> Result<(), Failure> {
     threads::limit(arguments.threads)?;
-    let (text, plan) = case_file::open_changed(&arguments.case, &arguments.set)?;
+    let (text, plan) = case_file::open(&arguments.case)?;
     let following = Follow::new(&plan).map_err(failure)?;
     let out = match &arguments.out {
         Some(out) => out.clone(),

@@ -214,6 +214,20 @@ fn the_pieces_of_cases_in_the_guides_are_valid() {
     assert!(checked >= 12, "{checked}");
 }
 
+#[test]
+fn the_cases_of_the_page_on_continuation_have_branches() {
+    let page = read("docs/continuation.md");
+    for file in files(&root().join("docs/continuation"), "toml") {
+        let name = file.file_name().unwrap().to_str().unwrap();
+        assert!(
+            page.contains(&format!("docs/continuation/{name}")),
+            "{name}"
+        );
+        let plan = plica::case::read(&fs::read_to_string(&file).unwrap(), name).unwrap();
+        assert!(plan.following.is_some(), "{name}");
+    }
+}
+
 /// Returns the names of the cases.
 fn cases() -> Vec<String> {
     let cases = files(&root().join("cases"), "toml");

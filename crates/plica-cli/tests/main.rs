@@ -7,6 +7,7 @@ mod changed_cases;
 mod command_line;
 mod export;
 mod faults;
+mod follow;
 mod main_case;
 mod materials;
 mod mode_imperfections;

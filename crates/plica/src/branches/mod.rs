@@ -21,6 +21,8 @@ mod sample;
 mod special;
 mod start_state;
 mod tables;
+#[cfg(test)]
+mod tests;
 
 pub use error::BranchError;
 pub use follow::{Follow, Progress};
