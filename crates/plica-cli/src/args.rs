@@ -436,8 +436,8 @@ fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 const FOLLOW_EPILOGUE: &str = "\
-The table [continuation] of the case names the parameter, its range, the events to locate and the modes to switch to. The
-stages up to `after` are run first; the branch begins at their last state.
+The table [continuation] of the case names the parameter, its range, the events to locate and the
+modes to switch to. The stages up to `after` are run first; the branch begins at their last state.
 
 Files:
   branches/NN.csv            states of a branch: arc length, parameter, unstable modes, measures
@@ -448,7 +448,7 @@ Files:
 
 Examples:
   plica follow tube.toml
-  plica follow tube.toml --set continuation.of=inner-wall.pressure --set continuation.between=[0.0,0.05]";
+  plica follow tube.toml --set continuation.between=[1.0,1.2]";
 
 const EPILOGUE: &str = "\
 Examples:

@@ -28,6 +28,7 @@ fn help_texts_match_the_snapshot() {
         &["run", "--help"],
         &["resume", "--help"],
         &["stability", "--help"],
+        &["follow", "--help"],
         &["verify", "--help"],
         &["reproduce", "--help"],
         &["export", "--help"],

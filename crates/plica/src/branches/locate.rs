@@ -185,7 +185,8 @@ impl Follow {
             Err(ArcFailure::Cancelled) => return Err(ArcFailure::Cancelled),
             point => point.ok(),
         };
-        located.kind = PointKind::BranchPoint(point.as_ref().map(|point| point.form));
+        let form = point.as_ref().map(|point| (point.form, point.gap()));
+        located.kind = PointKind::BranchPoint(form);
         let mode = point
             .as_ref()
             .map_or(critical.vector, |point| point.mode.clone());

@@ -32,8 +32,9 @@ pub struct SpecialPoint {
 pub enum PointKind {
     /// The parameter has an extreme value; with d²λ/dε² along the mode, if it is known.
     Fold(Option<f64>),
-    /// Axisymmetric branches cross; with the force on the mode, if it was computed.
-    BranchPoint(Option<NormalForm>),
+    /// Axisymmetric branches cross; with the force on the mode and the gap between the branches
+    /// ([`crate::solve::arc::BranchPoint::gap`]), if they were computed.
+    BranchPoint(Option<(NormalForm, f64)>),
     /// Stability to a circumferential mode from 1 on changes; with the rate of its eigenvalue in the parameter.
     Mode(usize, f64),
     /// The wall begins to touch itself, or ceases to.
@@ -74,7 +75,7 @@ impl SpecialPoint {
             }
             PointKind::Fold(_) => "fold, minimum of the parameter".into(),
             PointKind::BranchPoint(None) => "branch point of mode 0".into(),
-            PointKind::BranchPoint(Some(form)) => {
+            PointKind::BranchPoint(Some((form, _))) => {
                 match (form.is_pitchfork(), form.is_supercritical()) {
                     (true, true) => "supercritical pitchfork of mode 0".into(),
                     (true, false) => "subcritical pitchfork of mode 0".into(),

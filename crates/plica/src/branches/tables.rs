@@ -87,6 +87,7 @@ impl Branches {
             "alpha",
             "gamma",
             "beta",
+            "gap",
             "curvature",
             "eigenvalue_rate",
         ];
@@ -145,13 +146,15 @@ impl std::fmt::Display for Significant {
 
 impl SpecialPoint {
     fn record(&self) -> Vec<String> {
-        let [alpha, gamma, beta] = match &self.kind {
-            PointKind::BranchPoint(Some(form)) => [form.alpha, form.gamma, form.beta].map(Some),
-            _ => [None; 3],
+        let [alpha, gamma, beta, gap] = match &self.kind {
+            PointKind::BranchPoint(Some((form, gap))) => {
+                [form.alpha, form.gamma, form.beta, *gap].map(Some)
+            }
+            _ => [None; 4],
         };
         let curvature = match &self.kind {
             PointKind::Fold(curvature) => *curvature,
-            PointKind::BranchPoint(Some(form)) if form.is_pitchfork() => {
+            PointKind::BranchPoint(Some((form, _))) if form.is_pitchfork() => {
                 Some(2.0 * form.curvature())
             }
             _ => None,
@@ -172,6 +175,7 @@ impl SpecialPoint {
             number(alpha),
             number(gamma),
             number(beta),
+            number(gap),
             number(curvature),
             number(rate),
         ]

@@ -15,7 +15,7 @@ fn balloon(rest: &str) -> crate::study::Plan {
 }
 
 const FOLLOWED: &str = "[[stages]]\nsteps = 1\ndrive.inner-wall.pressure = 0.01\n\
-    [continuation]\nof = 'inner-wall.pressure'\nbetween = [0.0, 0.05]\npoints = 60\n\
+    [continuation]\nof = 'inner-wall.pressure'\nbetween = [0.0, 0.05]\npoints = 60\nlongest_step = 0.1\n\
     locate = ['fold', 'modes', 'energy', 'lumen_volume = 4.0']\n";
 
 fn follow(plan: &crate::study::Plan) -> (Follow, Branches) {

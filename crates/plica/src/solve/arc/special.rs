@@ -38,6 +38,8 @@ pub struct BranchPoint {
     pub mode: Vec<f64>,
     /// Force on the mode.
     pub form: NormalForm,
+    /// η: zero where the branches cross; else the force by which they miss each other, as those of an imperfect tube do.
+    pub imperfection: f64,
     pub(super) second: Second,
 }
 
@@ -72,6 +74,13 @@ impl NormalForm {
 }
 
 impl BranchPoint {
+    /// Returns the distance in λ from the point to the fold of the branch that an imperfection disconnects from the others, at
+    /// a pitchfork: 3 (β η²/4)^(1/3) / |α|. It is of rounding errors where the branches cross.
+    pub fn gap(&self) -> f64 {
+        let force = 0.25 * self.form.beta.abs() * self.imperfection * self.imperfection;
+        3.0 * force.cbrt() / self.form.alpha.abs()
+    }
+
     /// Returns dλ/dε of the branch with the smaller one: the root m of η_εε + 2 η_ελ m + η_λλ m² = 0.
     fn slope(&self) -> f64 {
         let Second {
@@ -131,6 +140,7 @@ impl<F: Family> Reduced<'_, '_, F> {
                 gamma: -0.5 * second.epsilon,
                 beta: -self.third(&found)? / 6.0,
             },
+            imperfection: found.eta,
             mode: found.by_epsilon.0,
             u: found.u,
             second,

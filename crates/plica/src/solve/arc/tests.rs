@@ -409,6 +409,7 @@ fn branch_point_of(chain: &Chain) -> (NormalForm, f64, [Point; 2]) {
     let mode = curve.critical(&near, None).unwrap().vector;
     let reduced = Reduced::new(&curve, &near, &mode);
     let found = reduced.branch_point(&near, &mut ()).unwrap();
+    assert!(found.imperfection.abs() < 1e-10, "{}", found.imperfection);
     let other = reduced.switch(&found, 0.05, &mut ()).unwrap();
     (found.form, found.parameter, other)
 }
