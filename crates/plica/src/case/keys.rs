@@ -195,7 +195,7 @@ table! {
         /// of stability to each circumferential mode up to `output.stability_modes`, with branch points of mode 0;
         /// `contact`, the first touch of the wall with itself; `energy`, an extreme value of the energy; or a column of the
         /// history with a value, such as `max_wall_angle_deg = 90`.
-        locate: Vec<String> = described("[\"fold\", \"modes\"]", "[\"fold\", \"modes\", \"energy\", \"max_wall_angle_deg = 90\"]");
+        locate: Vec<String> = default("[\"fold\", \"modes\"]");
         /// The modes to whose branches `plica follow` switches at the points where it finds them.
         switch: Vec<Switch> = default("[]");
         /// The longest step, as a fraction of the range.
@@ -203,7 +203,7 @@ table! {
         /// The largest number of points of a branch.
         points: usize = default("300").from(2.0).to(100_000.0);
         /// The columns of the history against which the diagram is drawn.
-        plot: Vec<String> = described("[\"energy\", \"max_wall_angle_deg\"]", "[\"energy\", \"overhang\"]");
+        plot: Vec<String> = default("[\"energy\", \"max_wall_angle_deg\"]");
     }
 }
 

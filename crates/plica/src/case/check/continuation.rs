@@ -73,10 +73,7 @@ pub(super) fn following(
         switches: switches(table),
         longest_step: table.longest_step,
         points: table.points,
-        plot: match table.plot.is_empty() {
-            true => ["energy", "max_wall_angle_deg"].map(String::from).to_vec(),
-            false => table.plot.clone(),
-        },
+        plot: table.plot.clone(),
     };
     // The pressure that holds a driven volume is known only when the stage is run.
     if base.lumen_volume.is_none() {
@@ -204,9 +201,6 @@ fn drive(target: &str, value: f64) -> Option<Drive> {
 }
 
 fn events(table: &Continuation, problems: &mut Problems) -> Option<Vec<Event>> {
-    if table.locate.is_empty() {
-        return Some(vec![Event::Fold, Event::Modes]);
-    }
     let mut events = vec![];
     for text in &table.locate {
         let word = EVENTS.iter().find(|(word, _)| *word == text.trim());
