@@ -1,10 +1,10 @@
 //! Changes between two points of a branch.
 
 use super::follow::Follow;
-use super::sample::Sample;
+use super::sample::{BranchState, Sample};
 use crate::solve::Equilibrium;
 use crate::solve::arc::Point;
-use crate::study::{Event, Row};
+use crate::study::{Event, PARAMETER};
 
 /// A function that changes its sign, or a number that changes, between two points.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +54,7 @@ impl Follow {
                     }
                 }
                 Event::Column(name, value) => {
-                    let [p, q] = [a, b].map(|sample| above(&sample.state.row, name, *value));
+                    let [p, q] = [a, b].map(|sample| above(&sample.state, name, *value));
                     if p * q < 0.0 {
                         all.push(Change::Column(name.clone(), *value));
                     }
@@ -82,9 +82,10 @@ impl Follow {
     }
 }
 
-/// Returns the number in a column less a value; NaN if there is none.
-pub(super) fn above(row: &Row, name: &str, value: f64) -> f64 {
-    let cell = row.cells().into_iter().find(|cell| cell.name == name);
-    let number = cell.and_then(|cell| cell.number());
-    number.map_or(f64::NAN, |x| x - value)
+/// Returns the number in a column, or the parameter, less a value; NaN if there is none.
+pub(super) fn above(state: &BranchState, name: &str, value: f64) -> f64 {
+    match name {
+        PARAMETER => state.parameter - value,
+        name => state.column(name).map_or(f64::NAN, |x| x - value),
+    }
 }

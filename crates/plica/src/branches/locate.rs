@@ -2,7 +2,7 @@
 
 use super::detect::{Change, above};
 use super::follow::Follow;
-use super::sample::Sample;
+use super::sample::{BranchState, Sample};
 use super::special::PointKind;
 use crate::assembly::Inverted;
 use crate::equilibrium::TubeProblem;
@@ -142,8 +142,15 @@ impl Follow {
             Change::Energy => self.slope_of_energy(at),
             Change::Column(name, value) => {
                 let load = self.load(at.parameter);
-                let row = self.row(&load, at, &[at.negative]);
-                above(&row, name, *value)
+                let negative = vec![at.negative];
+                let state = BranchState {
+                    s: at.s,
+                    parameter: at.parameter,
+                    label: None,
+                    row: self.row(&load, at, &negative),
+                    negative,
+                };
+                above(&state, name, *value)
             }
         })
     }

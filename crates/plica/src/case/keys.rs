@@ -194,7 +194,7 @@ table! {
         /// The events whose places are computed: `fold`, an extreme value of the parameter; `modes`, the loss and the recovery
         /// of stability to each circumferential mode up to `output.stability_modes`, with branch points of mode 0;
         /// `contact`, the first touch of the wall with itself; `energy`, an extreme value of the energy; or a column of the
-        /// history with a value, such as `max_wall_angle_deg = 90`.
+        /// history, or the `parameter`, with a value, such as `max_wall_angle_deg = 90`.
         locate: Vec<String> = default("[\"fold\", \"modes\"]");
         /// The modes to whose branches `plica follow` switches at the points where it finds them.
         switch: Vec<Switch> = default("[]");

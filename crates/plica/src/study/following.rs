@@ -25,6 +25,9 @@ pub struct Following {
     pub plot: Vec<String>,
 }
 
+/// The name of the parameter among the columns whose values are located.
+pub const PARAMETER: &str = "parameter";
+
 /// An event on a branch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {

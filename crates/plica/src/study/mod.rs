@@ -42,7 +42,7 @@ use contact_row::WALLS;
 pub use contact_row::{ContactRow, RESOLVED_TURN_DEG, WallContactRow};
 pub use error::StudyError;
 pub use findings::Findings;
-pub use following::{Event, Following, Switch};
+pub use following::{Event, Following, PARAMETER, Switch};
 pub use forecast::{Forecast, available_memory, check_memory, forecast, memory_bytes};
 pub use iterator::{Continuation, Ending, Study};
 pub use limit_point::LimitPoint;

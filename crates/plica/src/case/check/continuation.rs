@@ -7,7 +7,7 @@ use super::super::problem::Problems;
 use super::super::read::{Read, Table};
 use super::super::spelling::nearest;
 use super::targets::{self, Driven, Target};
-use crate::study::{Condition, Event, Following, Plan, Stage, Switch};
+use crate::study::{Condition, Event, Following, PARAMETER, Plan, Stage, Switch};
 use crate::tube::{Load, Symmetry, Tube};
 use std::collections::HashMap;
 
@@ -238,7 +238,7 @@ pub(super) fn check_columns(plan: &Plan, problems: &mut Problems) {
         return;
     };
     let located = following.events.iter().filter_map(|event| match event {
-        Event::Column(name, _) => Some(("continuation.locate", name)),
+        Event::Column(name, _) if name != PARAMETER => Some(("continuation.locate", name)),
         _ => None,
     });
     let plotted = following.plot.iter();

@@ -3,7 +3,7 @@
 use super::super::equilibrium::{EQUILIBRIUM, Equilibrium, ResidualEvaluation, largest};
 use super::super::operator::{add, dot};
 use super::bordered::{Border, Linear};
-use super::curve::Curve;
+use super::curve::{Curve, LinearOf};
 use super::error::ArcFailure;
 use super::family::Family;
 use crate::monitor::Monitor;
@@ -175,7 +175,7 @@ impl<F: Family> Curve<'_, F> {
         scalar: Scalar<'_>,
         u: &[f64],
         y: f64,
-    ) -> Result<(Linear<<F::Problem as Equilibrium>::Tangent>, Vec<f64>), Failure<F>> {
+    ) -> Result<(LinearOf<F>, Vec<f64>), Failure<F>> {
         let linear = self.linear(u, scalar.parameter(y))?;
         let column = match scalar {
             Scalar::Parameter => self.slope(u, y)?,

@@ -81,7 +81,7 @@ pub struct Curve<'a, F: Family> {
 }
 
 pub(super) type Failure<F> = ArcFailure<<<F as Family>::Problem as Equilibrium>::EvaluationError>;
-type LinearOf<F> = Linear<<<F as Family>::Problem as Equilibrium>::Tangent>;
+pub(super) type LinearOf<F> = Linear<<<F as Family>::Problem as Equilibrium>::Tangent>;
 
 impl<'a, F: Family> Curve<'a, F> {
     /// Solves for the equilibrium near a state, at which K must not be singular, and measures lengths there. Returns the
