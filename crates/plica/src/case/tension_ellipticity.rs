@@ -43,7 +43,12 @@ pub(super) fn lost(plan: &Plan, layer: usize) -> Option<Lost> {
         }
     }
     for (stage, own) in plan.stages.iter().enumerate() {
-        let begin = plan.load_before(stage);
+        let mut begin = plan.load_before(stage);
+        if begin.lumen_volume.is_none() && own.load.lumen_volume.is_some() {
+            // The volume at the start is that of the last estimate.
+            let around = muscles.first().map_or(1.0, |(_, around)| *around);
+            begin.lumen_volume = Some(enclosed(tube, &begin, around));
+        }
         for state in 1..=STATES {
             let load = own.load_at(&begin, state as f64 / STATES as f64);
             for (m, around) in &mut muscles {
@@ -72,6 +77,24 @@ pub(super) fn lost(plan: &Plan, layer: usize) -> Option<Lost> {
         }
     }
     None
+}
+
+/// Returns the length of a tube under a load over that at rest.
+fn extension(tube: &Tube, load: &Load) -> f64 {
+    let [first, last] = load.ends.map(|end| end.displacement);
+    1.0 + (last - first) / tube.length
+}
+
+/// Returns the volume of the lumen over that at rest, where the middle of the wall is stretched around by `around`.
+fn enclosed(tube: &Tube, load: &Load, around: f64) -> f64 {
+    let (inner, middle) = (tube.inner_radius(), middle(tube));
+    let squares = around * around * extension(tube, load) - 1.0;
+    1.0 + squares * (middle / inner).powi(2)
+}
+
+/// Returns the radius of the middle of the wall at rest.
+fn middle(tube: &Tube) -> f64 {
+    0.5 * (tube.inner_radius() + Tube::OUTER_RADIUS)
 }
 
 /// A section of the tube under a load.
@@ -114,14 +137,13 @@ impl<'a> Section<'a> {
             }
             tones
         };
-        let [first, last] = load.ends.map(|end| end.displacement);
         let growth = |layer| <[f64; 2]>::from(tube.stretches(layer, z, load));
         Self {
             tube,
             load: load.clone(),
             growth: layers.clone().map(growth).collect(),
             tensions: layers.map(tones).collect(),
-            extension: 1.0 + (last - first) / tube.length,
+            extension: extension(tube, load),
         }
     }
 
@@ -175,7 +197,7 @@ impl<'a> Section<'a> {
     /// there is none within reach.
     fn stretch_around(&self, before: f64) -> Option<f64> {
         let [inner, outer] = [self.tube.inner_radius(), Tube::OUTER_RADIUS];
-        let middle = 0.5 * (inner + outer);
+        let middle = middle(self.tube);
         if let Some(volume) = self.load.lumen_volume {
             // The area of the wall falls as its length grows.
             let squares = volume * inner * inner + middle * middle - inner * inner;
@@ -214,5 +236,44 @@ impl<'a> Section<'a> {
             near = far;
         }
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pressure_and_tension_balance_in_the_estimate() {
+        let text = "ends = { colon = 'sliding', ileum = 'sliding' }\n[muscles.ring]\ndirection = 'circular'\n\
+                    zone = [0.5, 1.0]\nactive_stress = {}\n[[stages]]\n\
+                    drive.inner-wall.pressure = 0.03\ndrive.ring.tension = 0.1\n";
+        let plan = crate::case::read(text, "case").unwrap();
+        let mut load = plan.stages[0].load.clone();
+        // An incompressible membrane: (μ (λ − λ⁻³) + T)/λ = p R/H, with μ = 1/3.
+        for (p, tension) in [(0.0, 0.1), (0.03, 0.0), (0.03, 0.1)] {
+            (load.pressures[0].follower, load.muscles[0]) = (p, tension);
+            let excess = |x: f64| ((x - x.powi(-3)) / 3.0 + tension) / x - p * 0.44 / 0.06;
+            let (mut low, mut high) = (0.5, 1.5);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                match excess(middle) < 0.0 {
+                    true => low = middle,
+                    false => high = middle,
+                }
+            }
+            let found = Section::of(&plan, &load, 0).stretch_around(1.0).unwrap();
+            assert!(
+                (found / low - 1.0).abs() < 0.02,
+                "{p} {tension}: {found} {low}"
+            );
+        }
+        // No equilibrium beyond the largest pressure that the membrane bears.
+        load.pressures[0].follower = 0.06;
+        assert_eq!(Section::of(&plan, &load, 0).stretch_around(1.0), None);
+        // The driven volume decides, and is that of the estimate.
+        load.lumen_volume = Some(1.7);
+        let around = Section::of(&plan, &load, 0).stretch_around(1.0).unwrap();
+        assert!((enclosed(&plan.tube, &load, around) - 1.7).abs() < 1e-12);
     }
 }
