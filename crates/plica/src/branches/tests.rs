@@ -99,9 +99,13 @@ fn where_stability_to_a_mode_changes_its_eigenvalue_is_zero() {
         let PointKind::Mode(_, rate) = point.kind else {
             unreachable!()
         };
-        let lost = behind > before;
-        let rises = point.bracket[1] >= point.bracket[0];
-        assert_eq!(rate < 0.0, lost == rises, "{rate}");
+        let states = &found.branches[point.branch - 1].states;
+        let at = states
+            .iter()
+            .position(|state| state.label.as_ref() == Some(&point.label));
+        let at = at.unwrap();
+        let rises = states[at + 1].parameter > states[at - 1].parameter;
+        assert_eq!(rate < 0.0, (behind > before) == rises, "{rate}");
         assert!(start_state(&follow, point, 0.01).is_some());
     }
 }
