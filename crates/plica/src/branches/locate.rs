@@ -87,13 +87,7 @@ impl Follow {
                 let pairs = self.harmonics.lowest(*mode, &load, &near.u, index + 1);
                 let pair = pairs.ok().and_then(|mut pairs| pairs.pop());
                 located.mode = pair.map(|pair| (*mode, normalised(pair.vector)));
-                let lost = b.state.negative[*mode] > a.state.negative[*mode];
-                let rise = if lost {
-                    ends[0] - ends[1]
-                } else {
-                    ends[1] - ends[0]
-                };
-                let rate = rise / (b.point.parameter - a.point.parameter);
+                let rate = (ends[1] - ends[0]) / (b.point.parameter - a.point.parameter);
                 located.kind = PointKind::Mode(*mode, rate);
             }
             Change::Contact => located.kind = PointKind::Contact(b.touches),
