@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::ticker::Ticker;
 use plica::monitor::Monitor;
-use plica::sweep::{Claim, Outcome, Point, Status, StudyFolder, Sweep, SweepError};
+use plica::sweep::{Claim, Outcome, Point, StudyFolder, Sweep, SweepError};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -142,16 +142,17 @@ impl Engine<'_> {
                 });
             }
             drop(sender);
-            let (total, mut count) = (finished + open.len(), 0);
+            let (total, mut count, mut known) = (finished + open.len(), 0, 0);
             let mut failure = None;
             loop {
                 match receiver.recv_timeout(PAUSE) {
-                    Ok((point, Ok(Claim::Done(outcome)))) => {
+                    Ok((point, Ok(Claim::Computed(outcome)))) => {
                         count += 1;
                         let name = self.study.describe(point);
-                        let number = finished + count;
+                        let number = finished + known + count;
                         ticker.line(&format!("{number:>6}/{total}  {name}: {}", short(&outcome)));
                     }
+                    Ok((_, Ok(Claim::Known(_)))) => known += 1,
                     Ok((_, Ok(Claim::Taken | Claim::Cancelled))) => {}
                     Ok((_, Err(error))) => {
                         // The others stop too: the disk may be full.
@@ -163,24 +164,18 @@ impl Engine<'_> {
                     }
                     Err(RecvTimeoutError::Disconnected) => break,
                 }
-                let fraction = (finished + count) as f64 / total.max(1) as f64;
-                ticker.working(&format!("{} of {total} points", finished + count), fraction);
+                let done = finished + known + count;
+                let fraction = done as f64 / total.max(1) as f64;
+                ticker.working(&format!("{done} of {total} points"), fraction);
             }
-            failure.map_or(Ok(count), Err)
+            failure.map_or(Ok(count + known), Err)
         })
     }
 
     /// Computes a point on one thread.
     fn point(&self, point: &Point) -> Result<Claim, SweepError> {
         let Study { sweep, folder, .. } = self.study;
-        let case = match sweep.case(point) {
-            Ok(case) => case,
-            Err(error) => {
-                let outcome = Outcome::without_states(Status::Unsound, error);
-                return Ok(Claim::Done(outcome.into()));
-            }
-        };
-        let compute = || folder.compute(&case, &mut Quiet::new(self.interrupt.clone()));
+        let compute = || folder.compute(sweep, point, &mut Quiet::new(self.interrupt.clone()));
         match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
             Ok(pool) => pool.install(compute),
             Err(_) => compute(),

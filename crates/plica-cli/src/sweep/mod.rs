@@ -11,6 +11,7 @@ use crate::interrupt::Interrupt;
 use crate::threads;
 use clap::{Args, Subcommand};
 use engine::{Engine, Known, Quiet};
+use plica::run_directory::write_file;
 use plica::study::{available_memory, memory_bytes};
 use plica::sweep::{
     Claim, Outcome, Point, PointCase, Status, StudyFolder, Sweep, SweepError, table,
@@ -32,7 +33,7 @@ enum Command {
     Check(StudyArguments),
     /// Compute the points that are missing, and write the table
     Run(RunArguments),
-    /// Tell how many points are computed
+    /// Print how many points are computed
     Status(StudyArguments),
     /// Write the table of all points
     Table(TableArguments),
@@ -157,6 +158,7 @@ impl From<SweepError> for Failure {
     fn from(error: SweepError) -> Self {
         match error {
             SweepError::Study { path, text, error } => Self::Case { path, text, error },
+            SweepError::Memory(error) => Self::Run(error.into()),
             error @ SweepError::File { .. } => Self::Files(error.to_string()),
         }
     }
@@ -228,12 +230,18 @@ fn write_table(arguments: &TableArguments) -> Result<(), Failure> {
     let text = table(study.sweep.axes(), &study.rows());
     match &arguments.file {
         Some(file) if file.as_os_str() == "-" => console::print(&text),
-        Some(file) => crate::existing_run::write_out(file, text.as_bytes()),
+        Some(file) => write_named(file, text.as_bytes()),
         None => {
             let path = study.folder.write("table.csv", text.as_bytes())?;
             console::print(&format!("written to {}\n", path.display()))
         }
     }
+}
+
+/// Writes a file that the user has named.
+fn write_named(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let written = write_file(path, bytes);
+    written.map_err(|error| Failure::Files(format!("--file {}: {error}", path.display())))
 }
 
 /// Computes one point.
@@ -254,16 +262,12 @@ fn point(arguments: &PointArguments) -> Result<(), Failure> {
     }
     let point = study.sweep.point(number);
     let name = study.describe(&point);
-    let case = match study.sweep.case(&point) {
-        Ok(case) => case,
-        Err(error) => return Err(Failure::Usage(format!("point {number}, {name}: {error}"))),
-    };
     let mut monitor = Quiet::new(Interrupt::listen()?);
-    match study.folder.compute(&case, &mut monitor)? {
-        Claim::Done(outcome) => {
+    match study.folder.compute(&study.sweep, &point, &mut monitor)? {
+        Claim::Computed(outcome) | Claim::Known(outcome) => {
             console::print(&format!("point {number}, {name}: {}\n", short(&outcome)))?;
             match outcome.status {
-                Status::Failed => Err(Failure::Unfinished),
+                Status::Failed | Status::Invalid => Err(Failure::Unfinished),
                 _ => Ok(()),
             }
         }

@@ -1,8 +1,7 @@
 //! `plica sweep picture`: the outcomes of a study over two of its axes.
 
-use super::{Study, StudyArguments};
+use super::{Study, StudyArguments, write_named};
 use crate::console;
-use crate::existing_run::{check_out, write_out};
 use crate::failure::Failure;
 use clap::Args;
 use plica::sweep::{Axis, Measure, Outcome, Point};
@@ -40,8 +39,17 @@ fn choice(text: &str) -> Result<(String, String), String> {
 /// Draws the outcomes.
 pub fn picture(arguments: &PictureArguments) -> Result<(), Failure> {
     let study = Study::open(&arguments.study)?;
-    if let Some(file) = &arguments.file {
-        check_out(file, &["png", "svg"])?;
+    let extension = arguments.file.as_ref().and_then(|file| file.extension());
+    let has_extension =
+        |wanted: &str| extension.is_some_and(|own| own.eq_ignore_ascii_case(wanted));
+    let is_svg = has_extension("svg");
+    if let Some(file) = arguments
+        .file
+        .as_ref()
+        .filter(|_| !is_svg && !has_extension("png"))
+    {
+        let what = format!("--file {}: must end in .png or .svg", file.display());
+        return Err(Failure::Usage(what));
     }
     let axes = study.sweep.axes();
     let measure = Measure::ALL
@@ -80,10 +88,6 @@ pub fn picture(arguments: &PictureArguments) -> Result<(), Failure> {
         ..Chart::default()
     };
     let file = arguments.file.clone();
-    let is_svg = file.as_ref().is_some_and(|file| {
-        file.extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("svg"))
-    });
     let drawn = match is_svg {
         true => chart.svg().map(String::into_bytes),
         false => chart.png(1500),
@@ -91,7 +95,7 @@ pub fn picture(arguments: &PictureArguments) -> Result<(), Failure> {
     let bytes = drawn.map_err(|error| Failure::Usage(format!("no picture: {error}")))?;
     let path = match file {
         Some(file) => {
-            write_out(&file, &bytes)?;
+            write_named(&file, &bytes)?;
             file
         }
         None => study.folder.write("picture.png", &bytes)?,

@@ -37,8 +37,14 @@ pub(super) fn written(x: f64) -> String {
     }
 }
 
-/// Returns numbers from one to another, evenly spaced or, on a logarithmic axis, with even ratios.
-pub(super) fn range(from: f64, to: f64, points: usize, is_logarithmic: bool) -> Vec<String> {
+/// Returns numbers from one to another, evenly spaced or, on a logarithmic axis, with even ratios. Whole numbers are written
+/// without a point if both ends are (`are_whole`), because keys for whole numbers take no others.
+pub(super) fn range(
+    [from, to]: [f64; 2],
+    points: usize,
+    is_logarithmic: bool,
+    are_whole: bool,
+) -> Vec<String> {
     let last = points.saturating_sub(1).max(1) as f64;
     let at = |i: usize| match (i as f64 / last, is_logarithmic) {
         (0.0, _) => from,
@@ -46,7 +52,11 @@ pub(super) fn range(from: f64, to: f64, points: usize, is_logarithmic: bool) -> 
         (t, false) => from + t * (to - from),
         (t, true) => from * (to / from).powf(t),
     };
-    (0..points).map(|i| written(at(i))).collect()
+    let write = |x: f64| match written(x).strip_suffix(".0") {
+        Some(whole) if are_whole => whole.to_owned(),
+        _ => written(x),
+    };
+    (0..points).map(|i| write(at(i))).collect()
 }
 
 #[cfg(test)]
@@ -55,10 +65,18 @@ mod tests {
 
     #[test]
     fn ranges_have_round_numbers_and_exact_ends() {
-        assert_eq!(range(0.2, 0.5, 4, false), ["0.2", "0.3", "0.4", "0.5"]);
-        assert_eq!(range(1.0, 100.0, 3, true), ["1.0", "10.0", "100.0"]);
-        assert_eq!(range(0.0, 1.0, 1, false), ["0.0"]);
-        assert_eq!(range(3.0, 1.0, 3, false), ["3.0", "2.0", "1.0"]);
+        assert_eq!(
+            range([0.2, 0.5], 4, false, false),
+            ["0.2", "0.3", "0.4", "0.5"]
+        );
+        assert_eq!(
+            range([1.0, 100.0], 3, true, false),
+            ["1.0", "10.0", "100.0"]
+        );
+        assert_eq!(range([0.0, 1.0], 1, false, false), ["0.0"]);
+        assert_eq!(range([3.0, 1.0], 3, false, false), ["3.0", "2.0", "1.0"]);
+        assert_eq!(range([2.0, 4.0], 3, false, true), ["2", "3", "4"]);
+        assert_eq!(range([1.0, 2.0], 3, false, true), ["1", "1.5", "2"]);
         assert_eq!(written(1e-7), "0.0000001");
         assert_eq!(number("1_000.5"), Some(1000.5));
         assert_eq!(number("inf"), None);

@@ -271,7 +271,19 @@ fn axis(
         Some(Some("log")) => return fail("a logarithmic range must be positive", "", value.span()),
         _ => return fail("scale must be \"linear\" or \"log\"", "", value.span()),
     };
-    Some(axis(range(from, to, points as usize, is_logarithmic)))
+    let is_whole = |name: &str| {
+        matches!(
+            table.get(name).map(Spanned::get_ref),
+            Some(DeValue::Integer(_))
+        )
+    };
+    let are_whole = is_whole("from") && is_whole("to");
+    Some(axis(range(
+        [from, to],
+        points as usize,
+        is_logarithmic,
+        are_whole,
+    )))
 }
 
 /// Reads a design: a CSV file whose header names the axes, with a row for each point.

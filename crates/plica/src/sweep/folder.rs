@@ -29,11 +29,13 @@ pub struct StudyFolder {
     path: PathBuf,
 }
 
-/// What an attempt to compute a point came to.
+/// Result of an attempt to compute a point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Claim {
-    /// The point has an outcome now.
-    Done(Box<Outcome>),
+    /// This attempt has computed the point.
+    Computed(Box<Outcome>),
+    /// The point has an outcome already, or its case is not valid.
+    Known(Box<Outcome>),
     /// Another process works on it.
     Taken,
     /// The attempt was cancelled; what was computed is kept.
@@ -66,7 +68,7 @@ impl StudyFolder {
     pub fn outcome(&self, sweep: &Sweep, point: &Point) -> (String, Outcome) {
         match sweep.case(point) {
             Ok(case) => (case.name.clone(), self.outcome_of(&case)),
-            Err(error) => (String::new(), unsound(&error)),
+            Err(error) => (String::new(), invalid(&error)),
         }
     }
 
@@ -92,20 +94,30 @@ impl StudyFolder {
     /// works on it. An error of its run is an outcome too, which [`StudyFolder::retry`] removes.
     ///
     /// # Errors
-    /// [`SweepError::File`] if the outcome cannot be written.
+    /// [`SweepError::Memory`] if the machine has too little free memory, [`SweepError::File`] if the outcome cannot be written.
     pub fn compute(
         &self,
-        case: &PointCase,
+        sweep: &Sweep,
+        point: &Point,
         monitor: &mut dyn Monitor,
     ) -> Result<Claim, SweepError> {
-        let outcome = self.outcome_of(case);
+        let case = match sweep.case(point) {
+            Ok(case) => case,
+            Err(error) => return Ok(Claim::Known(invalid(&error).into())),
+        };
+        let outcome = self.outcome_of(&case);
         if outcome.status.is_final() {
-            return Ok(Claim::Done(outcome.into()));
+            return Ok(Claim::Known(outcome.into()));
         }
+        check_memory(&case.plan)?;
         let path = self.run(&case.name);
-        let (outcome, file) = match follow(case, &path, monitor) {
-            Ok(Some(outcome)) => (outcome, path.join(OUTCOME)),
-            Ok(None) => return Ok(Claim::Cancelled),
+        let (outcome, file) = match follow(&case, &path, monitor) {
+            Ok(Followed::Ended(outcome)) => (outcome, path.join(OUTCOME)),
+            Ok(Followed::HadEnded(outcome)) => {
+                save(&path.join(OUTCOME), &outcome)?;
+                return Ok(Claim::Known(outcome.into()));
+            }
+            Ok(Followed::Cancelled) => return Ok(Claim::Cancelled),
             // Occupied: another process has just begun it.
             Err(RunError::Busy { .. } | RunError::Occupied(_)) => return Ok(Claim::Taken),
             Err(error) => (
@@ -113,9 +125,8 @@ impl StudyFolder {
                 self.failed(&case.name),
             ),
         };
-        let text = serde_json::to_vec_pretty(&outcome).unwrap_or_default();
-        write(&file, &text)?;
-        Ok(Claim::Done(outcome.into()))
+        save(&file, &outcome)?;
+        Ok(Claim::Computed(outcome.into()))
     }
 
     /// Removes the outcomes of points whose runs failed, so that they are computed again; returns their number.
@@ -153,18 +164,23 @@ impl StudyFolder {
 }
 
 /// Returns the outcome of a case that is not valid.
-pub(super) fn unsound(error: &PointError) -> Outcome {
-    Outcome::without_states(Status::Unsound, error.to_string().replace('\n', "; "))
+fn invalid(error: &PointError) -> Outcome {
+    Outcome::without_states(Status::Invalid, error.to_string().replace('\n', "; "))
 }
 
-/// Follows the run of a point to its end; none if it was cancelled.
-fn follow(
-    case: &PointCase,
-    path: &Path,
-    monitor: &mut dyn Monitor,
-) -> Result<Option<Outcome>, RunError> {
+/// The end of an attempt to follow a run.
+enum Followed {
+    /// The run has ended.
+    Ended(Outcome),
+    /// The run had ended before.
+    HadEnded(Outcome),
+    /// The attempt was cancelled.
+    Cancelled,
+}
+
+/// Follows the run of a point to its end.
+fn follow(case: &PointCase, path: &Path, monitor: &mut dyn Monitor) -> Result<Followed, RunError> {
     let plan = &case.plan;
-    check_memory(plan)?;
     let is_begun = RunDirectory::exists(path);
     let mut directory = match is_begun {
         true => RunDirectory::open(path)?,
@@ -180,7 +196,7 @@ fn follow(
         };
         while run.next_row(monitor)?.is_some() {}
         if *run.finish()?.ending() == Ending::Stopped {
-            return Ok(None);
+            return Ok(Followed::Cancelled);
         }
     }
     directory.close()?;
@@ -193,7 +209,19 @@ fn follow(
         Verdict::Lost => manifest["verdict_text"].as_str().unwrap_or_default(),
         _ => "",
     };
-    Ok(Some(Outcome::of_run(&findings, verdict, reason)))
+    let outcome = Outcome::of_run(&findings, verdict, reason);
+    Ok(match has_ended {
+        true => Followed::HadEnded(outcome),
+        false => Followed::Ended(outcome),
+    })
+}
+
+/// Writes the file of an outcome.
+fn save(path: &Path, outcome: &Outcome) -> Result<(), SweepError> {
+    write(
+        path,
+        &serde_json::to_vec_pretty(outcome).unwrap_or_default(),
+    )
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {

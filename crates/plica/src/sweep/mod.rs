@@ -73,6 +73,9 @@ pub enum SweepError {
         /// The error.
         source: std::io::Error,
     },
+    /// The machine has too little free memory for a point.
+    #[error(transparent)]
+    Memory(#[from] crate::study::StudyError),
     /// The study file is wrong.
     #[error("{}: {error}", path.display())]
     Study {

@@ -15,7 +15,7 @@ pub enum Status {
     /// The tube could not be followed further; the states before are results.
     Lost,
     /// The case is not valid.
-    Unsound,
+    Invalid,
     /// The run ended with an error.
     Failed,
     /// The run was begun, and may be going on.
@@ -41,7 +41,7 @@ impl fmt::Display for Status {
         f.write_str(match self {
             Self::Complete => "complete",
             Self::Lost => "lost",
-            Self::Unsound => "unsound",
+            Self::Invalid => "invalid",
             Self::Failed => "failed",
             Self::Begun => "begun",
             Self::Missing => "missing",

@@ -4,6 +4,7 @@ use super::{Keep, Sweep};
 use crate::case::{self, CaseError, EditError, Input, InputFile};
 use crate::study::Plan;
 use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 
 /// A tube of a study.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -34,8 +35,30 @@ pub enum PointError {
     Case(#[from] CaseError),
 }
 
-/// Every n-th state, for an n beyond every stage: only the last one of each.
+/// A number of steps beyond that of every stage, so that only the last state of each is kept.
 const NEVER: &str = "100000";
+
+/// Returns the path of a file that a case in a folder names.
+///
+/// # Errors
+/// If the file is neither in that folder nor in the current one.
+fn allowed(folder: &Path, wanted: InputFile<'_>) -> Result<PathBuf, std::io::Error> {
+    let file = folder.join(wanted.path()).canonicalize()?;
+    let here = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    for allowed in [here, Path::new(".")] {
+        if file.starts_with(allowed.canonicalize()?) {
+            return Ok(file);
+        }
+    }
+    let why = "the file is neither in the folder of the base case nor in the current one";
+    Err(std::io::Error::new(
+        std::io::ErrorKind::PermissionDenied,
+        why,
+    ))
+}
 
 impl Sweep {
     /// Returns the case of a point.
@@ -59,7 +82,7 @@ impl Sweep {
             .update(&[0])
             .update(text.as_bytes());
         let open = |wanted: InputFile<'_>| {
-            let path = folder.join(wanted.path());
+            let path = allowed(folder, wanted)?;
             let input = Input::read(wanted, &path)?;
             let bytes = std::fs::read(&path)?;
             hash.borrow_mut().update(&[0]).update(&bytes);

@@ -1,7 +1,7 @@
 //! Refinement: bisection between neighbouring points whose outcomes differ.
 
 use super::axis::{number, written};
-use super::{Axis, Outcome, Point};
+use super::{Axis, Outcome, Point, Status};
 use std::collections::BTreeSet;
 
 /// The part of an outcome whose changes are located.
@@ -11,11 +11,11 @@ pub enum Measure {
     Shape,
     /// The side to which the last state overhangs.
     Side,
-    /// Whether a state of the path is invaginated.
+    /// True if a state of the path is invaginated.
     Invaginates,
-    /// Whether a state of the path is unstable, and to which mode first.
+    /// The mode to which a state of the path is unstable first, or `stable`.
     Unstable,
-    /// Whether the path reaches its end.
+    /// The status: complete, lost or invalid.
     Status,
 }
 
@@ -32,12 +32,14 @@ impl Measure {
     /// Returns the value in an outcome; none if the tube was not computed.
     pub fn of(self, outcome: &Outcome) -> Option<String> {
         let text = match self {
-            Self::Status => outcome.status.to_string(),
+            // A failure is one of the machine, not of the tube.
+            Self::Status if outcome.status != Status::Failed => outcome.status.to_string(),
             _ if !outcome.status.has_states() => return None,
             Self::Shape => outcome.shape.clone(),
             Self::Side => outcome.side.clone(),
             Self::Invaginates => outcome.invaginated_state.is_some().to_string(),
             Self::Unstable => outcome.unstable_mode.clone(),
+            Self::Status => return None,
         };
         Some(text)
     }
@@ -46,7 +48,7 @@ impl Measure {
 /// A request to bisect boundaries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refinement {
-    /// What differs between neighbours.
+    /// The part of the outcomes that differs between neighbours.
     pub of: Measure,
     /// The axes that are bisected, by their place among all axes, and the distance of values at which bisection ends.
     pub until: Vec<(usize, f64)>,
@@ -118,7 +120,6 @@ impl Refinement {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::Status;
 
     /// Bisects the circle x² + y² = 0.5 on a grid of nine points, as if outcomes came one after another.
     #[test]
@@ -151,12 +152,27 @@ mod tests {
             })
         };
         let all = refinement.points(&axes, &grid, &outcome);
-        // Every bracket is at most as wide as the tolerance: five bisections of 0.5 on each of the crossed lines.
-        assert_eq!(all.len() % 5, 0);
-        for point in &all {
-            let [x, y] = [0, 1].map(|i| number(&point.values[i]).unwrap());
-            assert!((x * x + y * y - 0.5).abs() < 0.55, "{point:?}");
+        // On every line of the grid, neighbours that differ are as close as asked for.
+        let mut crossings = 0;
+        for axis in [0, 1] {
+            for across in &axes[1 - axis].values {
+                let own = grid
+                    .iter()
+                    .chain(&all)
+                    .filter(|point| point.values[1 - axis] == *across);
+                let place = |point: &&Point| number(&point.values[axis]).unwrap();
+                let mut line: Vec<&Point> = own.collect();
+                line.sort_by(|a, b| place(a).total_cmp(&place(b)));
+                for pair in line.windows(2) {
+                    let shapes = [0, 1].map(|i| outcome(pair[i]).unwrap().shape);
+                    if shapes[0] != shapes[1] {
+                        crossings += 1;
+                        assert!(place(&pair[1]) - place(&pair[0]) <= 0.02, "{pair:?}");
+                    }
+                }
+            }
         }
+        assert_eq!(crossings, 4);
         // Rounds of one point each come to the same points.
         let mut done: BTreeSet<Point> = BTreeSet::new();
         loop {
