@@ -15,8 +15,10 @@ use plica::study::{Plan, StudyError, check_memory};
 use plica_view::report::branch_diagrams;
 use std::path::{Path, PathBuf};
 
-/// Name of the table of special points, by which a directory of branches is recognised.
+/// Name of the table of special points.
 const POINTS: &str = "points.csv";
+/// Name of the file that marks a directory of branches, and its content.
+const MARK: (&str, &str) = ("branches.json", "{ \"program\": \"plica follow\" }\n");
 /// Width of the diagrams in pixels.
 const WIDTH: usize = 1800;
 
@@ -35,7 +37,6 @@ pub fn follow(arguments: &FollowArguments) -> Result<(), Failure> {
     check_memory(&plan).map_err(RunError::from)?;
     let interrupt = Interrupt::listen()?;
     let directory = Directory::create(out, arguments.overwrite)?;
-    directory.write("case.toml", text.as_bytes())?;
     console::message(&format!(
         "{}\nwriting to {}",
         plan.title,
@@ -61,6 +62,8 @@ pub fn follow(arguments: &FollowArguments) -> Result<(), Failure> {
     };
     ticker.finish();
     let found = found.map_err(failure)?;
+    directory.prepare()?;
+    directory.write("case.toml", text.as_bytes())?;
     let files = write(&directory, &following, &found)?;
     let pictures = draw(&directory, &following, &found)?;
     let mut page = found.summary();
@@ -92,16 +95,17 @@ struct Directory {
 }
 
 impl Directory {
-    /// Creates a directory. One that exists must be empty, or be one of branches that is to be replaced.
+    /// Chooses a directory. One that exists must be empty, or be one of branches that is to be replaced. Its files stay until
+    /// there are others.
     fn create(path: PathBuf, overwrite: bool) -> Result<Self, Failure> {
         let place = path.display();
         let files = |error| Failure::Files(format!("{place}: {error}"));
         if path.exists() {
             let is_empty = std::fs::read_dir(&path).map_err(files)?.next().is_none();
-            let is_ours = path.join(POINTS).exists() && !path.join("history.csv").exists();
+            let is_ours =
+                std::fs::read_to_string(path.join(MARK.0)).is_ok_and(|mark| mark == MARK.1);
             match (is_empty, is_ours, overwrite) {
-                (true, ..) => {}
-                (false, true, true) => clear(&path).map_err(files)?,
+                (true, ..) | (false, true, true) => {}
                 (false, true, false) => {
                     return Err(Failure::Usage(format!(
                         "{place} has branches already; replace them with --overwrite, or choose another directory with --out"
@@ -114,13 +118,21 @@ impl Directory {
                 }
             }
         }
+        // Tells now if it cannot be written to.
+        std::fs::create_dir_all(&path).map_err(files)?;
+        Ok(Self { path })
+    }
+
+    /// Marks the directory, and removes the files of earlier branches.
+    fn prepare(&self) -> Result<(), Failure> {
+        let path = &self.path;
+        let files = |error| Failure::Files(format!("{}: {error}", path.display()));
+        self.write(MARK.0, MARK.1.as_bytes())?;
+        clear(path).map_err(files)?;
         for folder in ["branches", "points", "modes"] {
             std::fs::create_dir_all(path.join(folder)).map_err(files)?;
         }
-        let directory = Self { path };
-        // The mark by which the directory is recognised if the program is ended.
-        directory.write(POINTS, b"")?;
-        Ok(directory)
+        Ok(())
     }
 
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
@@ -139,9 +151,14 @@ impl Directory {
 /// Removes the files of earlier branches.
 fn clear(path: &Path) -> std::io::Result<()> {
     for folder in ["branches", "points", "modes"] {
-        let folder = path.join(folder);
-        if folder.is_dir() {
-            std::fs::remove_dir_all(folder)?;
+        let Ok(files) = std::fs::read_dir(path.join(folder)) else {
+            continue;
+        };
+        for file in files.flatten().map(|file| file.path()) {
+            let is_ours = |ending: &str| file.extension().is_some_and(|own| own == ending);
+            if is_ours("csv") || is_ours("safetensors") {
+                std::fs::remove_file(file)?;
+            }
         }
     }
     for entry in std::fs::read_dir(path)? {

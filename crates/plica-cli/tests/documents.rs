@@ -53,6 +53,9 @@ fn the_commands_of_the_pages_exist() {
             let help = help
                 .entry(command.clone())
                 .or_insert_with(|| match &command[..] {
+                    "sweep" => ["check", "run", "status", "table", "picture", "point"]
+                        .map(|own| succeed(&root(), &["sweep", own, "--help"]))
+                        .concat(),
                     "materials" => ["show", "plot", "fit"]
                         .map(|own| succeed(&root(), &["materials", own, "--help"]))
                         .concat(),

@@ -33,7 +33,7 @@ base = "ring.toml"
 const REFINED: &str = r#"
 base = "ring.toml"
 [axes]
-"stages.contract.drive.ring.diameter_ratio" = [0.9, 1.0]
+"stages.contract.drive.ring.diameter_ratio" = [0.9, 0.99]
 "tube.thickness" = [0.08, 0.1]
 [refine]
 of = "shape"

@@ -33,7 +33,7 @@ enum Command {
     Check(StudyArguments),
     /// Compute the points that are missing, and write the table
     Run(RunArguments),
-    /// Print how many points are computed
+    /// Print the numbers of points that are computed and missing
     Status(StudyArguments),
     /// Write the table of all points
     Table(TableArguments),

@@ -7,7 +7,7 @@ use super::tube_model::radial_displacement;
 use super::{Tolerance, VerificationError};
 
 /// Elements of a layer, or of a third of the wall of one layer.
-const ELEMENTS: [usize; 2] = [2, 4];
+const ELEMENTS: [usize; 2] = [4, 8];
 /// Points of a layer at which displacements are compared.
 const POINTS: usize = 24;
 /// Elements around the tube. The error of the spline circle is then far below that of the displacement.

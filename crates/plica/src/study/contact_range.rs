@@ -42,7 +42,8 @@ pub fn half_range(
     monitor: &mut dyn Monitor,
 ) -> Option<HalfRange> {
     let problem = plan.problem();
-    if problem.has_friction() {
+    // Friction depends on the path, and a driven volume needs its multiplier renewed.
+    if problem.has_friction() || load.lumen_volume.is_some() {
         return None;
     }
     let mut half = plan.clone();

@@ -66,7 +66,10 @@ fn parse(text: &str, path: &Path, problems: &mut Vec<Problem>) -> Option<Sweep> 
     let base_text = base.as_ref().map_or("", |(_, text)| text);
     let mut axes = vec![];
     if let Some(table) = table(root, "axes", problems) {
-        for (name, value) in table {
+        // In the order of the file; a table has its keys in that of the alphabet.
+        let mut entries: Vec<_> = table.iter().collect();
+        entries.sort_by_key(|(name, _)| name.span().start);
+        for (name, value) in entries {
             axes.extend(axis(name.get_ref(), value, text, problems));
         }
     }

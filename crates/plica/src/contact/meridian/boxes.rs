@@ -274,7 +274,10 @@ mod tests {
                 };
                 let expected: Vec<(usize, usize)> = (0..61).flat_map(of).collect();
                 assert_eq!(near_and_turned(&curves, distance), expected);
-                assert_eq!(expected.is_empty(), height * waves < 0.5, "{waves}");
+                // Neighbours of a crest are not turned enough; elements on either side of it are.
+                if distance == 0.5 {
+                    assert_eq!(expected.is_empty(), height * waves < 0.5, "{waves}");
+                }
             }
         }
     }

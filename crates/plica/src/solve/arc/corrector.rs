@@ -126,7 +126,12 @@ impl<F: Family> Curve<'_, F> {
             match (next, failed) {
                 (Some(next), _) => now = next,
                 // Rounding hides the decrease.
-                (None, None) if now.relative_residual <= EQUILIBRIUM => break,
+                (None, None)
+                    if now.relative_residual <= EQUILIBRIUM
+                        && now.distance.abs() <= PLANE * plane.scale =>
+                {
+                    break;
+                }
                 (None, None) => return Err(not_converged(&now)),
                 (None, Some(error)) => return Err(error),
             }

@@ -27,7 +27,7 @@ pub struct ArcSettings {
 }
 
 impl ArcSettings {
-    /// Returns the settings for a range of the parameter: steps of at most a fiftieth of it.
+    /// Returns the settings for a range of the parameter: a first step of a fiftieth of it, and none longer than a twenty-fifth.
     pub fn for_range(range: [f64; 2]) -> Self {
         let width = (range[1] - range[0]).abs();
         Self {

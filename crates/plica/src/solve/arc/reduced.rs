@@ -14,7 +14,7 @@
 //! η_εε c·v = −u_ε · D²R[u_ε, u_ε], η_ελ c·v = −u_ε · D²R[u_ε, (u_λ, 1)], η_λλ c·v = −u_ε · D²R[(u_λ, 1), (u_λ, 1)],
 //! η_εεε c·v = −u_ε · (D³R[u_ε, u_ε, u_ε] + 3 D²R[u_ε, u_εε]),
 //!
-//! the last where η_ε = 0. They are differences of residuals: no third derivative of the energy is needed.
+//! They are differences of residuals: no third derivative of the energy is needed.
 
 use super::super::line_search::largest;
 use super::super::operator::{add, dot};

@@ -46,8 +46,8 @@ pub struct BranchPoint {
 /// The force on the mode at the amplitude ε, −η = α (λ − λ*) ε + γ ε² + β ε³ + …, with the force β ε³ C v on the tube.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalForm {
-    /// Rate at which the eigenvalue of the mode changes with the parameter, times v·Cv of a unit vector: below 0 where the
-    /// first branch becomes unstable.
+    /// Rate at which the eigenvalue ν of the mode, K v = ν C v, changes with the parameter: below 0 where the first branch
+    /// becomes unstable.
     pub alpha: f64,
     /// Quadratic coefficient; zero at a pitchfork.
     pub gamma: f64,
