@@ -147,9 +147,23 @@ fn a_run_whose_files_are_removed_stops_keeps_its_history_and_resumes() {
         let sent = Command::new("kill").args([name, &pid]).status();
         assert!(sent.unwrap().success());
     };
-    signal("-STOP");
-    // Its threads stop a moment after the signal was sent.
-    std::thread::sleep(std::time::Duration::from_millis(200));
+    let is_writing = || {
+        let folders = ["", "profiles", "states"].map(|name| fs::read_dir(run.join(name)));
+        let files = folders.into_iter().flatten().flatten().flatten();
+        files
+            .map(|file| file.file_name())
+            .any(|name| name.to_string_lossy().contains(".part"))
+    };
+    loop {
+        signal("-STOP");
+        // Its threads stop a moment after the signal was sent.
+        std::thread::sleep(std::time::Duration::from_millis(200));
+        if !is_writing() {
+            break;
+        }
+        signal("-CONT");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
     for name in ["profiles", "states"] {
         let _ = fs::remove_dir_all(run.join(name));
     }
