@@ -21,14 +21,14 @@ pub(super) enum Change {
 /// The changes between two points, and whether they must be separated by a point between before they are located.
 pub(super) struct Changes {
     pub all: Vec<Change>,
-    pub inseparable: bool,
+    pub need_separation: bool,
 }
 
 impl Follow {
     /// Returns the changes between two points that the plan locates.
     pub(super) fn changes(&self, a: &Sample, b: &Sample) -> Changes {
         let mut all = vec![];
-        let mut inseparable = false;
+        let mut need_separation = false;
         let watches = |event: &Event| self.following.events.contains(event);
         let turns = a.point.tangent.1 * b.point.tangent.1 < 0.0;
         if turns && watches(&Event::Fold) {
@@ -41,7 +41,7 @@ impl Follow {
             if change == of_fold || !watches(&Event::Modes) {
                 continue;
             }
-            inseparable |= change > 1 || of_fold == 1;
+            need_separation |= change > 1 || of_fold == 1;
             all.push(Change::Mode(mode));
         }
         for event in &self.following.events {
@@ -62,7 +62,10 @@ impl Follow {
                 _ => {}
             }
         }
-        Changes { all, inseparable }
+        Changes {
+            all,
+            need_separation,
+        }
     }
 
     /// Returns the derivative of the energy of the problem with the parameter along the branch, ∂W/∂λ since R = 0; NaN if it is

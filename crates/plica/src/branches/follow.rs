@@ -52,7 +52,7 @@ struct Start {
     from: Option<String>,
 }
 
-/// What is found while branches are followed.
+/// The results so far, while branches are followed.
 struct Found<'s, 'k> {
     branches: Branches,
     labels: BTreeMap<String, usize>,
@@ -268,7 +268,7 @@ impl Follow {
         if changes.all.is_empty() || monitor.is_cancelled() {
             return;
         }
-        if changes.inseparable && halvings < HALVINGS {
+        if changes.need_separation && halvings < HALVINGS {
             let middle = curve.between([&a.point, &b.point], 0.5, monitor);
             if let Ok(middle) = middle {
                 let middle = self.sample(middle);
@@ -278,7 +278,7 @@ impl Follow {
             }
         }
         for change in &changes.all {
-            let found = match changes.inseparable && matches!(change, Change::Mode(_)) {
+            let found = match changes.need_separation && matches!(change, Change::Mode(_)) {
                 true => Err(ArcFailure::NoPoint),
                 false => self.locate(curve, change, [a, b], monitor),
             };

@@ -88,7 +88,9 @@ impl SpecialPoint {
             PointKind::Energy(true) => "minimum of the energy".into(),
             PointKind::Energy(false) => "maximum of the energy".into(),
             PointKind::Column(name, value) => format!("{name} = {value}"),
-            PointKind::Unresolved => "several events at once".into(),
+            PointKind::Unresolved => {
+                "several events at once, or one that could not be located".into()
+            }
         }
     }
 }

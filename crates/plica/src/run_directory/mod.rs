@@ -157,16 +157,7 @@ impl RunDirectory {
             source,
         };
         match fs::read_dir(path) {
-            Ok(_) => {
-                if files(path).any(|file| !is_leftover(&file)) {
-                    if !is_run(path) {
-                        return Err(RunError::NotARun(path.to_owned()));
-                    }
-                    if !overwrite && !is_unwritten(path) {
-                        return Err(RunError::Occupied(path.to_owned()));
-                    }
-                }
-            }
+            Ok(_) => check_free(path, overwrite)?,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 if let Ok(target) = fs::read_link(path) {
                     let link = path.to_owned();
@@ -178,6 +169,8 @@ impl RunDirectory {
             Err(e) => return Err(error_at(e)),
         }
         let lock = Some(Lock::take(path)?);
+        // Another process may have run there since.
+        check_free(path, overwrite)?;
         let mut directory = Self {
             path: path.to_owned(),
             folder: Folder::open(path),
@@ -326,6 +319,20 @@ impl RunDirectory {
     /// Returns whether there is a run at a path, with a case at least.
     pub fn exists(path: &Path) -> bool {
         is_run(path) && !is_unwritten(path)
+    }
+}
+
+/// Refuses a directory that holds anything that is not a run, or a run that is not to be replaced.
+fn check_free(path: &Path, overwrite: bool) -> Result<(), RunError> {
+    if !files(path).any(|file| !is_leftover(&file)) {
+        return Ok(());
+    }
+    if !is_run(path) {
+        return Err(RunError::NotARun(path.to_owned()));
+    }
+    match overwrite || is_unwritten(path) {
+        true => Ok(()),
+        false => Err(RunError::Occupied(path.to_owned())),
     }
 }
 
