@@ -18,7 +18,7 @@ pub struct Point {
 pub struct PointCase {
     /// Its text.
     pub text: String,
-    /// What it describes.
+    /// The plan that the text describes.
     pub plan: Plan,
     /// Name of its run: 16 hexadecimal digits made from the text, the files that it names and the version of Plica.
     pub name: String,

@@ -24,7 +24,7 @@ impl<F: Family> Curve<'_, F> {
     /// bisection after every second step.
     ///
     /// # Errors
-    /// That of the function, or [`super::ArcFailure::Cancelled`].
+    /// The error of the function, or [`super::ArcFailure::Cancelled`].
     pub fn locate<E: From<Failure<F>>>(
         &self,
         [a, b]: [&Point; 2],
